@@ -1,0 +1,125 @@
+"""The process: standard streams, signals, exit status. The only place that exits."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+from types import FrameType
+
+# numpy starts a thread per processor for a linear algebra that is never large here.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import click
+
+from scarid_cli.cli import scarid
+from scarid_cli.errors import (
+    BROKEN_PIPE,
+    INTERRUPTED,
+    IO_FAILURE,
+    OK,
+    USAGE,
+    ScaridError,
+)
+
+TERMINATED = 128 + signal.SIGTERM
+
+
+class Terminated(BaseException):
+    """The process was asked to end: leave through the same clean-up as any failure."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one command line; return its exit status. Errors are one line on standard error."""
+    words = sys.argv[1:] if arguments is None else arguments
+    name = next((f"scarid {word}" for word in words if not word.startswith("-")), "scarid")
+    try:
+        # Not `scarid.main`: click turns a broken pipe into exit status 1.
+        with scarid.make_context("scarid", words) as context:
+            scarid.invoke(context)
+        sys.stdout.flush()
+    except click.exceptions.Exit as stop:
+        return stop.exit_code
+    except click.exceptions.NoArgsIsHelpError as error:
+        error.show()
+        return USAGE
+    except click.UsageError as error:
+        path = error.ctx.command_path if error.ctx else "scarid"
+        return _told(path, f"{error.format_message().rstrip('.')} (see `{path} --help`)", USAGE)
+    except (KeyboardInterrupt, click.Abort):
+        return INTERRUPTED
+    except Terminated:
+        return TERMINATED
+    except BrokenPipeError:
+        return BROKEN_PIPE
+    except (ScaridError, OSError) as error:
+        if "--debug" in words:
+            raise
+        return _failed(name, error)
+    return OK
+
+
+def _failed(where: str, error: ScaridError | OSError) -> int:
+    if isinstance(error, ScaridError):
+        return _told(where, str(error), error.status)
+    place = error.filename or "<stdout>"
+    return _told(where, f"{place}: {error.strerror or error}", IO_FAILURE)
+
+
+def _told(where: str, message: str, status: int) -> int:
+    # A message of a library may have line breaks.
+    print(f"{where}: {' '.join(message.split())}", file=sys.stderr)  # noqa: T201
+    return status
+
+
+def run() -> None:
+    """The entry of the `scarid` command."""
+    _mend_streams()
+    signal.signal(signal.SIGTERM, _terminate)
+    status = _flushed(main())
+    for number, code in (
+        (signal.SIGINT, INTERRUPTED),
+        (signal.SIGPIPE, BROKEN_PIPE),
+        (signal.SIGTERM, TERMINATED),
+    ):
+        if status == code:
+            # End as the signal would have ended us, so that the shell and make see it.
+            signal.signal(number, signal.SIG_DFL)
+            os.kill(os.getpid(), number)
+    sys.exit(status)
+
+
+def _terminate(_number: int, _frame: FrameType | None) -> None:
+    raise Terminated
+
+
+def _mend_streams() -> None:
+    """Give closed standard streams a descriptor that fails, so that no file takes its number."""
+    for descriptor, flags in ((0, os.O_WRONLY), (1, os.O_RDONLY), (2, os.O_WRONLY)):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.open(os.devnull, flags)
+    if sys.stdout is None:
+        sys.stdout = os.fdopen(1, "w", closefd=False)
+    if sys.stderr is None:
+        sys.stderr = os.fdopen(2, "w", closefd=False)
+
+
+def _flushed(status: int) -> int:
+    """Flush standard output here: at the interpreter's end a failure would be exit status 120."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        status = status or BROKEN_PIPE
+    except OSError as error:
+        status = status or _told("scarid", f"<stdout>: {error.strerror}", IO_FAILURE)
+    with contextlib.suppress(OSError):
+        null = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(null, 1)
+    return status
+
+
+if __name__ == "__main__":
+    run()

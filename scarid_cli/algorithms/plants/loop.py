@@ -1,0 +1,152 @@
+"""A robot in closed loop (paper section 3.1 and eq. 29, with the sign of its error mended).
+
+tau = Kp (q_ref - q) + Kd (dq_ref - dq_est) + Ki integral(q_ref - q), at the control rate; dq_est
+is the smoothed backward difference of the encoder. The plant is integrated by fourth-order
+Runge-Kutta between the control ticks, with dry friction that sticks.
+"""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from dataclasses import dataclass
+
+import numpy as np
+
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.arrays import Array
+from scarid_cli.errors import UsageFault
+from scarid_cli.kernels import plant
+
+JOINTS = 2  # of the kernel; an axis alone takes the first
+LARGE = 1e300
+
+
+@dataclass(frozen=True)
+class State:
+    """Where the robot and its controller are, and the sources of noise."""
+
+    values: Array
+    position_noise: np.random.Generator
+    torque_noise: np.random.Generator
+
+
+@dataclass(frozen=True)
+class Log:
+    """What happened at each tick: arrays (joints, ticks)."""
+
+    q: Array
+    tau: Array
+    q_true: Array
+    dq_true: Array
+    ddq_true: Array
+    tau_true: Array
+
+
+class DivergedError(ValueError):
+    """The loop is unstable; `tick` is where its state left all bounds."""
+
+    def __init__(self, tick: int) -> None:
+        super().__init__("the closed loop is unstable")
+        self.tick = tick
+
+
+@dataclass(frozen=True)
+class ClosedLoop:
+    """Settings, per joint where they are arrays. Rates in Hz, noise as standard deviations."""
+
+    robot: Robot
+    kp: Array
+    kd: Array
+    ki: Array
+    velocity_cutoff: float
+    encoder_resolution: Array
+    position_noise: Array
+    torque_noise: Array
+    seed: int
+    control_rate: float = 1000.0
+    substeps: int = 4
+
+    def __post_init__(self) -> None:
+        if not self.control_rate > 0.0 or self.substeps < 1:
+            raise UsageFault("the control rate and the number of substeps must be positive")
+        for name in ("encoder_resolution", "position_noise", "torque_noise"):
+            if np.any(getattr(self, name) < 0.0):
+                raise UsageFault(f"{name.replace('_', ' ')} must not be negative")
+
+    def init(self, q: Array) -> State:
+        """At rest at q (joints)."""
+        position_seed, torque_seed = np.random.SeedSequence(self.seed).spawn(2)
+        q = padded(q)
+        resolution = padded(self.encoder_resolution)
+        reading = np.where(
+            resolution > 0.0,
+            np.round(q / np.where(resolution > 0.0, resolution, 1.0)) * resolution,
+            q,
+        )
+        return State(
+            np.concatenate((q, np.zeros(2), reading, np.zeros(4))),
+            np.random.default_rng(position_seed),
+            np.random.default_rng(torque_seed),
+        )
+
+    def step(self, state: State, q_ref: Array, dq_ref: Array) -> tuple[State, Log]:
+        """Run over the ticks of a reference (joints, ticks)."""
+        state = deepcopy(state)
+        joints, ticks = q_ref.shape
+        reference = np.zeros((ticks, 2 * JOINTS))
+        reference[:, :joints] = q_ref.T
+        reference[:, JOINTS : JOINTS + joints] = dq_ref.T
+        noise = np.zeros((ticks, JOINTS))
+        noise[:, :joints] = state.position_noise.standard_normal((ticks, joints))
+        noise[:, :joints] *= self.position_noise
+        log = np.empty((ticks, 10))
+        done = plant.run(
+            reference,
+            noise,
+            log,
+            state.values,
+            mechanism(self.robot),
+            self._control(),
+            1.0 / self.control_rate,
+            self.substeps,
+        )
+        if done < ticks:
+            raise DivergedError(done)
+        torque_noise = state.torque_noise.standard_normal((ticks, joints)) * self.torque_noise
+        columns = [np.ascontiguousarray(log[:, i : i + joints].T) for i in range(0, 10, JOINTS)]
+        q, tau, q_true, dq_true, ddq_true = columns
+        return state, Log(q, tau + torque_noise.T, q_true, dq_true, ddq_true, tau)
+
+    def _control(self) -> Array:
+        limits = [min(joint.torque_limit, LARGE) for joint in self.robot.joints]
+        rows = [padded(row) for row in (self.kp, self.kd, self.ki, np.array(limits))]
+        smoothing = 0.0
+        if self.velocity_cutoff > 0.0:
+            smoothing = np.exp(-2.0 * np.pi * self.velocity_cutoff / self.control_rate)
+        return np.concatenate((*rows, padded(self.encoder_resolution), [smoothing]))
+
+
+def padded(row: Array) -> Array:
+    """One number per joint of the kernel."""
+    return np.concatenate((row, np.zeros(JOINTS - len(row))))
+
+
+def mechanism(robot: Robot) -> Array:
+    """The kernel's model of a robot, at its a priori values."""
+    joints = len(robot.joints)
+    terms = {parameter.term for parameter in robot.parameters}
+    planar = {"ZZ1R", "ZZ2", "L1MX2", "L1MY2"}
+    friction = [
+        robot.value(term, joint) for term in ("viscous", "coulomb", "offset") for joint in (1, 2)
+    ]
+    if joints == 2 and planar <= terms and "mass" not in terms:
+        inertia = [robot.value(term) for term in ("ZZ1R", "ZZ2", "L1MX2", "L1MY2")]
+    elif joints == 1 and "mass" in terms:
+        # The second joint is there for the kernel only: L1MX2 = -ZZ2 uncouples it (M12 = 0).
+        inertia = [robot.value("mass", 1) + 1.0, 1.0, -1.0, 0.0]
+    else:
+        raise UsageFault(
+            f"robot {robot.name}: only one axis (mass) and the planar arm (ZZ1R, ZZ2, L1MX2, "
+            "L1MY2) can be simulated"
+        )
+    return np.array(inertia + friction)

@@ -1,0 +1,53 @@
+"""A folder of algorithms is a registry: each module in it is one choice of a command's option.
+
+Names and descriptions are read without importing the modules, so that `--help` stays quick.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+FOLDER = Path(__file__).parent
+
+
+@dataclass(frozen=True)
+class Registry:
+    """The modules of one folder below `algorithms`, each defining a class of the same name.
+
+    A module `ed_fir` is called `ed-fir`, and `_2smd` (a module cannot begin with a digit) `2smd`.
+    """
+
+    folder: str
+    class_name: str
+
+    @property
+    def names(self) -> list[str]:
+        stems = (path.stem for path in (FOLDER / self.folder).glob("*.py"))
+        return sorted(_name(stem) for stem in stems if not stem.startswith("__"))
+
+    def load(self, name: str) -> Any:
+        """The class of a choice."""
+        module = f"scarid_cli.algorithms.{self.folder}.{_stem(name)}"
+        return getattr(importlib.import_module(module), self.class_name)
+
+    def describe(self, name: str) -> str:
+        """The module's documentation."""
+        path = FOLDER / self.folder / f"{_stem(name)}.py"
+        return ast.get_docstring(ast.parse(path.read_text("utf-8"))) or ""
+
+
+def _name(stem: str) -> str:
+    return stem.lstrip("_").replace("_", "-")
+
+
+def _stem(name: str) -> str:
+    stem = name.replace("-", "_")
+    return f"_{stem}" if stem[0].isdigit() else stem
+
+
+DIFFERENTIATORS = Registry("differentiators", "Differentiator")
+ESTIMATORS = Registry("estimators", "Estimator")

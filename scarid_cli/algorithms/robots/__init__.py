@@ -1,0 +1,1 @@
+"""Robots: one TOML file each, read into one interface (`description.py`)."""

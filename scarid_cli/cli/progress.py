@@ -1,0 +1,36 @@
+"""A line on a terminal's standard error that counts rows, for a run that takes a while."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import pyarrow as pa
+
+PATIENCE = 1.0  # seconds before anything is shown
+
+
+def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+    """Pass batches on, counting their rows."""
+    start = time.monotonic()
+    held = 0
+    for batch in batches:
+        yield batch
+        held += batch.num_rows
+        if time.monotonic() - start > PATIENCE:
+            break
+    else:
+        return
+    yield from _shown(batches, held)
+
+
+def _shown(batches: Iterator[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = (SpinnerColumn(), TextColumn("{task.completed:,.0f} rows"), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("", total=None, completed=rows)
+        for batch in batches:
+            yield batch
+            progress.advance(task, batch.num_rows)

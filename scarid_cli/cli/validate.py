@@ -1,0 +1,43 @@
+"""scarid validate"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from scarid_cli.cli import options
+
+
+@click.command(name="validate")
+@options.table_input
+@click.option(
+    "--parameters", required=True, metavar="FILE", help="The parameter table of `scarid identify`."
+)
+@options.robot
+@click.option("--predictions", metavar="FILE", help="Write measured and predicted torques.")
+@options.table_output
+@options.common
+def command(
+    file: str, parameters: str, robot: str | None, predictions: str | None, **rest: Any
+) -> None:
+    """Predict torques with identified parameters, and measure how well.
+
+    \b
+      scarid validate --parameters parameters.csv motion.csv
+      scarid validate --parameters p.parquet --predictions torques.parquet motion.parquet
+
+    Per joint: R2 (paper eq. 36), root-mean-square error (eq. 35), relative error 100 |tau -
+    tau_hat| / |tau| in percent, number of samples. On the motion that the parameters were
+    identified from this is direct validation; on another motion, cross validation.
+    """
+    from scarid_cli.cli.job import job
+    from scarid_cli.stages import validate as stage
+
+    with job(rest) as run:
+        out = run.output(rest["output"], rest["format"])
+        side = run.output(predictions) if predictions else None
+        known = run.read(parameters, "parameters")
+        table, arm = run.read_for(file, "motion", robot or known.meta.robot)
+        theta = stage.estimates(known, arm)
+        run.write(stage.validate(run.recorded(table), arm, theta, predictions=side), out)

@@ -1,0 +1,93 @@
+"""Bytes from a path or from standard input, as they arrive, with the first ones looked at."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import stat
+
+from scarid_cli.errors import OutputFailure, UsageFault
+
+STDIN = "<stdin>"
+BLOCK = 1 << 20
+
+
+class ByteSource:
+    """A readable file descriptor.
+
+    `read(n)` waits for exactly n bytes, as pyarrow expects; `read_some` takes what is there.
+    `last` keeps the last eight bytes handed out: an Arrow stream must end with its end mark.
+    """
+
+    def __init__(self, fd: int, name: str) -> None:
+        self.fd = fd
+        self.name = name
+        self.last = b""
+        self.closed = False
+        self._ahead = b""
+
+    @classmethod
+    def open(cls, path: str) -> ByteSource:
+        """Open a path, or standard input for `-`."""
+        if path == "-":
+            if os.isatty(0):
+                raise UsageFault("no input: give a FILE, or pipe a table into the command")
+            return cls(0, STDIN)
+        try:
+            return cls(os.open(path, os.O_RDONLY | os.O_CLOEXEC), path)
+        except FileNotFoundError:
+            raise UsageFault(f"{path}: no such file") from None
+        except OSError as error:
+            raise OutputFailure(f"{path}: {error.strerror}") from None
+
+    def peek(self, size: int) -> bytes:
+        """The next bytes (fewer only at the end), left in place."""
+        while len(self._ahead) < size:
+            data = self._fetch(size - len(self._ahead))
+            if not data:
+                break
+            self._ahead += data
+        return self._ahead[:size]
+
+    def read_some(self, size: int = BLOCK) -> bytes:
+        """What has arrived, at least one byte; empty at the end."""
+        if self._ahead:
+            data, self._ahead = self._ahead[:size], self._ahead[size:]
+        else:
+            data = self._fetch(size)
+        self.last = (self.last + data[-8:])[-8:]
+        return data
+
+    def read(self, size: int = -1) -> bytes:
+        """Exactly `size` bytes, fewer only at the end; all of them for a negative size."""
+        parts: list[bytes] = []
+        left = size
+        while left:
+            data = self.read_some(left if size >= 0 else BLOCK)
+            if not data:
+                break
+            parts.append(data)
+            left -= len(data)
+        return parts[0] if len(parts) == 1 else b"".join(parts)
+
+    @property
+    def regular(self) -> bool:
+        """Whether this is a file one can seek in, rather than a pipe or a terminal."""
+        return stat.S_ISREG(os.fstat(self.fd).st_mode)
+
+    def sha256(self) -> str | None:
+        """The digest of a regular file, as `sha256sum` prints it; None for a pipe."""
+        if not self.regular:
+            return None
+        digest = hashlib.sha256()
+        offset = 0
+        while data := os.pread(self.fd, BLOCK, offset):
+            digest.update(data)
+            offset += len(data)
+        return digest.hexdigest()
+
+    def _fetch(self, size: int) -> bytes:
+        try:
+            return os.read(self.fd, size)
+        except OSError as error:
+            raise OutputFailure(f"{self.name}: {error.strerror}") from None

@@ -1,0 +1,237 @@
+"""CSV in and out (RFC 4180), row by row as it arrives, floats exact in both directions."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Callable, Iterator
+
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv as pacsv
+
+from scarid_cli.errors import BadData, bad_data
+from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.schemas import column_type
+from scarid_cli.io.table import Metadata, Table
+
+# CSV has no end mark: a stage that fails after its first rows ends its table with this line,
+# so that the next stage does not take a short table for a whole one.
+CUT = b"# scarid: the table ends here because the stage that wrote it failed\n"
+
+# Integers of more digits (nanosecond stamps) would lose some as a double, and stay text.
+NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
+
+
+def read_csv(source: ByteSource) -> Table:
+    """A table from CSV. Known columns have the type of their schema.
+
+    Of the others, one whose first value is a number holds numbers, any other holds text: the
+    first row alone decides, so that the type does not depend on how the rows arrive.
+    """
+    lines = _complete_lines(source)
+    first = next(lines, b"")
+    while first and not (header_end := _header_end(first)):
+        first = b"".join((first, next(lines, b"")))  # pragma: no cover (only comments so far)
+    if not first.strip():
+        raise bad_data(
+            source.name, "no rows", expected="a CSV header", remedy="is the file or pipe empty?"
+        )
+    names = _header(first, header_end, source.name)
+    body = first[header_end:]
+    while not body.strip():
+        more = next(lines, None)
+        if more is None:
+            break
+        body = more
+    types = _types(names, body)
+    schema = pa.schema(list(zip(names, types, strict=True)))
+    return Table(source.name, schema, Metadata(), _batches(body, lines, schema, source.name))
+
+
+def _complete_lines(source: ByteSource) -> Iterator[bytes]:
+    """Blocks that end at the end of a row: what has arrived, up to the last whole one."""
+    rest = b""
+    while data := source.read_some():
+        block = rest + data
+        end = _last_row_end(block)
+        if end:
+            yield block[:end]
+        rest = block[end:]
+    if rest:
+        yield rest + b"\n"
+
+
+def _last_row_end(block: bytes) -> int:
+    end = block.rfind(b"\n") + 1
+    # A line break inside quotes does not end a row.
+    while end and block.count(b'"', 0, end) % 2:
+        end = block.rfind(b"\n", 0, end - 1) + 1
+    return end
+
+
+def _header_end(block: bytes) -> int:
+    """Where the rows begin: after leading comments and the header; 0 if not yet there."""
+    start = 0
+    while block.startswith(b"#", start):
+        start = block.find(b"\n", start) + 1
+        if start == len(block):
+            return 0
+    return block.find(b"\n", start) + 1
+
+
+def _header(block: bytes, end: int, name: str) -> list[str]:
+    text = block[:end].decode("utf-8-sig", errors="replace")
+    line = text.rstrip("\r\n").rpartition("\n")[2]
+    names = [column.strip() for column in next(csv.reader([line]), [])]
+    if len(names) == 1 and re.search(r"[;\t]", names[0]):
+        raise bad_data(
+            name,
+            f"the single column {names[0]!r}",
+            expected="columns separated by commas",
+            remedy="turn the separators into commas first (for example with tr)",
+        )
+    for column in names:
+        if not column or names.count(column) > 1:
+            found = f"{names.count(column)} columns of this name" if column else "no name"
+            raise bad_data(
+                name,
+                found,
+                expected="one name per column",
+                remedy="rename the columns in the header",
+                column=column or str(names.index(column) + 1),
+            )
+    return names
+
+
+def _types(names: list[str], body: bytes) -> list[pa.DataType]:
+    first = next(csv.reader(io.StringIO(body[: _first_row_end(body)].decode(errors="replace"))), [])
+    values = first + [""] * (len(names) - len(first))
+    return [
+        column_type(name) or (pa.float64() if NUMERIC.match(value) else pa.string())
+        for name, value in zip(names, values, strict=False)
+    ]
+
+
+def _first_row_end(body: bytes) -> int:
+    end = body.find(b"\n") + 1
+    while end and end < len(body) and (body.count(b'"', 0, end) % 2 or not body[:end].strip()):
+        end = body.find(b"\n", end) + 1 or len(body)
+    return end
+
+
+def _batches(
+    block: bytes, lines: Iterator[bytes], schema: pa.Schema, name: str
+) -> Iterator[pa.RecordBatch]:
+    row = 0
+    while True:
+        if CUT in block:
+            raise cut_short(name)
+        for batch in _parse(block, schema, name, row):
+            yield batch
+            row += batch.num_rows
+        more = next(lines, None)
+        if more is None:
+            return
+        block = more
+
+
+def cut_short(name: str) -> BadData:
+    """The stage before failed or was killed: its table is not whole."""
+    return BadData(f"{name}: the table was cut short: the stage that wrote it failed")
+
+
+def _parse(block: bytes, schema: pa.Schema, name: str, row: int) -> list[pa.RecordBatch]:
+    if not block.strip():
+        return []
+    try:
+        table = pacsv.read_csv(
+            pa.py_buffer(block),
+            read_options=pacsv.ReadOptions(
+                column_names=schema.names, use_threads=False, block_size=len(block) + 1
+            ),
+            parse_options=pacsv.ParseOptions(newlines_in_values=b'"' in block),
+            convert_options=pacsv.ConvertOptions(
+                column_types=schema,
+                null_values=[""],
+                strings_can_be_null=True,
+                quoted_strings_can_be_null=False,
+            ),
+        )
+    except pa.ArrowInvalid as error:
+        raise _located(block, schema, name, row) or BadData(f"{name}: {error}") from None
+    batches: list[pa.RecordBatch] = table.combine_chunks().to_batches()
+    return batches
+
+
+def _located(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | None:
+    """Find the value that pyarrow could not take, to name its row and column."""
+    reader = csv.reader(io.StringIO(block.decode(errors="replace")))
+    for number, values in enumerate((v for v in reader if v), start=row + 1):
+        if len(values) != len(schema):
+            return bad_data(
+                name,
+                f"{len(values)} values",
+                expected=f"{len(schema)}, one per column of the header",
+                remedy="mend or remove the row",
+                row=number,
+            )
+        for field, value in zip(schema, values, strict=True):
+            if not _fits(field.type, value):
+                kind = "an integer" if pa.types.is_integer(field.type) else "a number"
+                return bad_data(
+                    name,
+                    repr(value),
+                    expected=kind,
+                    remedy="mend or remove the row",
+                    row=number,
+                    column=field.name,
+                )
+    return None
+
+
+def _fits(kind: pa.DataType, value: str) -> bool:
+    if pa.types.is_string(kind) or not value:
+        return True
+    try:
+        int(value) if pa.types.is_integer(kind) else float(value)
+    except ValueError:
+        return False
+    return True
+
+
+class CsvWriter:
+    """Writes each batch as it comes; the header with the first, or alone for an empty table."""
+
+    def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
+        self._write = write
+        self._schema = schema
+        self._numeric = not any(pa.types.is_string(field.type) for field in schema)
+        self._write(_csv_text([schema.names]))
+
+    def write(self, batch: pa.RecordBatch) -> None:
+        self._write(self._numbers(batch) if self._numeric else self._texts(batch))
+
+    def close(self) -> None:
+        """CSV has no end mark."""
+
+    def abort(self) -> None:
+        self._write(CUT)
+
+    def _numbers(self, batch: pa.RecordBatch) -> bytes:
+        buffer = pa.BufferOutputStream()
+        options = pacsv.WriteOptions(include_header=False, quoting_style="none")
+        pacsv.write_csv(batch, buffer, options)
+        return bytes(memoryview(buffer.getvalue()))
+
+    def _texts(self, batch: pa.RecordBatch) -> bytes:
+        # pyarrow quotes every text or none; a person wants quotes only where they are needed.
+        columns = [pc.fill_null(column.cast(pa.string()), "").to_pylist() for column in batch]
+        return _csv_text(list(zip(*columns, strict=True)))
+
+
+def _csv_text(rows: list[list[str]] | list[tuple[str, ...]]) -> bytes:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue().encode()

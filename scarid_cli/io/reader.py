@@ -1,0 +1,243 @@
+"""Open a table of any format, and check that it is what a command needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.arrays import Array
+from scarid_cli.errors import BadData, bad_data
+from scarid_cli.io import schemas
+from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.table import Table
+
+# A clock may jitter by this part of its period, and its mean rate be off by that part; beyond,
+# a derivative would be wrong by as much.
+JITTER = 0.01
+DRIFT = 0.001
+
+
+def open_table(source: ByteSource) -> Table:
+    """Read a table; the format is told by its first bytes."""
+    from scarid_cli.io import arrowio, csvio
+
+    start = source.peek(8)
+    if start.startswith(b"PAR1"):
+        return arrowio.read_parquet(source)
+    if start.startswith(b"ARROW1"):
+        return arrowio.read_file(source)
+    if start.startswith(b"\xff\xff\xff\xff"):
+        return arrowio.read_stream(source)
+    return csvio.read_csv(source)
+
+
+def checked(table: Table, kind: str) -> Table:
+    """The table, known to be of a kind: its columns, types and units now, each value as it comes.
+
+    For a sampled table the clock must be regular; its period [s] is put into the metadata.
+    """
+    schema = schemas.load(kind)
+    _check_columns(table, schema)
+    _check_units(table, schema)
+    batches = _finite(table, schema)
+    meta = replace(table.meta, kind=table.meta.kind or kind)
+    if schema.sampled:
+        batches = _together(batches, rows=2)
+        first = next(batches, None)
+        if first is None or first.num_rows < 2:
+            raise bad_data(
+                table.name,
+                f"{first.num_rows if first else 0} rows",
+                expected="at least 2 samples",
+                remedy="give a longer log",
+            )
+        t = first.column("t")
+        meta = replace(meta, period=nominal_period(t[1].as_py() - t[0].as_py()))
+        batches = _regular(_chained(first, batches), table.name, meta.period or 0.0)
+    return replace(table, meta=meta, batches=batches)
+
+
+def nominal_period(interval: float) -> float:
+    """The period [s] of a clock with this first interval: that of a whole rate in Hz if close."""
+    if not interval > 0.0:
+        return interval
+    rate = round(1.0 / interval)
+    if rate and abs(1.0 / interval / rate - 1.0) < 1e-4:
+        return 1.0 / rate
+    return float(f"{interval:.9g}")
+
+
+def _check_columns(table: Table, schema: schemas.TableSchema) -> None:
+    for column in table.columns:
+        if table.columns.count(column) > 1:
+            raise bad_data(
+                table.name,
+                f"{table.columns.count(column)} columns of this name",
+                expected="one",
+                remedy="rename or drop one of them",
+                column=column,
+            )
+    missing = schema.missing_from(table.columns)
+    if missing:
+        require(table, [missing], f"a {schema.title.lower()} with this one")
+    for field in table.schema:
+        known = schema.field_of(field.name)
+        if known and not _same_type(field.type, known.type):
+            raise bad_data(
+                table.name,
+                f"type {field.type}",
+                expected=str(known.type),
+                remedy="convert the column where the table is made",
+                column=field.name,
+            )
+
+
+def require(table: Table, columns: list[str], expected: str) -> None:
+    """The columns must be there."""
+    for column in columns:
+        if column not in table.columns:
+            raise bad_data(
+                table.name,
+                f"the columns {', '.join(table.columns)}",
+                expected=expected,
+                remedy=_remedy(column),
+                column=column,
+            )
+
+
+def _remedy(column: str) -> str:
+    if column.startswith(("dq", "ddq")) and not column.endswith("_ref"):
+        return "estimate it with `scarid differentiate`"
+    if column.endswith("_ref"):
+        return "make a trajectory with `scarid trajgen`"
+    return "name the columns as the schema does (see docs/tables.md)"
+
+
+def _same_type(given: pa.DataType, known: pa.DataType) -> bool:
+    # Whole numbers stand for themselves in a column of doubles.
+    return bool(given == known or (pa.types.is_floating(known) and pa.types.is_integer(given)))
+
+
+def _check_units(table: Table, schema: schemas.TableSchema) -> None:
+    for column in table.columns:
+        known = schema.field_of(column)
+        unit = table.unit(column)
+        if known and unit and known.units and unit not in known.units:
+            raise bad_data(
+                table.name,
+                f"unit {unit}",
+                expected=" or ".join(known.units),
+                remedy="convert the column first",
+                column=column,
+            )
+
+
+def _finite(table: Table, schema: schemas.TableSchema) -> Iterator[pa.RecordBatch]:
+    """Pass batches on, doubles where the schema has them; a value that is no number is an error."""
+    known = {c: f for c in table.columns if (f := schema.field_of(c)) is not None}
+    row = 0
+    for batch in table.batches:
+        columns = []
+        for name, column in zip(table.columns, batch.columns, strict=True):
+            field = known.get(name)
+            if field is None:
+                columns.append(column)
+                continue
+            cast = column if column.type == field.type else column.cast(field.type)
+            if field.required or schema.sampled:
+                _check_values(cast, table.name, name, row)
+            columns.append(cast)
+        yield pa.RecordBatch.from_arrays(columns, names=table.columns)
+        row += batch.num_rows
+
+
+def _check_values(column: pa.Array, name: str, column_name: str, row: int) -> None:
+    bad: int | None = None
+    found = "an empty cell"
+    if column.null_count:
+        bad = int(np.argmax(column.is_null().to_numpy(zero_copy_only=False)))
+    elif pa.types.is_floating(column.type):
+        finite = np.isfinite(column.to_numpy())
+        if not finite.all():
+            bad = int(np.argmin(finite))
+            found = str(column[bad].as_py())
+    if bad is not None:
+        raise bad_data(
+            name,
+            found,
+            expected="a finite number" if pa.types.is_floating(column.type) else "a value",
+            remedy="mend or remove the row",
+            row=row + bad + 1,
+            column=column_name,
+        )
+
+
+def _together(batches: Iterator[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
+    """Hold the first batches back until they have this many rows; drop empty ones."""
+    held: list[pa.RecordBatch] = []
+    for batch in batches:
+        if not batch.num_rows:
+            continue
+        held.append(batch)
+        if sum(b.num_rows for b in held) >= rows:
+            break
+    if held:
+        yield pa.Table.from_batches(held).combine_chunks().to_batches()[0]
+    yield from (batch for batch in batches if batch.num_rows)
+
+
+def _chained(first: pa.RecordBatch, rest: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+    yield first
+    yield from rest
+
+
+def _regular(
+    batches: Iterator[pa.RecordBatch], name: str, period: float
+) -> Iterator[pa.RecordBatch]:
+    """Pass batches on; time that does not go on, or not at the nominal rate, is an error."""
+    row = 0
+    start = last = float("nan")
+    for batch in batches:
+        t = batch.column("t").to_numpy()
+        if row == 0:
+            start = float(t[0])
+            _check_steps(t[1:] - t[:-1], t[1:], name, period, row=2)
+        else:
+            _check_steps(np.diff(t, prepend=last), t, name, period, row=row + 1)
+        last = float(t[-1])
+        row += batch.num_rows
+        yield batch
+    mean = (last - start) / (row - 1)
+    if abs(mean - period) > DRIFT * period:
+        raise BadData(
+            f"{name}, column t: found a mean interval of {mean:.9g} s over {row} rows, expected "
+            f"{period:.9g} s like the first; resample the log to a constant rate"
+        )
+
+
+def _check_steps(steps: Array, t: Array, name: str, period: float, row: int) -> None:
+    with np.errstate(invalid="ignore"):
+        bad = ~(np.abs(steps - period) <= JITTER * period)
+    if not bad.any():
+        return
+    at = int(np.argmax(bad))
+    if steps[at] <= 0.0:
+        raise bad_data(
+            name,
+            f"{t[at]} after {t[at] - steps[at]:.9g}",
+            expected="time to increase from row to row",
+            remedy="sort the log and remove repeated rows",
+            row=row + at,
+            column="t",
+        )
+    raise bad_data(
+        name,
+        f"an interval of {steps[at]:.6g} s",
+        expected=f"{period:.6g} s within {JITTER:.0%}",
+        remedy="resample the log to a constant rate",
+        row=row + at,
+        column="t",
+    )

@@ -1,0 +1,115 @@
+"""The kinds of table, read from `schemas/*.json` (Frictionless Table Schema).
+
+A field named `q{i}` stands for one column per joint, i from 1. Its `unit` is a string, or an
+object with one unit per type of joint.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import pyarrow as pa
+
+import scarid_cli.schemas
+
+TYPES = {"number": pa.float64(), "integer": pa.int64(), "string": pa.string()}
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field of a table schema; `per_joint` fields match one column per joint."""
+
+    name: str
+    type: pa.DataType
+    units: tuple[str, ...]
+    required: bool
+    description: str
+
+    @property
+    def per_joint(self) -> bool:
+        return "{i}" in self.name
+
+    @property
+    def pattern(self) -> re.Pattern[str]:
+        return re.compile(re.escape(self.name).replace(r"\{i\}", r"([1-9]\d*)") + r"\Z")
+
+
+@dataclass(frozen=True)
+class TableSchema:
+    """One kind of table; `sampled` if its rows are samples at a constant rate."""
+
+    kind: str
+    version: int
+    title: str
+    description: str
+    sampled: bool
+    fields: tuple[Field, ...]
+
+    def field_of(self, column: str) -> Field | None:
+        """The field that a column of this name belongs to."""
+        return next((field for field in self.fields if field.pattern.match(column)), None)
+
+    def missing_from(self, columns: list[str]) -> str | None:
+        """The first required column that is not there (joint 1 stands for all joints)."""
+        names = (f.name.replace("{i}", "1") for f in self.fields if f.required)
+        return next((name for name in names if name not in columns), None)
+
+
+@cache
+def load(kind: str) -> TableSchema:
+    """Read the schema of one kind of table."""
+    text = Path(next(iter(scarid_cli.schemas.__path__)), f"{kind}.json").read_text("utf-8")
+    document = json.loads(text)
+    fields = tuple(
+        Field(
+            name=field["name"],
+            type=TYPES[field["type"]],
+            units=_units(field.get("unit")),
+            required=field.get("constraints", {}).get("required", False),
+            description=field["description"],
+        )
+        for field in document["fields"]
+    )
+    return TableSchema(
+        kind=document["name"],
+        version=document["version"],
+        title=document["title"],
+        description=document["description"],
+        sampled=document["sampled"],
+        fields=fields,
+    )
+
+
+def _units(unit: str | dict[str, str] | None) -> tuple[str, ...]:
+    if unit is None:
+        return ()
+    return (unit,) if isinstance(unit, str) else tuple(unit.values())
+
+
+# From the most to the least demanding, so that the first whose required columns are there is it.
+KINDS = ("parameters", "metrics", "prediction", "motion", "measurement", "trajectory", "trace")
+
+
+def detect(columns: list[str]) -> TableSchema | None:
+    """The kind of table that these columns make, for tables that carry no metadata."""
+    schemas = (load(kind) for kind in KINDS)
+    return next((schema for schema in schemas if schema.missing_from(columns) is None), None)
+
+
+@cache
+def column_type(column: str) -> pa.DataType | None:
+    """The type of a column that some schema knows, whatever the kind of table."""
+    fields = (load(kind).field_of(column) for kind in KINDS)
+    return next((field.type for field in fields if field is not None), None)
+
+
+def joints_of(columns: list[str], prefix: str) -> int:
+    """How many joints the columns `prefix1`, `prefix2`, ... cover, without a gap."""
+    count = 0
+    while f"{prefix}{count + 1}" in columns:
+        count += 1
+    return count

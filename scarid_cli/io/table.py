@@ -1,0 +1,87 @@
+"""The table that flows between stages: columns, metadata, and batches of rows as they arrive."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.arrays import Array
+
+METADATA_KEY = b"scarid"
+UNIT_KEY = b"unit"
+
+
+@dataclass(frozen=True)
+class Metadata:
+    """What a table says of itself; kept as one JSON document in the Arrow schema metadata.
+
+    `period` is the nominal sampling period [s]; `history` has one entry per stage that the
+    data passed; `extra` holds what belongs to one kind of table (a condition number, a lag).
+    """
+
+    kind: str | None = None
+    version: int = 1
+    robot: str | None = None
+    period: float | None = None
+    history: tuple[dict[str, Any], ...] = ()
+    extra: dict[str, Any] = field(default_factory=dict)
+
+    def to_json(self) -> bytes:
+        return json.dumps(asdict(self), sort_keys=True, separators=(",", ":")).encode()
+
+    @classmethod
+    def from_json(cls, document: bytes) -> Metadata:
+        fields = json.loads(document)
+        return cls(**{**fields, "history": tuple(fields["history"])})
+
+
+@dataclass(frozen=True)
+class Table:
+    """A stream of record batches with their schema; `name` is where it came from.
+
+    The batches can be iterated once. Columns carry their unit in the field metadata.
+    """
+
+    name: str
+    schema: pa.Schema
+    meta: Metadata
+    batches: Iterator[pa.RecordBatch]
+
+    @property
+    def columns(self) -> list[str]:
+        return list(self.schema.names)
+
+    def arrow_schema(self) -> pa.Schema:
+        """The schema with the metadata attached, as it is written."""
+        return self.schema.with_metadata({METADATA_KEY: self.meta.to_json()})
+
+    def unit(self, column: str) -> str | None:
+        """The unit of a column, where the table states one."""
+        unit = (self.schema.field(column).metadata or {}).get(UNIT_KEY)
+        return unit.decode() if unit else None
+
+
+def number(name: str, unit: str | None = None) -> pa.Field:
+    """A column of floating-point numbers."""
+    return pa.field(name, pa.float64(), metadata={UNIT_KEY: unit.encode()} if unit else None)
+
+
+def matrix(batch: pa.RecordBatch, columns: list[str]) -> Array:
+    """Columns of a batch as one array, a contiguous row per column (len(columns), rows)."""
+    out = np.empty((len(columns), batch.num_rows))
+    for row, column in zip(out, columns, strict=True):
+        row[:] = batch.column(column).to_numpy(zero_copy_only=False)
+    return out
+
+
+def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Array]) -> pa.RecordBatch:
+    """The batch with some columns replaced or added, in the order of the schema."""
+    return pa.RecordBatch.from_arrays(
+        [pa.array(new[name]) if name in new else batch.column(name) for name in schema.names],
+        schema=schema,
+    )

@@ -1,0 +1,178 @@
+"""Where a table goes: standard output, or a file that appears only when it is whole."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from scarid_cli.errors import OutputFailure, UsageFault
+from scarid_cli.io.table import Table
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+FORMATS = ("csv", "parquet", "arrow", "arrow-file")
+EXTENSIONS = {
+    ".csv": "csv",
+    ".parquet": "parquet",
+    ".pq": "parquet",
+    ".arrows": "arrow",
+    ".arrow": "arrow-file",
+    ".feather": "arrow-file",
+}
+STDOUT = "<stdout>"
+
+
+class Writer(Protocol):
+    def write(self, batch: pa.RecordBatch) -> None: ...
+    def close(self) -> None: ...
+    def abort(self) -> None: ...
+
+
+class Target:
+    """The bytes' destination. A regular file is written beside its place and renamed at the end."""
+
+    def __init__(self, path: str) -> None:
+        self.name = STDOUT if path == "-" else path
+        self._part: Path | None = None
+        self._place = Path(path)
+        if path == "-":
+            self._fd = 1
+        elif _regular(self._place):
+            self._part = self._place.with_name(f".{self._place.name}.{os.getpid()}.part")
+            self._fd = self._open(self._part, os.O_CREAT | os.O_TRUNC)
+        else:
+            self._fd = self._open(self._place)
+
+    def _open(self, path: Path, flags: int = 0) -> int:
+        try:
+            return os.open(path, os.O_WRONLY | os.O_CLOEXEC | flags, 0o666)
+        except OSError as error:
+            raise OutputFailure(f"{self.name}: {error.strerror}") from None
+
+    def write(self, data: Any) -> None:
+        view = memoryview(data).cast("B") if len(data) else memoryview(b"")
+        try:
+            while view:
+                view = view[os.write(self._fd, view) :]
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            raise self._failure(error) from None
+
+    def commit(self) -> None:
+        """The file takes its place."""
+        try:
+            self._close()
+            if self._part:
+                self._part.replace(self._place)
+        except OSError as error:
+            self.discard()
+            raise self._failure(error) from None
+        self._part = None
+
+    def discard(self) -> None:
+        """Nothing is left behind."""
+        with contextlib.suppress(OSError):
+            self._close()
+        if self._part:
+            self._part.unlink(missing_ok=True)
+
+    def _close(self) -> None:
+        if self._fd > 1:
+            fd, self._fd = self._fd, -1
+            os.close(fd)
+
+    def _failure(self, error: OSError) -> OutputFailure:
+        closed = self._fd == 1 and error.errno == errno.EBADF
+        reason = "standard output is closed" if closed else error.strerror
+        return OutputFailure(f"{self.name}: {reason}; the table was not written")
+
+
+def _regular(path: Path) -> bool:
+    try:
+        return stat.S_ISREG(path.stat().st_mode)
+    except OSError:
+        return True
+
+
+def format_for(path: str, wanted: str | None) -> str:
+    """The format to write: asked for, else told by the extension, else the environment's."""
+    chosen = wanted or EXTENSIONS.get(Path(path).suffix.lower())
+    if not chosen and path != "-" and Path(path).suffix and _regular(Path(path)):
+        known = " ".join(EXTENSIONS)
+        raise UsageFault(f"{path}: unknown extension; use one of {known}, or give --format")
+    chosen = chosen or os.environ.get("SCARID_FORMAT") or "csv"
+    if chosen not in FORMATS:
+        raise UsageFault(f"SCARID_FORMAT={chosen}: unknown format; use one of {' '.join(FORMATS)}")
+    if chosen != "csv" and path == "-" and os.isatty(1):
+        raise UsageFault(
+            f"{chosen} is binary and the output is a terminal; redirect it, or use -o FILE"
+        )
+    return chosen
+
+
+class Output:
+    """One table on its way out; made before the input is read, so that mistakes show at once."""
+
+    def __init__(self, path: str, wanted: str | None = None) -> None:
+        self.format = format_for(path, wanted)
+        self.target = Target(path)
+        self._writer: Writer | None = None
+
+    def start(self, schema: pa.Schema) -> None:
+        """Write what comes before the first row."""
+        self._writer = _writers()[self.format](self.target.write, schema)
+
+    def write(self, batch: pa.RecordBatch) -> None:
+        assert self._writer is not None
+        self._writer.write(batch)
+
+    def close(self) -> None:
+        """The table is whole: put the end mark and let the file take its place."""
+        if self._writer:
+            self._writer.close()
+        self.target.commit()
+
+    def abort(self) -> None:
+        """The table is not whole, and must not look as if it were."""
+        if self._writer:
+            with contextlib.suppress(OSError, OutputFailure):
+                self._writer.abort()
+        self.target.discard()
+
+
+def _writers() -> dict[str, Any]:
+    from scarid_cli.io import arrowio, csvio
+
+    return {
+        "csv": csvio.CsvWriter,
+        "parquet": arrowio.ParquetWriter,
+        "arrow": arrowio.StreamWriter,
+        "arrow-file": arrowio.FileWriter,
+    }
+
+
+@contextlib.contextmanager
+def all_or_none(outputs: list[Output]) -> Iterator[None]:
+    """All outputs are closed when the block ends, or all are aborted when it fails."""
+    try:
+        yield
+        for output in outputs:
+            output.close()
+    except BaseException:
+        for output in outputs:
+            output.abort()
+        raise
+
+
+def write_table(table: Table, output: Output) -> None:
+    """Send every batch of a table to an output."""
+    output.start(table.arrow_schema())
+    for batch in table.batches:
+        output.write(batch)

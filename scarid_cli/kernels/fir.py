@@ -1,0 +1,23 @@
+"""Backward difference followed by a finite impulse response filter (ED+FIR of the paper)."""
+
+
+def differentiate(g, out, line, taps, h):
+    """Write the filtered backward difference of g to out.
+
+    line: the last differences, newest first, then the last sample; changed in place. h [s].
+    """
+    if len(out) != len(g) or len(line) != len(taps) + 1:
+        raise ValueError("fir: lengths differ")
+    n = len(taps)
+    last = float(line[n])
+    for k in range(len(g)):
+        x = float(g[k])
+        for i in range(n - 1, 0, -1):
+            line[i] = line[i - 1]
+        line[0] = (x - last) / h
+        last = x
+        y = 0.0
+        for i in range(n):
+            y += float(taps[i]) * float(line[i])
+        out[k] = y
+    line[n] = last

@@ -1,0 +1,25 @@
+cimport cython
+
+cdef extern from "math.h" nogil:
+    cpdef double sqrt(double x)
+
+@cython.locals(
+    p=cython.Py_ssize_t, samples=cython.Py_ssize_t, joints=cython.Py_ssize_t,
+    k=cython.Py_ssize_t, n=cython.Py_ssize_t, i=cython.Py_ssize_t, j=cython.Py_ssize_t,
+    keep=double, squares=double, weight=double, traced=cython.bint,
+)
+cpdef update(
+    const double[:, :, ::1] W, const double[:, ::1] y, double[:, ::1] triangle,
+    double[::1] row, double[::1] sums, double[:, ::1] estimates, double forgetting,
+)
+
+@cython.locals(
+    i=cython.Py_ssize_t, j=cython.Py_ssize_t, x=double, d=double, r=double, c=double, s=double,
+    t=double, u=double,
+)
+cdef void rotate(double[:, ::1] triangle, double[::1] row, Py_ssize_t p) noexcept nogil
+
+@cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, t=double)
+cdef void solve(
+    double[:, ::1] triangle, double[:, ::1] estimates, Py_ssize_t k, Py_ssize_t p,
+) noexcept nogil

@@ -1,0 +1,54 @@
+"""Low-pass chosen columns: row by row as they come, or forwards and backwards over all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.algorithms.filters.butterworth import Butterworth, State
+from scarid_cli.errors import bad_data
+from scarid_cli.io.table import Table, matrix, with_columns
+
+
+def causal(table: Table, columns: list[str], lowpass: Butterworth) -> Table:
+    """Streaming: each row leaves as it comes."""
+    return replace(table, batches=_causal(table, columns, lowpass))
+
+
+def zero_phase(table: Table, columns: list[str], lowpass: Butterworth) -> Table:
+    """Without delay; holds the whole table."""
+    return replace(table, batches=_zero_phase(table, columns, lowpass))
+
+
+def _causal(table: Table, columns: list[str], lowpass: Butterworth) -> Iterator[pa.RecordBatch]:
+    states: list[State] = []
+    for batch in table.batches:
+        values = matrix(batch, columns)
+        states = states or [lowpass.init(x[0], table.meta.period or 0.0) for x in values]
+        results = [lowpass.step(state, x) for state, x in zip(states, values, strict=True)]
+        states = [state for state, _ in results]
+        filtered = {name: y for name, (_, y) in zip(columns, results, strict=True)}
+        yield with_columns(batch, table.schema, filtered)
+
+
+def _zero_phase(table: Table, columns: list[str], lowpass: Butterworth) -> Iterator[pa.RecordBatch]:
+    batches = list(table.batches)
+    rows = sum(batch.num_rows for batch in batches)
+    if rows <= lowpass.padding:
+        raise bad_data(
+            table.name,
+            f"{rows} rows",
+            expected=f"more than {lowpass.padding} for a zero-phase filter of this order",
+            remedy="give a longer log",
+        )
+    values = np.column_stack([matrix(batch, columns) for batch in batches])
+    for row in values:
+        row[:] = lowpass.zero_phase(row, table.meta.period or 0.0)
+    start = 0
+    for batch in batches:
+        part = values[:, start : start + batch.num_rows]
+        yield with_columns(batch, table.schema, dict(zip(columns, part, strict=True)))
+        start += batch.num_rows

@@ -1,0 +1,93 @@
+"""Let a simulated robot follow a trajectory, and log what its sensors say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, State
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.trajectories.hermite import Motion, refine
+from scarid_cli.errors import BadData, UsageFault
+from scarid_cli.io.table import Table, matrix, number
+
+SIGNALS = ("q", "dq", "ddq")
+
+
+def simulate(table: Table, loop: ClosedLoop, log_rate: float, *, truth: bool) -> Table:
+    """A measurement at the log rate [Hz] of the loop following a trajectory.
+
+    The reference columns stay beside the measured ones; `truth` adds the true ones.
+    """
+    period = table.meta.period or 0.0
+    ratio = _whole(loop.control_rate * period, "the trajectory's rate")
+    keep = _whole(loop.control_rate / log_rate, "the log rate")
+    schema = _schema(loop.robot, truth=truth)
+    meta = replace(table.meta, kind="measurement", robot=loop.robot.name, period=1.0 / log_rate)
+    return Table(table.name, schema, meta, _rows(table, loop, ratio, keep, schema))
+
+
+def _whole(ratio: float, what: str) -> int:
+    whole = round(ratio)
+    if whole < 1 or abs(ratio - whole) > 1e-6 * ratio:
+        raise UsageFault(f"the control rate must be a whole multiple of {what}")
+    return whole
+
+
+def _schema(robot: Robot, *, truth: bool) -> pa.Schema:
+    def columns(prefix: str, suffix: str, units: list[str]) -> list[pa.Field]:
+        return [number(f"{prefix}{i}{suffix}", unit) for i, unit in enumerate(units, start=1)]
+
+    torque = [joint.torque_unit for joint in robot.joints]
+    motion = [[joint.unit + per_time for joint in robot.joints] for per_time in ("", "/s", "/s2")]
+    fields = [number("t", "s"), *columns("q", "", motion[0]), *columns("tau", "", torque)]
+    for suffix in ("_ref", "_true") if truth else ("_ref",):
+        for name, units in zip(SIGNALS, motion, strict=True):
+            fields += columns(name, suffix, units)
+    return pa.schema(fields + (columns("tau", "_true", torque) if truth else []))
+
+
+def _rows(
+    table: Table, loop: ClosedLoop, ratio: int, keep: int, schema: pa.Schema
+) -> Iterator[pa.RecordBatch]:
+    state: State | None = None
+    tick = 0
+    for start, reference in _references(table, len(loop.robot.joints), ratio):
+        if state is None:
+            state = loop.init(reference[0][:, 0])
+        try:
+            state, log = loop.step(state, reference[0], reference[1])
+        except DivergedError as error:
+            when = start + (tick + error.tick) / loop.control_rate
+            raise BadData(
+                f"the closed loop blew up at t = {when:.4g} s; lower the gains or raise the "
+                "control rate"
+            ) from None
+        ticks = np.arange(-tick % keep, log.q.shape[1], keep)
+        t = start + (tick + ticks) / loop.control_rate
+        signals = (log.q, log.tau, *reference, log.q_true, log.dq_true, log.ddq_true, log.tau_true)
+        columns = [t, *(row[ticks] for signal in signals for row in signal)]
+        arrays = [pa.array(column) for column in columns[: len(schema)]]
+        yield pa.RecordBatch.from_arrays(arrays, schema=schema)
+        tick += log.q.shape[1]
+
+
+def _references(table: Table, joints: int, ratio: int) -> Iterator[tuple[float, Motion]]:
+    """The time of the first row, and the reference at the control ticks, chunk by chunk."""
+    columns = [f"{name}{i}_ref" for name in SIGNALS for i in range(1, joints + 1)]
+    period = table.meta.period or 0.0
+    start: float | None = None
+    last = np.empty((3 * joints, 0))
+    for batch in table.batches:
+        if start is None:
+            start = batch.column("t")[0].as_py()
+        rows = np.column_stack((last, matrix(batch, columns)))
+        if rows.shape[1] > 1:
+            q, dq, ddq = np.split(rows, 3)
+            yield start, refine(q, dq, ddq, period, ratio)
+        last = rows[:, -1:]
+    q, dq, ddq = np.split(last, 3)
+    yield start or 0.0, (q, dq, ddq)

@@ -1,0 +1,58 @@
+"""Tabulate a trajectory, and judge how well it excites a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.information import NotIdentifiableError, absorb, empty, solve
+from scarid_cli.algorithms.trajectories.quintic import Path
+from scarid_cli.arrays import Array
+from scarid_cli.io.table import Metadata, Table, number
+
+ROWS = 4096
+
+
+def via_points(table: Table, robot: Robot) -> Path:
+    """The via points of a table with columns t, q1, q2, ..."""
+    joints = range(1, len(robot.joints) + 1)
+    batches = list(table.batches)
+    times = np.concatenate([batch.column("t").to_numpy() for batch in batches])
+    columns = [np.concatenate([b.column(f"q{i}").to_numpy() for b in batches]) for i in joints]
+    return Path(times - times[0], np.column_stack(columns))
+
+
+def tabulate(path: Path, robot: Robot, rate: float, meta: Metadata) -> Table:
+    """The reference as a table, one row every 1 / rate [s]."""
+    units = [joint.unit for joint in robot.joints]
+    fields = [number("t", "s")]
+    for name, per_time in (("q", ""), ("dq", "/s"), ("ddq", "/s2")):
+        fields += [number(f"{name}{i}_ref", u + per_time) for i, u in enumerate(units, start=1)]
+    schema = pa.schema(fields)
+    return Table("trajgen", schema, meta, _rows(path, rate, schema))
+
+
+def _rows(path: Path, rate: float, schema: pa.Schema) -> Iterator[pa.RecordBatch]:
+    count = round(path.duration * rate) + 1
+    for start in range(0, count, ROWS):
+        t = np.arange(start, min(start + ROWS, count)) / rate
+        columns: list[Array] = [t]
+        for signal in path.sample(t):
+            columns += list(signal)
+        yield pa.RecordBatch.from_arrays([pa.array(c) for c in columns], schema=schema)
+
+
+def condition_number(path: Path, robot: Robot, rate: float) -> float:
+    """Of the observation matrix that following the path exactly would give; inf if singular."""
+    state = empty(len(robot.parameters))
+    count = round(path.duration * rate) + 1
+    for start in range(0, count, ROWS):
+        W = robot.regressor(*path.sample(np.arange(start, min(start + ROWS, count)) / rate))
+        state, _ = absorb(state, W, np.zeros(W.shape[:2]))
+    try:
+        return solve(state).condition
+    except NotIdentifiableError:
+        return float("inf")

@@ -1,0 +1,81 @@
+"""Predict torques with identified parameters, and measure how well."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
+from scarid_cli.arrays import Array
+from scarid_cli.errors import bad_data
+from scarid_cli.io import schemas
+from scarid_cli.io.table import Table, number
+from scarid_cli.stages import Sink
+from scarid_cli.stages.identify import Columns, known
+
+
+def estimates(table: Table, robot: Robot) -> Array:
+    """The values of a parameter table, which must be those of this robot."""
+    batches = list(table.batches)
+    names = [name for batch in batches for name in batch.column("parameter").to_pylist()]
+    if names != robot.names:
+        raise bad_data(
+            table.name,
+            f"the parameters {', '.join(names)}",
+            expected=f"those of {robot.name}: {', '.join(robot.names)}",
+            remedy="choose the robot they were identified for with --robot",
+            column="parameter",
+        )
+    return np.concatenate([batch.column("estimate").to_numpy() for batch in batches])
+
+
+def validate(table: Table, robot: Robot, theta: Array, *, predictions: Sink | None = None) -> Table:
+    """The metrics of the torques that theta predicts for a motion, one row per joint.
+
+    `predictions` receives the measured and predicted torques of every sample (Fig. 7-8).
+    """
+    columns = Columns(robot)
+    sums = [empty() for _ in robot.joints]
+    schema = _prediction_schema(robot)
+    if predictions:
+        meta = replace(table.meta, kind="prediction", robot=robot.name)
+        predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
+    for batch in table.batches:
+        W, tau = columns.regression(batch)
+        predicted = robot.torques(W, theta)
+        sums = [accumulate(s, x, y) for s, x, y in zip(sums, tau, predicted, strict=True)]
+        if predictions:
+            arrays = [batch.column("t"), *(pa.array(x) for x in (*tau, *predicted))]
+            predictions.write(pa.RecordBatch.from_arrays(arrays, schema=schema))
+    return _metrics(table, robot, [Quality.of(s) for s in sums])
+
+
+def _prediction_schema(robot: Robot) -> pa.Schema:
+    fields = [number("t", "s")]
+    for suffix in ("", "_pred"):
+        fields += [
+            number(f"tau{i}{suffix}", joint.torque_unit)
+            for i, joint in enumerate(robot.joints, start=1)
+        ]
+    return pa.schema(fields)
+
+
+def _metrics(table: Table, robot: Robot, qualities: list[Quality]) -> Table:
+    types = {field.name: field.type for field in schemas.load("metrics").fields}
+    schema = pa.schema([pa.field(name, kind) for name, kind in types.items()])
+    batch = pa.RecordBatch.from_arrays(
+        [
+            pa.array(range(1, len(qualities) + 1), pa.int64()),
+            known(np.array([quality.r2 for quality in qualities])),
+            pa.array([quality.rmse for quality in qualities]),
+            pa.array([joint.torque_unit for joint in robot.joints]),
+            known(np.array([quality.relative_error for quality in qualities])),
+            pa.array([quality.samples for quality in qualities], pa.int64()),
+        ],
+        schema=schema,
+    )
+    meta = replace(table.meta, kind="metrics", robot=robot.name)
+    return Table("validate", schema, meta, iter([batch]))

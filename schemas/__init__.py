@@ -1,0 +1,1 @@
+"""The kinds of table that scarid reads and writes, as Frictionless Table Schemas."""
