@@ -16,6 +16,7 @@ import click
 from scarid_cli.cli import scarid
 from scarid_cli.errors import (
     BROKEN_PIPE,
+    BUG,
     INTERRUPTED,
     IO_FAILURE,
     OK,
@@ -53,18 +54,21 @@ def main(arguments: list[str] | None = None) -> int:
         return TERMINATED
     except BrokenPipeError:
         return BROKEN_PIPE
-    except (ScaridError, OSError) as error:
+    except Exception as error:
         if "--debug" in words:
             raise
         return _failed(name, error)
     return OK
 
 
-def _failed(where: str, error: ScaridError | OSError) -> int:
+def _failed(where: str, error: Exception) -> int:
     if isinstance(error, ScaridError):
         return _told(where, str(error), error.status)
-    place = error.filename or "<stdout>"
-    return _told(where, f"{place}: {error.strerror or error}", IO_FAILURE)
+    if isinstance(error, OSError):
+        place = error.filename or "<stdout>"
+        return _told(where, f"{place}: {error.strerror or error}", IO_FAILURE)
+    kind = type(error).__name__
+    return _told(where, f"a bug in scarid ({kind}: {error}); --debug shows where", BUG)
 
 
 def _told(where: str, message: str, status: int) -> int:

@@ -1,6 +1,7 @@
 """The failures a command can report, each with its documented exit status."""
 
 OK = 0
+BUG = 1
 USAGE = 2
 BAD_DATA = 65
 IO_FAILURE = 74
@@ -48,3 +49,8 @@ def bad_data(
     if column is not None:
         place.append(f"column {column}")
     return BadData(f"{', '.join(place)}: found {found}, expected {expected}; {remedy}")
+
+
+def cut_short(where: str) -> BadData:
+    """The stage before failed or was killed: its table is not whole."""
+    return BadData(f"{where}: the table was cut short: the stage that wrote it failed")

@@ -10,9 +10,8 @@ from typing import Any, BinaryIO
 import pyarrow as pa
 import pyarrow.ipc as ipc
 
-from scarid_cli.errors import BadData
+from scarid_cli.errors import BadData, cut_short
 from scarid_cli.io.bytesource import BLOCK, ByteSource
-from scarid_cli.io.csvio import cut_short
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table
 
 END_OF_STREAM = b"\xff\xff\xff\xff\x00\x00\x00\x00"

@@ -8,10 +8,9 @@ import re
 from collections.abc import Callable, Iterator
 
 import pyarrow as pa
-import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 
-from scarid_cli.errors import BadData, bad_data
+from scarid_cli.errors import BadData, bad_data, cut_short
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Metadata, Table
@@ -137,11 +136,6 @@ def _batches(
         block = more
 
 
-def cut_short(name: str) -> BadData:
-    """The stage before failed or was killed: its table is not whole."""
-    return BadData(f"{name}: the table was cut short: the stage that wrote it failed")
-
-
 def _parse(block: bytes, schema: pa.Schema, name: str, row: int) -> list[pa.RecordBatch]:
     if not block.strip():
         return []
@@ -227,7 +221,7 @@ class CsvWriter:
 
     def _texts(self, batch: pa.RecordBatch) -> bytes:
         # pyarrow quotes every text or none; a person wants quotes only where they are needed.
-        columns = [pc.fill_null(column.cast(pa.string()), "").to_pylist() for column in batch]
+        columns = [column.cast(pa.string()).fill_null("").to_pylist() for column in batch]
         return _csv_text(list(zip(*columns, strict=True)))
 
 

@@ -22,16 +22,18 @@ DRIFT = 0.001
 
 def open_table(source: ByteSource) -> Table:
     """Read a table; the format is told by its first bytes."""
-    from scarid_cli.io import arrowio, csvio
-
     start = source.peek(8)
+    if not start.startswith((b"PAR1", b"ARROW1", b"\xff\xff\xff\xff")):
+        from scarid_cli.io.csvio import read_csv
+
+        return read_csv(source)
+    from scarid_cli.io import arrowio
+
     if start.startswith(b"PAR1"):
         return arrowio.read_parquet(source)
     if start.startswith(b"ARROW1"):
         return arrowio.read_file(source)
-    if start.startswith(b"\xff\xff\xff\xff"):
-        return arrowio.read_stream(source)
-    return csvio.read_csv(source)
+    return arrowio.read_stream(source)
 
 
 def checked(table: Table, kind: str) -> Table:

@@ -53,6 +53,16 @@ class TableSchema:
         """The field that a column of this name belongs to."""
         return next((field for field in self.fields if field.pattern.match(column)), None)
 
+    def arrow(self) -> pa.Schema:
+        """The columns of a table of this kind that has no column per joint."""
+        return pa.schema(
+            [
+                pa.field(f.name, f.type, metadata={"unit": f.units[0]} if f.units else None)
+                for f in self.fields
+                if not f.per_joint
+            ]
+        )
+
     def missing_from(self, columns: list[str]) -> str | None:
         """The first required column that is not there (joint 1 stands for all joints)."""
         names = (f.name.replace("{i}", "1") for f in self.fields if f.required)

@@ -127,7 +127,7 @@ class Output:
 
     def start(self, schema: pa.Schema) -> None:
         """Write what comes before the first row."""
-        self._writer = _writers()[self.format](self.target.write, schema)
+        self._writer = _writer(self.format)(self.target.write, schema)
 
     def write(self, batch: pa.RecordBatch) -> None:
         assert self._writer is not None
@@ -147,15 +147,18 @@ class Output:
         self.target.discard()
 
 
-def _writers() -> dict[str, Any]:
-    from scarid_cli.io import arrowio, csvio
+def _writer(name: str) -> Any:
+    if name == "csv":
+        from scarid_cli.io.csvio import CsvWriter
+
+        return CsvWriter
+    from scarid_cli.io import arrowio
 
     return {
-        "csv": csvio.CsvWriter,
         "parquet": arrowio.ParquetWriter,
         "arrow": arrowio.StreamWriter,
         "arrow-file": arrowio.FileWriter,
-    }
+    }[name]
 
 
 @contextlib.contextmanager

@@ -13,7 +13,7 @@ from scarid_cli.algorithms.statistics.information import Fit, Information, NotId
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Metadata, Table, matrix, number
+from scarid_cli.io.table import Metadata, Table, doubles, matrix, number
 from scarid_cli.stages import Sink
 
 
@@ -73,7 +73,7 @@ def identify(
         )
         samples += batch.num_rows
         if trace:
-            arrays = [batch.column("t"), *(pa.array(e) for e in estimates.T)]
+            arrays = [batch.column("t"), *(doubles(e) for e in estimates.T)]
             trace.write(pa.RecordBatch.from_arrays(arrays, schema=schema))
     fit = _fit(estimator, state, robot, table.name)
     meta = replace(table.meta, kind="parameters", robot=robot.name)
@@ -102,8 +102,7 @@ def _parameters(
     errors = fit.standard_errors(unit_variance=unit_variance)
     with np.errstate(divide="ignore"):
         relative = 100.0 * errors / np.abs(fit.estimates)
-    types = {field.name: field.type for field in schemas.load("parameters").fields}
-    schema = pa.schema([pa.field(name, kind) for name, kind in types.items()])
+    schema = schemas.load("parameters").arrow()
     batch = pa.RecordBatch.from_arrays(
         [
             pa.array(robot.names, pa.string()),

@@ -12,7 +12,7 @@ from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, State
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
 from scarid_cli.errors import BadData, UsageFault
-from scarid_cli.io.table import Table, matrix, number
+from scarid_cli.io.table import Table, doubles, matrix, number
 
 SIGNALS = ("q", "dq", "ddq")
 
@@ -70,7 +70,7 @@ def _rows(
         t = start + (tick + ticks) / loop.control_rate
         signals = (log.q, log.tau, *reference, log.q_true, log.dq_true, log.ddq_true, log.tau_true)
         columns = [t, *(row[ticks] for signal in signals for row in signal)]
-        arrays = [pa.array(column) for column in columns[: len(schema)]]
+        arrays = [doubles(column) for column in columns[: len(schema)]]
         yield pa.RecordBatch.from_arrays(arrays, schema=schema)
         tick += log.q.shape[1]
 

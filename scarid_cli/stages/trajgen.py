@@ -11,7 +11,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.information import NotIdentifiableError, absorb, empty, solve
 from scarid_cli.algorithms.trajectories.quintic import Path
 from scarid_cli.arrays import Array
-from scarid_cli.io.table import Metadata, Table, number
+from scarid_cli.io.table import Metadata, Table, doubles, number
 
 ROWS = 4096
 
@@ -42,7 +42,7 @@ def _rows(path: Path, rate: float, schema: pa.Schema) -> Iterator[pa.RecordBatch
         columns: list[Array] = [t]
         for signal in path.sample(t):
             columns += list(signal)
-        yield pa.RecordBatch.from_arrays([pa.array(c) for c in columns], schema=schema)
+        yield pa.RecordBatch.from_arrays([doubles(c) for c in columns], schema=schema)
 
 
 def condition_number(path: Path, robot: Robot, rate: float) -> float:

@@ -12,7 +12,7 @@ from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, emp
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, number
+from scarid_cli.io.table import Table, doubles, number
 from scarid_cli.stages import Sink
 from scarid_cli.stages.identify import Columns, known
 
@@ -48,7 +48,7 @@ def validate(table: Table, robot: Robot, theta: Array, *, predictions: Sink | No
         predicted = robot.torques(W, theta)
         sums = [accumulate(s, x, y) for s, x, y in zip(sums, tau, predicted, strict=True)]
         if predictions:
-            arrays = [batch.column("t"), *(pa.array(x) for x in (*tau, *predicted))]
+            arrays = [batch.column("t"), *(doubles(x) for x in (*tau, *predicted))]
             predictions.write(pa.RecordBatch.from_arrays(arrays, schema=schema))
     return _metrics(table, robot, [Quality.of(s) for s in sums])
 
@@ -64,8 +64,7 @@ def _prediction_schema(robot: Robot) -> pa.Schema:
 
 
 def _metrics(table: Table, robot: Robot, qualities: list[Quality]) -> Table:
-    types = {field.name: field.type for field in schemas.load("metrics").fields}
-    schema = pa.schema([pa.field(name, kind) for name, kind in types.items()])
+    schema = schemas.load("metrics").arrow()
     batch = pa.RecordBatch.from_arrays(
         [
             pa.array(range(1, len(qualities) + 1), pa.int64()),
