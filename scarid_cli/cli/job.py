@@ -34,6 +34,7 @@ class Job:
         self._history = history
         self._inputs: dict[str, str | None] = {}
         self.outputs: list[Output] = []
+        self.sources: list[ByteSource] = []
 
     def output(self, path: str, wanted: str | None = None) -> Output:
         """Where a table will go; opened before anything is read."""
@@ -44,6 +45,7 @@ class Job:
     def read(self, path: str, kind: str | None) -> Table:
         """A checked table of a kind, or any table as it stands for None."""
         source = ByteSource.open(path)
+        self.sources.append(source)
         self._inputs[source.name] = source.sha256() if self._history else None
         table = open_table(source)
         if kind:
@@ -89,8 +91,12 @@ def job(options: dict[str, Any]) -> Iterator[Job]:
         verbose=options["verbose"],
         history=not options.get("no_history"),
     )
-    with all_or_none(run.outputs):
-        yield run
+    try:
+        with all_or_none(run.outputs):
+            yield run
+    finally:
+        for source in run.sources:
+            source.close()
 
 
 def robot_of(name: str | None, *tables: Table) -> Robot:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Callable, Iterator
-from typing import Any, BinaryIO
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.ipc as ipc
 
 from scarid_cli.errors import BadData, cut_short
-from scarid_cli.io.bytesource import BLOCK, ByteSource
+from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table
 
 END_OF_STREAM = b"\xff\xff\xff\xff\x00\x00\x00\x00"
@@ -43,7 +41,7 @@ def read_stream(source: ByteSource) -> Table:
 def read_file(source: ByteSource) -> Table:
     """A table from an Arrow IPC file."""
     try:
-        reader = ipc.open_file(pa.PythonFile(_seekable(source), mode="r"))
+        reader = ipc.open_file(pa.PythonFile(source.seekable(), mode="r"))
     except (pa.ArrowInvalid, OSError) as error:
         raise _unreadable(source.name, error) from None
     batches = (reader.get_batch(i) for i in range(reader.num_record_batches))
@@ -55,7 +53,7 @@ def read_parquet(source: ByteSource) -> Table:
     import pyarrow.parquet as pq
 
     try:
-        file = pq.ParquetFile(_seekable(source), pre_buffer=False)
+        file = pq.ParquetFile(source.seekable(), pre_buffer=False)
     except (pa.ArrowInvalid, OSError) as error:
         raise _unreadable(source.name, error) from None
     batches = file.iter_batches(batch_size=READ_ROWS, use_threads=False)
@@ -66,17 +64,6 @@ def _small(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
     for batch in batches:
         for start in range(0, batch.num_rows, READ_ROWS):
             yield batch.slice(start, READ_ROWS)
-
-
-def _seekable(source: ByteSource) -> BinaryIO:
-    """The source itself if it is a file, else its bytes in a temporary one."""
-    if source.regular:
-        return os.fdopen(os.dup(source.fd), "rb")
-    spool = tempfile.TemporaryFile()  # noqa: SIM115 (lives as long as the reader)
-    while data := source.read_some(BLOCK):
-        spool.write(data)
-    spool.seek(0)
-    return spool
 
 
 def _unreadable(name: str, error: Exception) -> BadData:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import stat
+from typing import BinaryIO
 
 from scarid_cli.errors import OutputFailure, UsageFault
 
@@ -25,6 +26,7 @@ class ByteSource:
         self.last = b""
         self.closed = False
         self._ahead = b""
+        self._spool: BinaryIO | None = None
 
     @classmethod
     def open(cls, path: str) -> ByteSource:
@@ -74,6 +76,29 @@ class ByteSource:
     def regular(self) -> bool:
         """Whether this is a file one can seek in, rather than a pipe or a terminal."""
         return stat.S_ISREG(os.fstat(self.fd).st_mode)
+
+    def seekable(self) -> BinaryIO:
+        """A file of all the bytes: the source itself, or for a pipe a temporary copy."""
+        if self._spool is None:
+            self._spool = os.fdopen(os.dup(self.fd), "rb") if self.regular else self._copied()
+        return self._spool
+
+    def _copied(self) -> BinaryIO:
+        import tempfile
+
+        spool = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the source)
+        while data := self.read_some():
+            spool.write(data)
+        spool.seek(0)
+        return spool
+
+    def close(self) -> None:
+        """Give the descriptor back, unless it is standard input."""
+        if self._spool:
+            self._spool.close()
+        if self.fd and not self.closed:
+            os.close(self.fd)
+        self.closed = True
 
     def sha256(self) -> str | None:
         """The digest of a regular file, as `sha256sum` prints it; None for a pipe."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import pyarrow as pa
 import pyarrow.csv as pacsv
@@ -35,7 +35,10 @@ def read_csv(source: ByteSource) -> Table:
         first = b"".join((first, next(lines, b"")))  # pragma: no cover (only comments so far)
     if not first.strip():
         raise bad_data(
-            source.name, "no rows", expected="a CSV header", remedy="is the file or pipe empty?"
+            source.name,
+            "no rows",
+            expected="a CSV header",
+            remedy="is the file empty, or did the stage before fail?",
         )
     names = _header(first, header_end, source.name)
     body = first[header_end:]
@@ -205,7 +208,7 @@ class CsvWriter:
         self._write(_csv_text([schema.names]))
 
     def write(self, batch: pa.RecordBatch) -> None:
-        self._write(self._numbers(batch) if self._numeric else self._texts(batch))
+        self._write(_numbers(batch) if self._numeric else self._texts(batch))
 
     def close(self) -> None:
         """CSV has no end mark."""
@@ -213,19 +216,27 @@ class CsvWriter:
     def abort(self) -> None:
         self._write(CUT)
 
-    def _numbers(self, batch: pa.RecordBatch) -> bytes:
-        buffer = pa.BufferOutputStream()
-        options = pacsv.WriteOptions(include_header=False, quoting_style="none")
-        pacsv.write_csv(batch, buffer, options)
-        return bytes(memoryview(buffer.getvalue()))
-
     def _texts(self, batch: pa.RecordBatch) -> bytes:
         # pyarrow quotes every text or none; a person wants quotes only where they are needed.
-        columns = [column.cast(pa.string()).fill_null("").to_pylist() for column in batch]
-        return _csv_text(list(zip(*columns, strict=True)))
+        texts = [field.name for field in batch.schema if pa.types.is_string(field.type)]
+        numbers = [name for name in batch.schema.names if name not in texts]
+        lines = _numbers(batch.select(numbers)).decode().split("\n")[:-1] if numbers else []
+        columns = dict(
+            zip(numbers, zip(*(line.split(",") for line in lines), strict=True), strict=False)
+        )
+        columns |= {name: batch.column(name).to_pylist() for name in texts}
+        ordered = [columns[name] for name in batch.schema.names]
+        return _csv_text(list(zip(*ordered, strict=True)))
 
 
-def _csv_text(rows: list[list[str]] | list[tuple[str, ...]]) -> bytes:
+def _numbers(batch: pa.RecordBatch) -> bytes:
+    buffer = pa.BufferOutputStream()
+    options = pacsv.WriteOptions(include_header=False, quoting_style="none")
+    pacsv.write_csv(batch, buffer, options)
+    return bytes(memoryview(buffer.getvalue()))
+
+
+def _csv_text(rows: Sequence[Sequence[str]]) -> bytes:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue().encode()

@@ -21,6 +21,8 @@ def differentiate(table: Table, methods: list[Method]) -> Table:
 
     A row keeps its time: a method that looks ahead delays all other columns with its own.
     """
+    for method in methods:
+        method.init(0.0, table.meta.period or 0.0)  # refuses settings before anything is written
     joints = range(1, len(methods) + 1)
     new = [f"dq{i}" for i in joints] + [f"ddq{i}" for i in joints]
     schema = _schema(table, new)

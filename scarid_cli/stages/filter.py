@@ -15,11 +15,13 @@ from scarid_cli.io.table import Table, matrix, with_columns
 
 def causal(table: Table, columns: list[str], lowpass: Butterworth) -> Table:
     """Streaming: each row leaves as it comes."""
+    lowpass.sections(table.meta.period or 0.0)  # refuses a cut-off before anything is written
     return replace(table, batches=_causal(table, columns, lowpass))
 
 
 def zero_phase(table: Table, columns: list[str], lowpass: Butterworth) -> Table:
     """Without delay; holds the whole table."""
+    lowpass.sections(table.meta.period or 0.0)
     return replace(table, batches=_zero_phase(table, columns, lowpass))
 
 

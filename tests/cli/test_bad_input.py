@@ -1,0 +1,197 @@
+"""Bad data: exit 65 and one line that says where, what was found, what was expected, what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from conftest import Result
+
+Run = Callable[..., Result]
+
+GOOD = ["t,q1,tau1"] + [f"{k / 100},{k},{k * 0.5}" for k in range(20)]
+
+
+def with_line(number: int, line: str) -> list[str]:
+    """The good log with one line replaced; line 0 is the header, so line k is row k."""
+    return [*GOOD[:number], line, *GOOD[number + 1 :]]
+
+
+CASES = {
+    "NaN": (with_line(5, "0.04,nan,2"), "row 5, column q1: found nan, expected a finite number"),
+    "infinity": (with_line(5, "0.04,1,-inf"), "row 5, column tau1: found -inf, expected a finite"),
+    "empty cell": (with_line(5, "0.04,,2"), "row 5, column q1: found an empty cell, expected a"),
+    "text": (with_line(5, "0.04,1.2.3,2"), "row 5, column q1: found '1.2.3', expected a number"),
+    "short row": (with_line(5, "0.04,1"), "row 5: found 2 values, expected 3"),
+    "long row": (with_line(5, "0.04,1,2,3"), "row 5: found 4 values, expected 3"),
+    "repeated time": (with_line(5, "0.03,4,2"), "row 5, column t: found 0.03 after 0.03, expected"),
+    "time running back": (with_line(5, "0.01,4,2"), "row 5, column t: found 0.01 after 0.03"),
+    "jitter": (
+        with_line(5, "0.042,4,2"),
+        "row 5, column t: found an interval of 0.012 s, expected",
+    ),
+    "gap": (
+        [*GOOD[:5], *GOOD[6:]],
+        "row 5, column t: found an interval of 0.02 s, expected 0.01 s",
+    ),
+    "missing column": (["t,position,tau1", *GOOD[1:]], "column q1: found the columns t, position"),
+    "no time": (["time,q1,tau1", *GOOD[1:]], "column t: found the columns time, q1, tau1"),
+    "duplicate column": (["t,q1,q1", *GOOD[1:]], "column q1: found 2 columns of this name"),
+    "nameless column": (["t,q1,", *GOOD[1:]], "column 3: found no name, expected one name"),
+    "other separator": (["t;q1;tau1", "0;1;2"], "found the single column 't;q1;tau1', expected"),
+    "one row": (GOOD[:2], "found 1 rows, expected at least 2 samples; give a longer log"),
+    "header only": (GOOD[:1], "found 0 rows, expected at least 2 samples; give a longer log"),
+    "nothing": ([], "found no rows, expected a CSV header; is the file empty, or did"),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_bad_log_is_told_in_one_line(name: str, scarid: Run, tmp_path: Path) -> None:
+    lines, message = CASES[name]
+    log = tmp_path / "log.csv"
+    log.write_text("".join(f"{line}\n" for line in lines))
+    output = tmp_path / "out.csv"
+    output.write_text("kept")
+    result = scarid("filter", "--cutoff", 10, log, "-o", output)
+    assert result.status == 65
+    assert result.err.startswith(f"scarid filter: {log}")
+    assert message in result.err
+    assert result.err.count("\n") == 1
+    assert output.read_text() == "kept"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["log.csv", "out.csv"]
+
+
+def write_parquet(path: Path, fields: list[pa.Field], rows: int = 20) -> None:
+    t = np.arange(rows) / 100
+    columns = [t if f.name == "t" else t.astype(f.type.to_pandas_dtype()) for f in fields]
+    pq.write_table(pa.table(columns, schema=pa.schema(fields)), path)
+
+
+def test_a_wrong_unit_is_told(scarid: Run, tmp_path: Path) -> None:
+    log = tmp_path / "log.parquet"
+    degrees = pa.field("q1", pa.float64(), metadata={"unit": "deg"})
+    write_parquet(log, [pa.field("t", pa.float64()), degrees])
+    result = scarid("differentiate", log)
+    assert result.status == 65
+    assert f"{log}, column q1: found unit deg, expected rad or m; convert" in result.err
+
+
+def test_text_in_a_typed_column_is_told(scarid: Run, tmp_path: Path) -> None:
+    log = tmp_path / "log.parquet"
+    write_parquet(log, [pa.field("t", pa.float64()), pa.field("q1", pa.float64())])
+    table = pq.read_table(log)
+    words = pa.array(["x"] * table.num_rows)
+    pq.write_table(table.set_column(1, "q1", words), log)
+    result = scarid("differentiate", log)
+    assert result.status == 65
+    assert "column q1: found type string, expected double" in result.err
+
+
+def test_a_motion_without_derivatives_points_to_differentiate(scarid: Run, samples: Path) -> None:
+    result = scarid("identify", samples / "scara2.csv")
+    assert result.status == 65
+    assert "column dq1" in result.err
+    assert "estimate it with `scarid differentiate`" in result.err
+
+
+def test_a_robot_with_more_joints_than_the_log_is_told(scarid: Run, tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    log.write_text("t,q1,dq1,ddq1,tau1\n0,1,2,3,4\n0.1,1,2,3,4\n")
+    result = scarid("identify", "--robot", "scara2", log)
+    assert result.status == 65
+    assert "column q2" in result.err
+    assert "for robot scara2 (another: --robot)" in result.err
+
+
+def test_parameters_of_another_robot_are_told(scarid: Run, samples: Path, tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    log.write_text("t,q1,dq1,ddq1,tau1\n0,1,2,3,4\n0.1,1,2,3,4\n")
+    parameters = samples / "scara2.parameters.csv"
+    result = scarid("validate", "--robot", "emps", "--parameters", parameters, log)
+    assert result.status == 65
+    assert "expected those of emps: M, Fv, Fc, offset" in result.err
+
+
+@pytest.mark.parametrize("extension", ["parquet", "arrow", "arrows"])
+@pytest.mark.parametrize("part", [0.3, 0.9, 0.99])
+def test_a_cut_binary_file_is_told(
+    extension: str, part: float, scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    whole = tmp_path / f"log.{extension}"
+    assert scarid("convert", samples / "scara2.csv", "-o", whole).status == 0
+    data = whole.read_bytes()
+    whole.write_bytes(data[: int(part * len(data))])
+    result = scarid("filter", whole, "-o", tmp_path / "out.csv")
+    assert result.status == 65
+    assert result.err.startswith(f"scarid filter: {whole}: ")
+    assert result.err.count("\n") == 1
+    assert not (tmp_path / "out.csv").exists()
+
+
+USAGE = {
+    "no such file": (["filter", "nowhere.csv"], "nowhere.csv: no such file"),
+    "no such option": (["filter", "--frob"], "No such option '--frob'"),
+    "no such command": (["frobnicate"], "No such command 'frobnicate'"),
+    "no such robot": (["trajgen", "--robot", "r2d2"], "unknown robot 'r2d2'; choose emps, scara2"),
+    "no such method": (["differentiate", "--method", "magic"], "'magic' is not one of"),
+    "no such column": (["filter", "-c", "q7", "LOG"], "no column 'q7'; the table has t, q1"),
+    "no such setting": (["differentiate", "--set", "gamma2=1", "LOG"], "has no setting 'gamma2'"),
+    "no number": (["differentiate", "--set", "gamma0=x", "LOG"], "'x' is not a number"),
+    "negative gain": (["differentiate", "--set", "gamma0=-1", "LOG"], "gamma0 must be positive"),
+    "too many values": (["differentiate", "--set", "gamma0=1,2,3", "LOG"], "3 values for 2 joints"),
+    "no such preset": (["differentiate", "--preset", "best", "LOG"], "it has table1"),
+    "time filtered": (["filter", "-c", "*", "LOG"], "the time column t cannot be filtered"),
+    "two cut-offs": (["filter", "--cutoff", "1", "--natural-frequency", "1"], "not both"),
+    "cut-off above Nyquist": (
+        ["filter", "--cutoff", "50", "LOG"],
+        "not below half the rate, 50 Hz",
+    ),
+    "forgetting of ls": (["identify", "--estimator", "ls", "--p0", "1"], "belong to rls"),
+    "forgetting above 1": (["identify", "--forgetting", "1.1"], "forgetting must not exceed 1"),
+    "unknown extension": (["convert", "LOG", "-o", "x.xlsx"], "x.xlsx: unknown extension"),
+    "bounds of no size": (["trajgen", "--q-max", "0"], "--q-max: the bounds must be positive"),
+    "duration too short": (["trajgen", "--duration", "1"], "too short for 2 segments"),
+    "rates do not fit": (
+        ["simulate", "--control-rate", "300", "REF"],
+        "whole multiple of the traj",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", USAGE)
+def test_a_wrong_command_line_is_told_in_one_line(
+    name: str, scarid: Run, samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words, message = USAGE[name]
+    if "REF" in words:
+        assert scarid("trajgen", "--duration", 2, "-o", "ref.csv").status == 0
+    files = {"LOG": str(samples / "scara2.csv"), "REF": "ref.csv"}
+    result = scarid(*(files.get(word, word) for word in words))
+    assert result.status == 2
+    assert message in result.err
+    assert result.err.count("\n") == 1
+    assert result.out == ""
+
+
+def test_via_points_that_break_the_bounds_are_refused(scarid: Run, tmp_path: Path) -> None:
+    via = tmp_path / "via.csv"
+    via.write_text("t,q1,q2\n0,0,0\n0.5,1,0\n2,0,0\n")
+    result = scarid("trajgen", "--via", via)
+    assert result.status == 2
+    assert "segment 1: joint 1 would reach" in result.err
+    assert "give the segment at least 0.5373 s instead of 0.5 s" in result.err
+
+
+def test_a_loop_that_blows_up_is_an_error_and_not_a_table(scarid: Run, tmp_path: Path) -> None:
+    reference = tmp_path / "ref.csv"
+    assert scarid("trajgen", "--duration", 2, "-o", reference).status == 0
+    output = tmp_path / "log.csv"
+    result = scarid("simulate", "--kp", "-800,-25", "--kd", "-100,-2.5", reference, "-o", output)
+    assert result.status == 65
+    assert "blew up at t = " in result.err
+    assert not output.exists()

@@ -1,0 +1,122 @@
+"""The shape of the program: imports, help, documentation, packaging."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, Result
+from importlinter.cli import lint_imports
+
+from scarid_cli import __version__
+from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.cli import COMMANDS, options
+from scarid_cli.io import schemas, writer
+from scarid_cli.reporting import schemas as page
+
+Run = Callable[..., Result]
+HEAVY = ["jinja2", "matplotlib", "numpy", "pyarrow", "pyarrow.compute", "rich", "scipy"]
+
+
+def loaded(pipe_in: str, *words: str, cwd: Path) -> set[str]:
+    """The heavy modules that a command has imported by its end."""
+    script = (
+        "import sys; from scarid_cli.__main__ import main; status = main(sys.argv[1:]);"
+        f"print([m for m in {HEAVY} if m in sys.modules], file=sys.stderr); sys.exit(status)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, *words],
+        input=pipe_in, capture_output=True, text=True, check=True, cwd=cwd,
+    )  # fmt: skip
+    return set(re.findall(r"'([\w.]+)'", done.stderr.splitlines()[-1]))
+
+
+@pytest.mark.parametrize("words", [["--help"], ["--version"], *([c, "--help"] for c in COMMANDS)])
+def test_help_and_version_import_nothing_heavy(words: list[str], tmp_path: Path) -> None:
+    assert loaded("", *words, cwd=tmp_path) == set()
+
+
+STREAMING = {
+    "filter": ["filter"],
+    "differentiate": ["differentiate"],
+    "identify": ["identify", "motion.csv", "--trace", "trace.csv"],
+    "validate": ["validate", "motion.csv", "--parameters", "parameters.csv"],
+    "trajgen": ["trajgen", "--duration", "2"],
+    "simulate": ["simulate", "reference.csv"],
+    "convert": ["convert"],
+    "info": ["info"],
+}
+
+
+@pytest.mark.parametrize("name", STREAMING)
+def test_a_streaming_stage_imports_numpy_and_pyarrow_only(
+    name: str, scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    motion, parameters = tmp_path / "motion.csv", tmp_path / "parameters.csv"
+    assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
+    assert scarid("identify", motion, "-o", parameters).status == 0
+    assert scarid("trajgen", "--duration", 2, "-o", tmp_path / "reference.csv").status == 0
+    log = (samples / "scara2.csv").read_text()
+    assert loaded(log, *STREAMING[name], cwd=tmp_path) <= {"numpy", "pyarrow"}
+
+
+def test_imports_follow_the_architecture(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    assert lint_imports(config_filename="pyproject.toml", no_cache=True) == 0
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_help_with_examples(name: str, scarid: Run) -> None:
+    text = scarid(name, "--help").out
+    examples = [line for line in text.splitlines() if line.strip().startswith("scarid ")]
+    assert len(examples) >= 2
+    assert not re.search(r"\.\.\.$", COMMANDS[name])
+
+
+def test_the_help_describes_every_method(scarid: Run) -> None:
+    text = scarid("differentiate", "--help").out
+    for name in DIFFERENTIATORS.names:
+        assert DIFFERENTIATORS.describe(name).splitlines()[0] in text
+
+
+def test_the_readme_names_every_command() -> None:
+    readme = (ROOT / "README.md").read_text("utf-8")
+    assert [name for name in COMMANDS if f"`{name}`" not in readme] == []
+
+
+def test_the_page_on_tables_is_up_to_date() -> None:
+    assert (ROOT / "docs" / "tables.md").read_text("utf-8") == page.page()
+
+
+def test_the_formats_of_the_help_are_those_of_the_writer() -> None:
+    assert options.FORMATS == writer.FORMATS
+
+
+def test_schemas_are_table_schemas() -> None:
+    """What the Frictionless standard asks of a field: a name and one of its types."""
+    for kind in (*schemas.KINDS, "via"):
+        schema = schemas.load(kind)
+        assert schema.kind == kind
+        assert len({field.name for field in schema.fields}) == len(schema.fields)
+        assert all(field.type in schemas.TYPES.values() for field in schema.fields)
+
+
+def test_the_version_says_that_the_compiled_kernels_run(scarid: Run) -> None:
+    assert scarid("--version").out == f"scarid {__version__} (kernels: compiled)\n"
+
+
+def test_nothing_tells_where_it_was_made() -> None:
+    tracked = subprocess.run(
+        ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.split()
+    pattern = re.compile(r"(/home/|/root/|/work/|/Users/|https?://[^\s)\"']*pypi)")
+    found = [
+        name for name in tracked
+        if name != "tests/cli/test_house.py" and (ROOT / name).is_file()
+        and pattern.search((ROOT / name).read_text("utf-8", errors="ignore"))
+    ]  # fmt: skip
+    assert found == []

@@ -1,0 +1,35 @@
+"""Real robots' logs through the pipe, against what was published of them."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import Result
+
+Shell = Callable[..., Result]
+
+
+def test_emps_gives_its_published_mass(shell: Shell, real_logs: Path) -> None:
+    """95.1089 kg with edges dropped and decimation; the plain pipe comes close."""
+    result = shell(
+        f"scarid filter --zero-phase --cutoff 100 -c q1 {real_logs}/emps/emps_train.csv |"
+        " scarid differentiate --method central | scarid identify --robot emps --estimator ls"
+    )
+    assert result.status == 0, result.err
+    rows = {row["parameter"]: row for row in csv.DictReader(io.StringIO(result.out))}
+    assert 94.0 <= float(rows["M"]["estimate"]) <= 96.0
+    assert float(rows["Fv"]["estimate"]) == pytest.approx(203.5034, rel=0.01)
+    assert float(rows["Fc"]["estimate"]) == pytest.approx(20.3935, rel=0.01)
+    assert float(rows["offset"]["estimate"]) == pytest.approx(-3.1648, rel=0.01)
+
+
+def test_a_jittered_clock_is_refused_with_its_row(shell: Shell, real_logs: Path) -> None:
+    log = real_logs / "double_pendulum" / "20230629-143524.csv"
+    result = shell(f"scarid differentiate {log}")
+    assert result.status == 65
+    assert "column t: found an interval of" in result.err
+    assert "resample" in result.err

@@ -1,0 +1,89 @@
+"""However the rows are cut into batches, a stage gives the same bits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stages.tables import PERIOD, SCARA, Kept, collected, motion, table
+
+from scarid_cli.algorithms.filters.butterworth import Butterworth
+from scarid_cli.algorithms.plants.loop import ClosedLoop
+from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path
+from scarid_cli.io.table import Table
+from scarid_cli.stages.differentiate import differentiate
+from scarid_cli.stages.filter import causal, zero_phase
+from scarid_cli.stages.identify import identify
+from scarid_cli.stages.simulate import simulate
+from scarid_cli.stages.validate import validate
+
+Stage = Callable[[Table], Table]
+
+SIZES = st.lists(st.sampled_from([1, 2, 7, 64, 8192]), min_size=1, max_size=4)
+
+
+def differentiated(name: str) -> Stage:
+    return lambda source: differentiate(source, [DIFFERENTIATORS.load(name)()] * 2)
+
+
+def identified(name: str) -> Stage:
+    return lambda source: identify(source, SCARA, ESTIMATORS.load(name)(), np.zeros(8))
+
+
+def simulated(source: Table) -> Table:
+    loop = ClosedLoop(
+        robot=SCARA,
+        kp=np.array(SCARA.control.kp),
+        kd=np.array(SCARA.control.kd),
+        ki=np.array(SCARA.control.ki),
+        velocity_cutoff=50.0,
+        encoder_resolution=np.full(2, 1e-4),
+        position_noise=np.full(2, 1e-5),
+        torque_noise=np.full(2, 0.1),
+        seed=3,
+    )
+    return simulate(source, loop, 250.0, truth=True)
+
+
+STAGES: dict[str, Stage] = {
+    "filter": lambda source: causal(source, ["q1", "tau2"], Butterworth(20.0)),
+    "filter zero-phase": lambda source: zero_phase(source, ["q1", "tau2"], Butterworth(20.0)),
+    "validate": lambda source: validate(source, SCARA, SCARA.apriori),
+    "simulate": simulated,
+    **{f"differentiate {name}": differentiated(name) for name in DIFFERENTIATORS.names},
+    **{f"identify {name}": identified(name) for name in ESTIMATORS.names},
+}
+
+
+def references() -> dict[str, np.ndarray]:
+    bounds = Bounds(np.ones(2), np.full(2, 3.0), np.full(2, 20.0))
+    path = random_path(bounds, 2.0, (0.5, 1.0), np.random.default_rng(1))
+    t = np.arange(401) * PERIOD
+    rows = [row for signal in path.sample(t) for row in signal]
+    names = [f"{signal}{i}_ref" for signal in ("q", "dq", "ddq") for i in (1, 2)]
+    return {"t": t, **dict(zip(names, rows, strict=True))}
+
+
+@pytest.mark.parametrize("name", STAGES)
+@given(sizes=SIZES)
+@settings(max_examples=8, deadline=None)
+def test_a_stage_gives_the_same_bits_however_its_rows_arrive(name: str, sizes: list[int]) -> None:
+    columns = references() if name == "simulate" else motion()
+    whole = collected(STAGES[name](table(columns)))
+    assert collected(STAGES[name](table(columns, sizes))).equals(whole)
+
+
+@given(sizes=SIZES)
+@settings(max_examples=8, deadline=None)
+def test_a_trace_has_the_same_bits_however_its_rows_arrive(sizes: list[int]) -> None:
+    def trace(cuts: list[int]) -> Kept:
+        kept = Kept()
+        rls = ESTIMATORS.load("rls")(forgetting=0.99)
+        identify(table(motion(), cuts), SCARA, rls, np.zeros(8), trace=kept)
+        return kept
+
+    assert trace(sizes).table.equals(trace([]).table)
