@@ -2,9 +2,9 @@
 
 Explicit Euler, output at the posterior states. Exact after convergence if eta2 exceeds the jerk.
 Rule: eta0 = 2 L^(1/3), eta1 = 1.5 L^(1/2), eta2 = 1.1 L, with L the largest jerk [1/s3].
-eta0 = 10, eta1 = 8: as in Table 1.
-eta2 = 28: Table 1 prints 5 (preset table1), which cannot follow a jerk above 4.5 rad/s3; 28 is
-what the printed eta1 = 1.5 L^(1/2) calls for (L = 28).
+eta0 = 10: as in Table 1.
+eta1 = 12, eta2 = 70: the rule for L = 64 rad/s3, what moves of 1 rad in a second need. Table 1
+prints 8 and 5 (preset table1), which cannot follow a jerk above 4.5 rad/s3.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from scarid_cli.kernels import smd2
 @dataclass(frozen=True)
 class Differentiator(Causal):
     eta0: float = 10.0
-    eta1: float = 8.0
-    eta2: float = 28.0
+    eta1: float = 12.0
+    eta2: float = 70.0
 
-    PRESETS: ClassVar = {"table1": {"eta2": 5.0}}
+    PRESETS: ClassVar = {"table1": {"eta1": 8.0, "eta2": 5.0}}
 
     def __post_init__(self) -> None:
         require_positive(self, "eta0", "eta1", "eta2")

@@ -1,10 +1,11 @@
 """Adaptive super-twisting differentiator, two blocks in a row (paper eq. 30-31, mended; Shtessel).
 
 The second block differentiates the velocity of the first. Explicit Euler.
-epsilon = 1, alpha1 = 50, alpha0 = 0.1, mu1 = 2, k0m = 0.01: as in Table 1.
-gamma = 0.0015: the error below which the gain shrinks. Table 1 prints 1.5 (preset table1): no
-position error exceeds 1.5 rad, so the gain never rises and nothing is estimated. 1.5 mrad works;
-a rule is 4 to 20 times the encoder's resolution.
+epsilon = 1, alpha1 = 50, alpha0 = 0.1, mu1 = 2: as in Table 1.
+gamma = 0.015, k0m = 5: the position error [rad] below which the gain k0 shrinks, and the least
+gain. Table 1 prints 1.5 and 0.01 (preset table1): no error exceeds 1.5 rad, so the gain never
+rises and nothing is estimated; and a gain that may fall to 0.01 loses the signal at every calm
+moment. The velocity can follow accelerations up to epsilon k0; the acceleration stays noisy.
 """
 
 from __future__ import annotations
@@ -27,10 +28,10 @@ class Differentiator(Causal):
     alpha1: float = 50.0
     alpha0: float = 0.1
     mu1: float = 2.0
-    gamma: float = 0.0015
-    k0m: float = 0.01
+    gamma: float = 0.015
+    k0m: float = 5.0
 
-    PRESETS: ClassVar = {"table1": {"gamma": 1.5}}
+    PRESETS: ClassVar = {"table1": {"gamma": 1.5, "k0m": 0.01}}
 
     def __post_init__(self) -> None:
         require_positive(self, "epsilon", "alpha1", "alpha0", "mu1", "gamma", "k0m")
