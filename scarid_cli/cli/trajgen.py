@@ -102,5 +102,5 @@ def command(
         run.write(run.recorded(stage.tabulate(path, arm, rate, meta)), out)
         run.say(
             f"{arm.name}, {path.duration:g} s, {len(path.times) - 1} segments, "
-            f"condition number of W {stage.condition_number(path, arm, rate):.4g}"
+            + stage.excitation(path, arm, rate)
         )

@@ -107,7 +107,7 @@ def _parameters(
         [
             pa.array(robot.names, pa.string()),
             pa.array([parameter.unit for parameter in robot.parameters], pa.string()),
-            pa.array(fit.estimates),
+            doubles(fit.estimates),
             known(errors),
             known(relative),
         ],
@@ -123,4 +123,4 @@ def _parameters(
 
 def known(values: Array) -> pa.Array:
     """A column whose values that do not exist (nan, inf) are empty cells."""
-    return pa.array(values, mask=~np.isfinite(values))
+    return pa.array([x if np.isfinite(x) else None for x in values.tolist()], pa.float64())

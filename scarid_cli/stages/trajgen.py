@@ -45,14 +45,14 @@ def _rows(path: Path, rate: float, schema: pa.Schema) -> Iterator[pa.RecordBatch
         yield pa.RecordBatch.from_arrays([doubles(c) for c in columns], schema=schema)
 
 
-def condition_number(path: Path, robot: Robot, rate: float) -> float:
-    """Of the observation matrix that following the path exactly would give; inf if singular."""
+def excitation(path: Path, robot: Robot, rate: float) -> str:
+    """The condition number of the observation matrix that following the path would give."""
     state = empty(len(robot.parameters))
     count = round(path.duration * rate) + 1
     for start in range(0, count, ROWS):
         W = robot.regressor(*path.sample(np.arange(start, min(start + ROWS, count)) / rate))
         state, _ = absorb(state, W, np.zeros(W.shape[:2]))
     try:
-        return solve(state).condition
+        return f"condition number of W {solve(state).condition:.4g}"
     except NotIdentifiableError:
-        return float("inf")
+        return "W is singular: not every parameter is excited"

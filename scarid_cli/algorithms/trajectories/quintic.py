@@ -54,7 +54,7 @@ class Path:
         q = start + distance * (u**3 * (10.0 + u * (6.0 * u - 15.0)))
         dq = distance / T * (30.0 * u * u * (1.0 - u) ** 2)
         ddq = distance / T**2 * (60.0 * u * (1.0 - u) * (1.0 - 2.0 * u))
-        return q, dq, ddq
+        return q + 0.0, dq + 0.0, ddq + 0.0  # no negative zeros in the table
 
 
 def random_path(

@@ -1,0 +1,214 @@
+"""Start-up, time per sample, and memory of the installed scarid, as one table of figures.
+
+Every figure that depends on the machine's speed stands beside a baseline of the same run.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.kernels import astd, fir, information, moments, p2smd, plant, smd2, sos
+
+SCARID = str(Path(sys.executable).parent / "scarid")
+ROUNDS = 11
+SHORT, LONG = 100_000, int(os.environ.get("ROWS", "10_000_000"))
+# A child's peak begins at its parent's size, so the parent must be small.
+LAUNCHER = """
+import resource, subprocess, sys
+subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, check=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, file=sys.stderr)
+"""
+COLUMNS = ["t", "q1", "q2", "tau1", "tau2", "dq1", "dq2", "ddq1", "ddq2"]
+
+
+def wall(command: list[str], source: Path | None = None) -> float:
+    """Seconds of one run of a command."""
+    with (source or Path(os.devnull)).open("rb") as stdin:
+        start = time.perf_counter()
+        subprocess.run(
+            command, stdin=stdin, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        return time.perf_counter() - start
+
+
+def startup(folder: Path) -> None:
+    """The fixed cost of commands, against the imports they cannot do without, turn by turn."""
+    log, motion, parameters = folder / "log.csv", folder / "motion.csv", folder / "parameters.csv"
+    pipe = (
+        f"{SCARID} trajgen -q --duration 2 | {SCARID} simulate -o {log} && "
+        f"{SCARID} differentiate {log} -o {motion} && {SCARID} identify -q {motion} -o {parameters}"
+    )
+    subprocess.run(["bash", "-c", pipe], check=True)
+    python = [sys.executable, "-c"]
+    runs: dict[str, tuple[list[str], Path | None]] = {
+        "import click": ([*python, "import click"], None),
+        "scarid --help": ([SCARID, "--help"], None),
+        "import click, numpy, pyarrow": ([*python, "import click, numpy, pyarrow"], None),
+        "scarid filter": ([SCARID, "filter"], log),
+        "scarid differentiate": ([SCARID, "differentiate"], log),
+        "scarid identify": ([SCARID, "identify"], motion),
+        "scarid validate": ([SCARID, "validate", "--parameters", str(parameters)], motion),
+    }
+    times: dict[str, list[float]] = {name: [] for name in runs}
+    for _ in range(ROUNDS):
+        for name, (command, source) in runs.items():
+            times[name].append(wall(command, source))
+    print(f"\nStart-up, median of {ROUNDS}, and ratio to the imports above it")
+    base = 0.0
+    for name, values in times.items():
+        median = statistics.median(values)
+        base = median if name.startswith("import") else base
+        print(f"  {name:30} {1000 * median:7.0f} ms  {median / base:5.2f}")
+
+
+def best(run: Callable[[], object], count: int) -> float:
+    """Nanoseconds per item, the best of five rounds."""
+    times = []
+    for _ in range(5):
+        start = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - start)
+    return min(times) / count * 1e9
+
+
+def interpreted(module: ModuleType) -> ModuleType:
+    """The same kernel, not compiled."""
+    stem = module.__name__.rpartition(".")[2]
+    source = Path(str(module.__file__)).parent / f"{stem}.py"
+    spec = importlib.util.spec_from_file_location(f"interpreted_{stem}", source)
+    assert spec is not None
+    assert spec.loader is not None
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+def kernels() -> None:
+    """Time per sample and joint, or per row of a regressor, compiled and interpreted."""
+    n = 200_000
+    rng = np.random.default_rng(0)
+    t = np.arange(n) / 200
+    q = np.round((np.sin(t) + 0.3 * np.sin(7 * t)) / 1e-4) * 1e-4
+    v, a = np.empty(n), np.empty(n)
+    W, y = rng.standard_normal((n // 2, 2, 8)), rng.standard_normal((n // 2, 2))
+    noise, log = np.zeros((n, 2)), np.empty((n, 10))
+    reference = np.column_stack([q, q, np.zeros(n), np.zeros(n)])
+    model = np.array([3.42, 0.064, 0.131, 0.0, 0.07, 0.015, 0.58, 0.156, 0.0, 0.0])
+    control = np.array([800, 25, 100, 2.5, 0, 0, 1e9, 1e9, 1e-4, 1e-4, 0.9])
+
+    def update(module: ModuleType, k: int, *, trace: bool) -> None:
+        triangle = np.column_stack([0.1 * np.eye(8), np.zeros(8)])
+        out = np.empty((k if trace else 0, 8))
+        forgetting = 0.999 if trace else 1.0
+        module.update(W[:k], y[:k], triangle, np.empty(9), np.zeros(2), out, forgetting)
+
+    runs: dict[str, tuple[ModuleType, Callable[[ModuleType, int], object]]] = {
+        "p2smd": (p2smd, lambda m, k: m.differentiate(
+            q[:k], v[:k], a[:k], np.zeros(6), np.array([25, 20, 0.1, 0, 2, 1.0]), 0.005)),
+        "2smd": (smd2, lambda m, k: m.differentiate(
+            q[:k], v[:k], a[:k], np.zeros(3), np.array([10.0, 12, 70]), 0.005)),
+        "astd, one block": (astd, lambda m, k: m.differentiate(
+            q[:k], v[:k], np.array([0, 0, 5.0]), np.array([1, 50, 0.1, 0.015, 5]), 0.005)),
+        "ed-fir, one stage": (fir, lambda m, k: m.differentiate(
+            q[:k], v[:k], np.zeros(12), np.full(11, 1 / 11), 0.005)),
+        "filter, order 4": (sos, lambda m, k: m.filtered(
+            q[:k], v[:k], np.zeros((2, 2)), np.full((2, 5), 0.1))),
+        "ls, row of 8": (information, lambda m, k: update(m, k // 2, trace=False)),
+        "rls, row of 8, with trace": (information, lambda m, k: update(m, k // 2, trace=True)),
+        "validate": (moments, lambda m, k: m.accumulate(q[:k], v[:k], np.zeros(5))),
+        "simulate, control tick": (plant, lambda m, k: m.run(
+            reference[:k], noise[:k], log[:k], np.zeros(10), model, control, 1e-3, 4)),
+    }  # fmt: skip
+    v[:] = 0.0
+    print("\nKernels, ns per sample and joint (or row, or tick)")
+    print(f"  {'':30} {'compiled':>9} {'interpreted':>12}")
+    for name, (module, run) in runs.items():
+        if str(module.__file__).endswith(".py"):
+            print(f"  {name:30} {'none':>9} {best(lambda: run(module, 2000), 2000):12.0f}")  # noqa: B023
+            continue
+        slow = interpreted(module)
+        compiled = best(lambda: run(module, n), n)  # noqa: B023
+        print(f"  {name:30} {compiled:9.1f} {best(lambda: run(slow, 2000), 2000):12.0f}")  # noqa: B023
+
+
+def stream(rows: int) -> None:
+    """Write a motion of so many rows to standard output, as an Arrow stream."""
+    schema = pa.schema([(name, pa.float64()) for name in COLUMNS])
+    with pa.ipc.new_stream(sys.stdout.buffer, schema) as writer:
+        for start in range(0, rows, 8192):
+            t = np.arange(start, min(start + 8192, rows)) / 200
+            q, dq = [np.sin(t), np.sin(1.3 * t)], [np.cos(t), 1.3 * np.cos(1.3 * t)]
+            ddq = [-np.sin(t) - 0.5 * np.sin(3 * t), -1.69 * np.sin(1.3 * t)]
+            columns = [t, *q, 3.0 * q[0], q[1], *dq, *ddq]
+            writer.write_batch(
+                pa.RecordBatch.from_arrays([pa.array(c) for c in columns], schema=schema)
+            )
+
+
+def peak(words: list[str], rows: int) -> tuple[float, float]:
+    """Peak memory [MB] and time [s] of a stage that reads so many rows from a pipe."""
+    with subprocess.Popen(
+        [sys.executable, __file__, "stream", str(rows)], stdout=subprocess.PIPE
+    ) as source:
+        start = time.perf_counter()
+        done = subprocess.run(
+            [sys.executable, "-c", LAUNCHER, SCARID, *words],
+            stdin=source.stdout,
+            capture_output=True,
+            check=True,
+        )
+    return int(done.stderr.split()[-1]) / 1024, time.perf_counter() - start
+
+
+def stages(folder: Path) -> dict[str, list[str]]:
+    """The streaming stages whose memory must not depend on the number of rows."""
+    parameters = folder / "p.csv"
+    with subprocess.Popen(
+        [sys.executable, __file__, "stream", "2000"], stdout=subprocess.PIPE
+    ) as source:
+        identify = [SCARID, "identify", "-q", "-o", str(parameters)]
+        subprocess.run(identify, stdin=source.stdout, check=True)
+    return {
+        "filter": ["filter", "--format", "arrow"],
+        "differentiate": ["differentiate", "--format", "arrow"],
+        "identify": ["identify", "-q"],
+        "validate": ["validate", "--parameters", str(parameters)],
+    }
+
+
+def memory(folder: Path) -> None:
+    """Peak memory on a short and a long stream."""
+    print(f"\nPeak memory, Arrow stream of {SHORT:,} and {LONG:,} rows")
+    for name, words in stages(folder).items():
+        (short, _), (long, seconds) = peak(words, SHORT), peak(words, LONG)
+        print(
+            f"  {name:30} {short:6.1f} MB {long:6.1f} MB  ratio {long / short:5.3f}"
+            f"  {seconds / LONG * 1e6:6.2f} us a row"
+        )
+
+
+def main() -> None:
+    if sys.argv[1:2] == ["stream"]:
+        stream(int(sys.argv[2]))
+        return
+    subprocess.run([SCARID, "--version"], check=True)
+    with tempfile.TemporaryDirectory() as folder:
+        startup(Path(folder))
+        kernels()
+        memory(Path(folder))
+
+
+if __name__ == "__main__":
+    main()
