@@ -1,0 +1,92 @@
+"""The measurements behind the default settings, on the simulated robot (quoted in DESIGN.md)."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.signal
+
+from scarid_cli.algorithms.filters.butterworth import Butterworth
+from scarid_cli.algorithms.plants.loop import ClosedLoop, Log
+from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.robots import description
+from scarid_cli.algorithms.trajectories.hermite import refine
+from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path
+
+ROBOT = description.load("scara2")
+PERIOD, RATIO = 0.005, 5
+SEEDS = (1, 3, 5)
+SETTINGS: list[tuple[str, str, dict[str, float]]] = [
+    ("p2smd", "Table 1", DIFFERENTIATORS.load("p2smd").PRESETS["table1"]),
+    ("p2smd", "default", {}),
+    ("ed-fir", "Table 1", {}),
+    ("2smd", "Table 1", DIFFERENTIATORS.load("2smd").PRESETS["table1"]),
+    ("2smd", "default", {}),
+    ("astd", "Table 1", DIFFERENTIATORS.load("astd").PRESETS["table1"]),
+    ("astd", "gamma 0.0015, k0m 0.01", {"gamma": 0.0015, "k0m": 0.01}),
+    ("astd", "default", {}),
+]
+
+
+def experiment(seed: int, segment: tuple[float, float], cutoff: float = 20.0) -> Log:
+    """Twenty seconds of the robot in its default loop, at the control rate."""
+    limits = [
+        np.array([getattr(joint, f"{name}_limit") for joint in ROBOT.joints])
+        for name in ("position", "velocity", "acceleration")
+    ]
+    path = random_path(Bounds(*limits), 20.0, segment, np.random.default_rng(seed))
+    q, dq, _ = refine(*path.sample(np.arange(4001) * PERIOD), PERIOD, RATIO)
+    assert ROBOT.control is not None
+    loop = ClosedLoop(
+        robot=ROBOT,
+        kp=np.array(ROBOT.control.kp),
+        kd=np.array(ROBOT.control.kd),
+        ki=np.array(ROBOT.control.ki),
+        velocity_cutoff=cutoff,
+        encoder_resolution=np.array([joint.encoder_resolution for joint in ROBOT.joints]),
+        position_noise=np.zeros(2),
+        torque_noise=np.array([joint.torque_noise for joint in ROBOT.joints]),
+        seed=seed,
+    )
+    return loop.step(loop.init(q[:, 0]), q, dq)[1]
+
+
+def errors(log: Log, method: str, settings: dict[str, float]) -> list[tuple[float, float]]:
+    """NRMSE of velocity and acceleration per joint, from the second second on."""
+    found = []
+    for joint in range(2):
+        q = np.ascontiguousarray(log.q[joint, ::RATIO])
+        lowpass = Butterworth(20.0)
+        _, q = lowpass.step(lowpass.init(q[0], PERIOD), q)
+        differentiator = DIFFERENTIATORS.load(method)(**settings)
+        _, estimates = differentiator.step(differentiator.init(q[0], PERIOD), q)
+        truths = (log.dq_true[joint, ::RATIO], log.ddq_true[joint, ::RATIO])
+        v, a = (
+            float(np.sqrt(np.mean((x - y)[200:] ** 2)) / np.std(y))
+            for x, y in zip(estimates, truths, strict=True)
+        )
+        found.append((v, a))
+    return found
+
+
+def main() -> None:
+    fast = [experiment(seed, (0.8, 2.0)) for seed in SEEDS]
+    slow = [experiment(seed, (2.0, 4.0)) for seed in SEEDS]
+    print("NRMSE of velocity and acceleration, segments of 0.8 to 2 s and of 2 to 4 s")
+    for method, name, settings in SETTINGS:
+        row = [np.mean([errors(log, method, settings) for log in logs], axis=(0, 1))
+               for logs in (fast, slow)]  # fmt: skip
+        print(f"  {method:8} {name:24}" + "".join(f" {v:8.3f} {a:6.3f}" for v, a in row))
+    print("\nAcceleration above 15 Hz [rad/s2], rms of joints 1 and 2, by smoothing of dq [Hz]")
+    low = scipy.signal.butter(4, 15.0, fs=1.0 / PERIOD * RATIO, output="sos")
+    for cutoff in (0.0, 50.0, 20.0):
+        a = experiment(3, (0.8, 2.0), cutoff).ddq_true
+        print(
+            f"  {cutoff or 'none':>5}", (a - scipy.signal.sosfiltfilt(low, a)).std(axis=1).round(2)
+        )
+    print("\nTorque, standard deviation of joints 1 and 2 [N m], seeds 0 to 5")
+    stds = np.array([experiment(seed, (0.8, 2.0)).tau_true.std(axis=1) for seed in range(6)])
+    print(f"  from {stds.min(axis=0).round(2)} to {stds.max(axis=0).round(2)}")
+
+
+if __name__ == "__main__":
+    main()
