@@ -9,19 +9,18 @@ cdef double sign(double x) noexcept nogil
 cdef double quantised(double x, double resolution) noexcept nogil
 cdef double clip(double x, double limit) noexcept nogil
 
+@cython.locals(c=double, s=double, coupling=double, bend=double, m22=double)
+cdef (double, double, double, double) inertia(const double[::1] model, double q2) noexcept nogil
+
 @cython.locals(
-    c=double, s=double, coupling=double, bend=double, m22=double, m12=double, m11=double,
-    r1=double, r2=double, d=double,
+    bend=double, m22=double, m12=double, m11=double, r1=double, r2=double, d=double,
 )
 cdef (double, double) accelerations(
     const double[::1] model, double q2, double v1, double v2, double tau1, double tau2,
     double s1, double s2, double free1, double free2,
 ) noexcept nogil
 
-@cython.locals(
-    c=double, s=double, coupling=double, bend=double, m22=double, m12=double, m11=double,
-    f1=double, f2=double,
-)
+@cython.locals(bend=double, m22=double, m12=double, m11=double, f1=double, f2=double)
 cdef (double, double) holding(
     const double[::1] model, double q2, double v1, double v2, double tau1, double tau2,
     double a1, double a2,

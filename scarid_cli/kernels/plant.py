@@ -28,19 +28,23 @@ def clip(x, limit):
     return min(max(x, -limit), limit)
 
 
+def inertia(model, q2):
+    """The elements M11, M12, M22 of the inertia matrix, and the factor of its Coriolis terms."""
+    c = cos(q2)
+    s = sin(q2)
+    coupling = float(model[2]) * c - float(model[3]) * s
+    bend = float(model[2]) * s + float(model[3]) * c
+    m22 = float(model[1])
+    return float(model[0]) + m22 + 2.0 * coupling, m22 + coupling, m22, bend
+
+
 def accelerations(model, q2, v1, v2, tau1, tau2, s1, s2, free1, free2):
     """The accelerations of both joints, 0 for one that sticks.
 
     model: ZZ1R, ZZ2, L1MX2, L1MY2, then viscous, Coulomb and offset torques of joints 1 and 2.
     s1, s2: directions of sliding. free1, free2: 1 for a joint that slides, 0 for one that sticks.
     """
-    c = cos(q2)
-    s = sin(q2)
-    coupling = float(model[2]) * c - float(model[3]) * s
-    bend = float(model[2]) * s + float(model[3]) * c
-    m22 = float(model[1])
-    m12 = m22 + coupling
-    m11 = float(model[0]) + m22 + 2.0 * coupling
+    m11, m12, m22, bend = inertia(model, q2)
     r1 = tau1 + bend * v2 * (2.0 * v1 + v2)
     r1 -= float(model[4]) * v1 + float(model[6]) * s1 + float(model[8])
     r2 = tau2 - bend * v1 * v1
@@ -57,13 +61,7 @@ def accelerations(model, q2, v1, v2, tau1, tau2, s1, s2, free1, free2):
 
 def holding(model, q2, v1, v2, tau1, tau2, a1, a2):
     """The dry friction torques that would explain the accelerations a1, a2."""
-    c = cos(q2)
-    s = sin(q2)
-    coupling = float(model[2]) * c - float(model[3]) * s
-    bend = float(model[2]) * s + float(model[3]) * c
-    m22 = float(model[1])
-    m12 = m22 + coupling
-    m11 = float(model[0]) + m22 + 2.0 * coupling
+    m11, m12, m22, bend = inertia(model, q2)
     f1 = tau1 + bend * v2 * (2.0 * v1 + v2) - m11 * a1 - m12 * a2
     f1 -= float(model[4]) * v1 + float(model[8])
     f2 = tau2 - bend * v1 * v1 - m12 * a1 - m22 * a2
