@@ -97,7 +97,8 @@ $(P)/%.$1.metrics.parquet $(P)/%.$1.prediction.parquet: $(P)/%.$1.motion.parquet
 endef
 $(foreach e,direct cross,$(eval $(call VALIDATE,$e)))
 
-.PRECIOUS: $(P)/%.parquet
+# Keep every table on the way: each can be looked at with `scarid info` or `scarid convert`.
+.SECONDARY:
 
 # --- samples --------------------------------------------------------------------------------------
 

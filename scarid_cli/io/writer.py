@@ -91,7 +91,7 @@ class Target:
     def _failure(self, error: OSError) -> OutputFailure:
         closed = self._fd == 1 and error.errno == errno.EBADF
         reason = "standard output is closed" if closed else error.strerror
-        return OutputFailure(f"{self.name}: {reason}; the table was not written")
+        return OutputFailure(f"{self.name}: {reason}; nothing was written")
 
 
 def _regular(path: Path) -> bool:

@@ -1,0 +1,73 @@
+"""scarid report"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from scarid_cli.cli import options
+
+
+@click.command(name="report")
+@click.argument("files", nargs=-1, metavar="[FILE]...")
+@click.option("--html", metavar="FILE", help="Write one self-contained page, with figures.")
+@click.option("--markdown", metavar="FILE", help="Write the tables as Markdown.")
+@click.option(
+    "--title", default="Identification report", show_default=True, help="Of the documents."
+)
+@options.common
+def command(
+    files: tuple[str, ...], html: str | None, markdown: str | None, title: str, **rest: Any
+) -> None:
+    """Tables and figures of parameters, traces, metrics and predictions.
+
+    \b
+      scarid report *.parameters.parquet
+      scarid report *.parquet --html report.html --markdown report.md
+      scarid identify motion.parquet | scarid report
+
+    A file is named METHOD.EXPERIMENT.KIND.EXTENSION: p2smd.direct.metrics.parquet holds the metrics
+    of method p2smd in experiment direct. EXPERIMENT and KIND may be left out. Methods stand in the
+    order of the files.
+
+    Prints the tables: estimates with relative standard deviations (paper's Table 2), errors of the
+    running estimates (Table 3), quality of the predicted torques per experiment (Tables 4 and 5).
+    The page adds the largest relative standard deviation per method (Fig. 5), the estimates over
+    time (Fig. 6), actual and predicted torques (Figs. 7 and 8).
+
+    A priori values are those of the robot that the metadata state; a CSV states none and takes
+    the robot of another table with the same parameters.
+
+    --html - or --markdown - writes that document to standard output instead of the tables. Reads
+    tables of any length in bounded memory.
+    """
+    import sys
+
+    from scarid_cli.cli.job import job
+    from scarid_cli.errors import UsageFault
+    from scarid_cli.reporting import results, text
+    from scarid_cli.reporting.content import sections
+    from scarid_cli.reporting.documents import documents
+
+    paths = files or ("-",)
+    twice = next((path for path in paths if paths.count(path) > 1), None)
+    if twice:
+        raise UsageFault(f"{twice} is given twice; each table can be read once")
+    if html and html == markdown:
+        raise UsageFault(f"--html and --markdown both go to {html}; give two files")
+    # A report is no table and has no history: its inputs need no digest.
+    with job({**rest, "no_history": True}) as run, documents(html, markdown) as (page, plain):
+        tables = [results.reportable(run.read(path, None)) for path in paths]
+        found = sections(results.collect(tables))
+        if page:
+            from scarid_cli.reporting.page import html as rendered
+
+            page.write(rendered(title, found, tables).encode())
+        if plain:
+            plain.write(text.markdown(title, found).encode())
+        if "-" not in (html, markdown):
+            sys.stdout.write(text.terminal(found))
+            sys.stdout.flush()
+        if not html and any(not section.rows for section in found):
+            run.say("some tables have figures only; see them with --html FILE")

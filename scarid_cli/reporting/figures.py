@@ -1,0 +1,147 @@
+"""Plots as SVG, drawn by matplotlib without pyplot; the same plot gives the same bytes."""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from collections.abc import Sequence
+from math import ceil, isfinite
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from scarid_cli.reporting.content import Bars, Line, Panels, Plot
+
+# Okabe and Ito's palette, told apart by colour-blind readers, the ones that print best first.
+# Black is for measurements.
+PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442")
+DASHES = ("-", "-.", ":", (0, (1, 4)))  # of the second, third, ... turn through the palette
+INK = "#222222"
+WIDTH = 6.7  # inches: the text width of an A4 page
+
+STYLE = {
+    "axes.axisbelow": True,
+    "axes.edgecolor": "#888888",
+    "axes.formatter.useoffset": False,
+    "axes.grid": True,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.6,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.xmargin": 0.01,
+    "font.size": 8.0,
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.5,
+    "legend.frameon": False,
+    "lines.linewidth": 1.0,
+    "path.simplify_threshold": 0.2,
+    "svg.hashsalt": "scarid",  # else the marks inside differ from run to run
+    "text.color": INK,
+    "text.parse_math": False,  # a dollar in a file name is a dollar
+    "xtick.color": "#666666",
+    "xtick.labelcolor": INK,
+    "ytick.color": "#666666",
+    "ytick.labelcolor": INK,
+}
+PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}  # behind a text on a line
+OFFSET: dict[str, Any] = {"textcoords": "offset points"}
+NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
+
+
+def draw(plot: Plot) -> str:
+    """The plot as an `<svg>` element."""
+    with matplotlib.rc_context(), warnings.catch_warnings():
+        # Neither the user's matplotlibrc nor a script without a glyph here changes the report.
+        warnings.filterwarnings("ignore", message="Glyph .* missing")
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(STYLE)
+        figure = _bars(plot) if isinstance(plot, Bars) else _panels(plot)
+        out = io.StringIO()
+        figure.savefig(out, format="svg", metadata=NO_METADATA)
+    return _element(out.getvalue())
+
+
+def _element(document: str) -> str:
+    """The element alone, as large as its place, with hundredths of a point for precision."""
+    element = document[document.index("<svg") :].strip()
+    element = re.sub(r' (xmlns(:xlink)?|version|width|height)="[^"]*"', "", element, count=5)
+    return re.sub(r'(?<= d=")[^"]*', lambda path: re.sub(r"(\.\d\d)\d+", r"\1", path[0]), element)
+
+
+def colour_of(index: int | None) -> str:
+    """The colour of a label by its number in the report; None: of measurements."""
+    return "#000000" if index is None else PALETTE[index % len(PALETTE)]
+
+
+def _bars(plot: Bars) -> Figure:
+    figure = Figure(figsize=(WIDTH, 0.7 + 0.3 * len(plot.names)), layout="constrained")
+    axes = figure.subplots()
+    places = range(len(plot.names))
+    values = [value if isfinite(value) else 0.0 for value in plot.values]
+    axes.barh(places, values, height=0.62, color=[colour_of(i) for i in plot.colours])
+    for place, value, end in zip(places, plot.values, values, strict=True):
+        text = f"{value:.3g} %" if isfinite(value) else "unknown"
+        axes.annotate(text, (end, place), (4, 0), **OFFSET, va="center", bbox=PAPER)
+    axes.axvline(plot.doubt, color=INK, linestyle="--", linewidth=0.9)
+    axes.set_xlim(0.0, 1.12 * max(*values, plot.doubt))
+    axes.set_ylim(len(plot.names) - 0.5, -0.5)
+    axes.set_yticks(places, plot.names)
+    axes.tick_params(axis="y", length=0)
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel(plot.axis)
+    above = ("data", "axes fraction")
+    text = f"{plot.doubt:g} %: doubtful beyond"
+    axes.annotate(text, (plot.doubt, 1.0), (0, 3), xycoords=above, **OFFSET, ha="center")
+    return figure
+
+
+def _panels(plot: Panels) -> Figure:
+    columns = min(plot.columns, len(plot.panels))
+    rows = ceil(len(plot.panels) / columns)
+    height = 0.5 + (1.5 if columns > 1 else 1.7) * rows
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    grid = figure.subplots(rows, columns, sharex=True, squeeze=False).flatten().tolist()
+    for axes, panel in zip(grid, plot.panels, strict=False):
+        for line in panel.lines:
+            axes.plot(*line.points, **_style(line))
+        if panel.level is not None:
+            axes.axhline(panel.level, color=INK, linestyle="--", linewidth=0.9)
+        if panel.limits:
+            axes.set_ylim(*panel.limits)
+        axes.set_ylabel(panel.axis)
+        axes.locator_params(axis="y", nbins=5)
+    _label_time(grid, len(plot.panels), columns)
+    figure.align_ylabels()
+    _legend(figure, plot)
+    return figure
+
+
+def _style(line: Line) -> dict[str, Any]:
+    """Measurements are drawn wide and below, so that a prediction that covers them is seen."""
+    if line.colour is None:
+        return {"color": "#000000", "linewidth": 1.6, "alpha": 0.35}
+    dashes = DASHES[line.colour // len(PALETTE) % len(DASHES)]
+    return {"color": colour_of(line.colour), "linestyle": dashes}
+
+
+def _label_time(grid: Sequence[Axes], used: int, columns: int) -> None:
+    """The time under the lowest panel of each column."""
+    for axes in grid[used:]:
+        axes.remove()
+    for axes in grid[max(0, used - columns) : used]:
+        axes.tick_params(labelbottom=True)
+        axes.set_xlabel("t [s]")
+
+
+def _legend(figure: Figure, plot: Panels) -> None:
+    """Above the panels, where it covers no data."""
+    entries = [(line.name, Line2D([], [], **_style(line))) for line in plot.panels[0].lines]
+    if plot.level:
+        entries.append((plot.level, Line2D([], [], color=INK, linestyle="--", linewidth=0.9)))
+    names, handles = zip(*entries, strict=True)
+    columns = max(1, min(len(names), 110 // (max(map(len, names)) + 8)))
+    figure.legend(handles, names, loc="outside upper center", ncols=columns)

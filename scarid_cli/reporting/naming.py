@@ -1,0 +1,53 @@
+"""From file names to the labels of a report: METHOD.EXPERIMENT.KIND.EXTENSION."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from scarid_cli.io.bytesource import STDIN
+
+
+@dataclass(frozen=True)
+class Name:
+    """What a table is of: `label` is the method, `experiment` may be empty."""
+
+    label: str
+    experiment: str
+
+
+def name_of(file: str, kind: str) -> Name:
+    """`p2smd.direct.metrics.parquet` is of p2smd, direct; `p2smd.csv` of no experiment."""
+    if file == STDIN:
+        return Name("stdin", "")
+    last = printable(Path(file).name)
+    label, *middle = last.split(".")
+    middle = middle[:-1]
+    if middle and middle[-1].rstrip("s") == kind.rstrip("s"):
+        middle.pop()
+    return Name(label or last, ".".join(middle))
+
+
+def names_of(files: Sequence[str], kinds: Sequence[str]) -> list[Name]:
+    """The names of all tables; labels that clash are told apart by folder, then by file."""
+    names = [name_of(file, kind) for file, kind in zip(files, kinds, strict=True)]
+    for in_full in (False, True):
+        counts = Counter(zip(kinds, names, strict=True))
+        clashing = {name.label for (_, name), count in counts.items() if count > 1}
+        names = [
+            _with_path(name, file, in_full=in_full) if name.label in clashing else name
+            for name, file in zip(names, files, strict=True)
+        ]
+    return names
+
+
+def _with_path(name: Name, file: str, *, in_full: bool) -> Name:
+    path = file if in_full else str(Path(file).with_name(name.label))
+    return replace(name, label=printable(path))
+
+
+def printable(text: str) -> str:
+    """The text without line breaks and control characters, which a terminal would obey."""
+    return "".join(c if c.isprintable() else "?" for c in text)

@@ -1,0 +1,77 @@
+"""A report as one HTML page that needs nothing else: no network, no script, no other file."""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from scarid_cli import __version__
+from scarid_cli.io.table import Table
+from scarid_cli.reporting.content import Section, split
+from scarid_cli.reporting.curves import POINTS
+
+WIDTH = 108  # characters of a table that fit an A4 page
+GAP = 2
+NO_BREAK = "\N{NO-BREAK SPACE}"
+
+
+def html(title: str, sections: Sequence[Section], tables: Sequence[Table]) -> str:
+    """The whole page; `tables` are told with their history at the end."""
+    # While it is imported, matplotlib may tell about its caches, which is nobody's concern here.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    from scarid_cli.reporting.figures import draw
+
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.filters["wrapping"] = _wrapping
+    return environment.get_template("report.html").render(
+        title=title,
+        version=__version__,
+        points=POINTS,
+        count=len(tables),
+        origins=_origins(tables),
+        sections=[
+            {
+                "section": section,
+                "parts": split(section, WIDTH, GAP, wrapped=True) if section.rows else [],
+                "figures": [
+                    (plot.caption, _own(draw(plot), f"f{i}-{j}-"))
+                    for j, plot in enumerate(section.plots, start=1)
+                ],
+            }
+            for i, section in enumerate(sections, start=1)
+        ],
+    )
+
+
+def _origins(tables: Sequence[Table]) -> list[dict[str, Any]]:
+    """Tables of one run share a history: it is told once."""
+    origins: list[dict[str, Any]] = []
+    for table in tables:
+        same = next((o for o in origins if o["history"] == table.meta.history), None)
+        if same:
+            same["names"].append(table.name)
+        else:
+            origins.append({"names": [table.name], "history": table.meta.history})
+    return origins
+
+
+def _wrapping(header: str) -> str:
+    """The header with a single place for a line break: before the unit."""
+    return header.replace(" ", NO_BREAK).replace(f"{NO_BREAK}[", " [")
+
+
+def _own(svg: str, prefix: str) -> Markup:
+    """The figure with names of its own inside: those of a page must be unique."""
+    return Markup(re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{prefix}", svg))

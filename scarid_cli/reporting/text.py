@@ -1,0 +1,90 @@
+"""A report as text: for a terminal, for a pipe and as Markdown."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+
+from rich.box import Box
+from rich.cells import cell_len
+from rich.console import Console
+from rich.table import Table
+
+from scarid_cli.reporting.content import Section, split
+
+WIDTH = 100  # characters of running text where there is no terminal
+GAP = 2  # characters between the columns of a table
+# One line, under the headers; rich knows to write it in ASCII where it must.
+RULE = Box("\n".join(["    "] * 2 + [" ── "] + ["    "] * 5) + "\n")
+
+
+def terminal(sections: Sequence[Section]) -> str:
+    """Tables for standard output: on a narrow terminal in parts, elsewhere as wide as they are."""
+    console = Console(markup=False, emoji=False, highlight=False)
+    width = console.width if console.is_terminal else WIDTH
+    with console.capture() as capture:
+        for section in _with_rows(sections):
+            console.width = width
+            console.print(section.title, style="bold")
+            if section.note:
+                console.print(section.note, style="dim")
+            for part in split(section, width, GAP) if console.is_terminal else [section]:
+                # What does not fit even so is wrapped by the terminal: no number is cut.
+                console.width = max(width, sum(_widths(part)))
+                console.print(_table(part))
+                console.print()
+    # A name that the terminal cannot show does not end the report.
+    text = capture.get().encode(console.encoding, "replace").decode(console.encoding)
+    return text if console.is_terminal else _stripped(text)
+
+
+def _with_rows(sections: Sequence[Section]) -> Iterator[Section]:
+    return (section for section in sections if section.rows)
+
+
+def _widths(section: Section) -> list[int]:
+    columns = zip(section.headers, *section.rows, strict=True)
+    return [max(map(cell_len, column)) + GAP for column in columns]
+
+
+def _table(section: Section) -> Table:
+    table = Table(box=RULE, show_edge=False, padding=(0, GAP - 1, 0, 0), pad_edge=False)
+    for index, header in enumerate(section.headers):
+        left = index < section.texts
+        table.add_column(header, justify="left" if left else "right", no_wrap=True)
+    for row in section.rows:
+        table.add_row(*row)
+    return table
+
+
+def _stripped(text: str) -> str:
+    return "".join(f"{line.rstrip()}\n" for line in text.rstrip().splitlines())
+
+
+def markdown(title: str, sections: Sequence[Section]) -> str:
+    """Tables as GitHub-flavoured Markdown, readable as it is."""
+    parts = [f"# {_escaped(title)}\n"]
+    for section in _with_rows(sections):
+        parts.append(f"## {_escaped(section.title)}\n")
+        if section.note:
+            parts.append(f"{textwrap.fill(_escaped(section.note), WIDTH)}\n")
+        parts.append(_markdown_table(section))
+    return "\n".join(parts)
+
+
+def _markdown_table(section: Section) -> str:
+    rows = [[_escaped(cell) for cell in row] for row in (section.headers, *section.rows)]
+    widths = [max(3, *map(len, column)) for column in zip(*rows, strict=True)]
+    left = [index < section.texts for index in range(len(widths))]
+    rule = ["-" * w if text else "-" * (w - 1) + ":" for w, text in zip(widths, left, strict=True)]
+    padded = [
+        [c.ljust(w) if text else c.rjust(w) for c, w, text in zip(row, widths, left, strict=True)]
+        for row in rows
+    ]
+    lines = [padded[0], rule, *padded[1:]]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def _escaped(text: str) -> str:
+    """With a backslash before what Markdown would take for its own."""
+    return "".join(f"\\{c}" if c in "\\|*<`" else c for c in text)
