@@ -13,7 +13,7 @@ import click
 from scarid_cli import __version__
 from scarid_cli.errors import UsageFault
 from scarid_cli.io import schemas
-from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import checked, open_table, require
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Output, all_or_none, write_table
@@ -38,12 +38,20 @@ class Job:
 
     def output(self, path: str, wanted: str | None = None) -> Output:
         """Where a table will go; opened before anything is read."""
+        if path in {output.path for output in self.outputs}:
+            raise UsageFault(
+                f"{'standard output' if path == '-' else path}: two tables cannot share it"
+            )
         output = Output(path, wanted)
         self.outputs.append(output)
         return output
 
     def read(self, path: str, kind: str | None) -> Table:
         """A checked table of a kind, or any table as it stands for None."""
+        if path == "-" and STDIN in self._inputs:
+            raise UsageFault(
+                "standard input can be read only once; give a FILE for the other table"
+            )
         source = ByteSource.open(path)
         self.sources.append(source)
         self._inputs[source.name] = source.sha256() if self._history else None

@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.ipc as ipc
 
 from scarid_cli.errors import BadData, cut_short
-from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.bytesource import BLOCK, ByteSource
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table
 
 END_OF_STREAM = b"\xff\xff\xff\xff\x00\x00\x00\x00"
@@ -53,7 +53,8 @@ def read_parquet(source: ByteSource) -> Table:
     import pyarrow.parquet as pq
 
     try:
-        file = pq.ParquetFile(source.seekable(), pre_buffer=False)
+        # Buffered, or a row group of another writer (a million rows) would be read whole.
+        file = pq.ParquetFile(source.seekable(), pre_buffer=False, buffer_size=BLOCK)
     except (pa.ArrowInvalid, OSError) as error:
         raise _unreadable(source.name, error) from None
     batches = file.iter_batches(batch_size=READ_ROWS, use_threads=False)

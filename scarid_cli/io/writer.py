@@ -121,6 +121,7 @@ class Output:
     """One table on its way out; made before the input is read, so that mistakes show at once."""
 
     def __init__(self, path: str, wanted: str | None = None) -> None:
+        self.path = path
         self.format = format_for(path, wanted)
         self.target = Target(path)
         self._writer: Writer | None = None
@@ -133,11 +134,11 @@ class Output:
         assert self._writer is not None
         self._writer.write(batch)
 
-    def close(self) -> None:
-        """The table is whole: put the end mark and let the file take its place."""
+    def finish(self) -> None:
+        """The table is whole: put the end mark."""
         if self._writer:
             self._writer.close()
-        self.target.commit()
+            self._writer = None
 
     def abort(self) -> None:
         """The table is not whole, and must not look as if it were."""
@@ -163,11 +164,13 @@ def _writer(name: str) -> Any:
 
 @contextlib.contextmanager
 def all_or_none(outputs: list[Output]) -> Iterator[None]:
-    """All outputs are closed when the block ends, or all are aborted when it fails."""
+    """All outputs are finished when the block ends, or all are aborted when it fails."""
     try:
         yield
         for output in outputs:
-            output.close()
+            output.finish()
+        for output in outputs:
+            output.target.commit()
     except BaseException:
         for output in outputs:
             output.abort()

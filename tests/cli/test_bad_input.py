@@ -136,6 +136,7 @@ USAGE = {
     "no such file": (["filter", "nowhere.csv"], "nowhere.csv: no such file"),
     "no such option": (["filter", "--frob"], "No such option '--frob'"),
     "no such command": (["frobnicate"], "No such command 'frobnicate'"),
+    "one output twice": (["identify", "--trace", "-"], "standard output: two tables cannot share"),
     "no such robot": (["trajgen", "--robot", "r2d2"], "unknown robot 'r2d2'; choose emps, scara2"),
     "no such method": (["differentiate", "--method", "magic"], "'magic' is not one of"),
     "no such column": (["filter", "-c", "q7", "LOG"], "no column 'q7'; the table has t, q1"),

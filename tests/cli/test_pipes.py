@@ -60,6 +60,12 @@ def test_a_directory_that_is_not_there_is_74(shell: Shell) -> None:
     assert result.err.count("\n") == 1
 
 
+def test_standard_input_cannot_be_two_tables(shell: Shell) -> None:
+    result = shell("scarid validate --parameters - < $SAMPLES/scara2.parameters.csv")
+    assert result.status == 2
+    assert "standard input can be read only once" in result.err
+
+
 def test_devices_are_written_directly(shell: Shell) -> None:
     assert shell("scarid trajgen -o /dev/null && test -c /dev/null").status == 0
     assert shell("scarid trajgen -o /dev/full").status == 74
