@@ -11,7 +11,13 @@ cdef extern from "math.h" nogil:
 cpdef update(
     const double[:, :, ::1] W, const double[:, ::1] y, double[:, ::1] triangle,
     double[::1] row, double[::1] sums, double[:, ::1] estimates, double forgetting,
+    double floor,
 )
+
+@cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t)
+cdef void forget(
+    double[:, ::1] triangle, double keep, double floor, Py_ssize_t p,
+) noexcept nogil
 
 @cython.locals(
     i=cython.Py_ssize_t, j=cython.Py_ssize_t, x=double, d=double, r=double, c=double, s=double,

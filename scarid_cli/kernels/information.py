@@ -9,13 +9,13 @@ plain least squares; P0^(-1/2) and a forgetting factor make it recursive least s
 from math import sqrt
 
 
-def update(W, y, triangle, row, sums, estimates, forgetting):
+def update(W, y, triangle, row, sums, estimates, forgetting, floor):
     """Take the rows of W and y in, sample by sample; write theta after each to estimates.
 
     W (samples, joints, parameters), y (samples, joints), triangle (parameters, parameters + 1)
     holding R and z, row (parameters + 1): work space, sums: the sum of squares not explained and
     the number of rows, both forgetting, estimates (samples or 0, parameters). All but W and y are
-    changed in place.
+    changed in place. forgetting: per sample. floor: see `forget`.
     """
     p = triangle.shape[0]
     samples = W.shape[0]
@@ -24,16 +24,16 @@ def update(W, y, triangle, row, sums, estimates, forgetting):
         raise ValueError("information: numbers of parameters differ")
     if y.shape[0] != samples or y.shape[1] != joints or len(row) != p + 1 or len(sums) != 2:
         raise ValueError("information: numbers of samples or joints differ")
-    traced = estimates.shape[0] == samples
+    traced = estimates.shape[0] > 0
+    if traced and estimates.shape[0] != samples:
+        raise ValueError("information: numbers of samples and estimates differ")
     keep = sqrt(forgetting)
     squares, weight = float(sums[0]), float(sums[1])
     for k in range(samples):
         if forgetting != 1.0:
             squares *= forgetting
             weight *= forgetting
-            for i in range(p):
-                for j in range(i, p + 1):
-                    triangle[i, j] = float(triangle[i, j]) * keep
+            forget(triangle, keep, floor, p)
         for n in range(joints):
             for j in range(p):
                 row[j] = float(W[k, n, j])
@@ -46,6 +46,18 @@ def update(W, y, triangle, row, sums, estimates, forgetting):
     sums[0], sums[1] = squares, weight
 
 
+def forget(triangle, keep, floor, p):
+    """Let each row of the triangle, an equation for theta, count a little less.
+
+    A row whose diagonal would fall below the floor is kept as it is: without excitation the
+    estimates stay where they are and the covariance stays bounded.
+    """
+    for i in range(p):
+        if abs(float(triangle[i, i])) * keep >= floor:
+            for j in range(i, p + 1):
+                triangle[i, j] = float(triangle[i, j]) * keep
+
+
 def rotate(triangle, row, p):
     """Turn one row into the triangle; what is left in row[p] is its share of the residual."""
     for j in range(p):
@@ -54,6 +66,8 @@ def rotate(triangle, row, p):
             continue
         d = float(triangle[j, j])
         r = sqrt(d * d + x * x)
+        if r == 0.0:  # both squares underflow
+            continue
         c = d / r
         s = x / r
         triangle[j, j] = r

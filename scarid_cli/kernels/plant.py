@@ -105,6 +105,8 @@ def run(reference, noise, log, state, model, control, h, substeps):
     """
     if log.shape[0] != len(reference) or len(noise) != len(reference):
         raise ValueError("plant: lengths differ")
+    if reference.shape[1] != 4 or noise.shape[1] != 2 or log.shape[1] != 10:
+        raise ValueError("plant: numbers of columns are wrong")
     if len(state) != 10 or len(model) != 10 or len(control) != 11:
         raise ValueError("plant: sizes of state, model or control are wrong")
     q1, q2, v1, v2 = float(state[0]), float(state[1]), float(state[2]), float(state[3])
@@ -151,9 +153,9 @@ def run(reference, noise, log, state, model, control, h, substeps):
             q2 += d / 6.0 * (v2 + 2.0 * u2 + 2.0 * x2 + y2)
             v1 += d / 6.0 * (a1 + 2.0 * b1 + 2.0 * c1 + d1)
             v2 += d / 6.0 * (a2 + 2.0 * b2 + 2.0 * c2 + d2)
-            if v1 * s1 < 0.0:
+            if v1 * s1 < 0.0 < float(model[6]):
                 v1 = 0.0
-            if v2 * s2 < 0.0:
+            if v2 * s2 < 0.0 < float(model[7]):
                 v2 = 0.0
         if not (abs(q1) < 1e6 and abs(q2) < 1e6 and abs(v1) < 1e6 and abs(v2) < 1e6):
             return k

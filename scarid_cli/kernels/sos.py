@@ -8,7 +8,7 @@ def filtered(x, y, state, sections):
     place.
     """
     count = len(sections)
-    if len(y) != len(x) or len(state) != count:
+    if len(y) != len(x) or len(state) != count or state.shape[1] != 2 or sections.shape[1] != 5:
         raise ValueError("sos: lengths differ")
     for k in range(len(x)):
         u = float(x[k])

@@ -19,7 +19,11 @@ from typing import ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.recursion import Causal, Derivatives, Recursion
-from scarid_cli.algorithms.settings import require_not_negative, require_positive
+from scarid_cli.algorithms.settings import (
+    require_not_negative,
+    require_positive,
+    require_positive_or_infinite,
+)
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import p2smd
 
@@ -38,7 +42,8 @@ class Differentiator(Causal):
     PRESETS: ClassVar = {"table1": {"leak": 0.0, "cap": inf, "nu_max": inf}}
 
     def __post_init__(self) -> None:
-        require_positive(self, "gamma0", "gamma1", "cap", "nu_max")
+        require_positive(self, "gamma0", "gamma1")
+        require_positive_or_infinite(self, "cap", "nu_max")
         require_not_negative(self, "eta0", "eta1", "eta2", "leak")
 
     def init(self, q: float, h: float) -> Recursion:

@@ -1,6 +1,7 @@
 """Recursive least squares with a constant forgetting factor (paper section 2.3).
 
-In square-root information form: the covariance stays symmetric positive definite.
+In square-root information form: the covariance stays symmetric positive definite, and at most
+1e8 P0 where forgetting meets no excitation.
 forgetting = 1: forgetting factor per sample, in (0, 1].
 p0 = 100: initial covariance, P0 = p0 I.
 """
@@ -10,10 +11,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from scarid_cli.algorithms.settings import require_positive
 from scarid_cli.algorithms.statistics.information import Fit, Information, absorb, prior, solve
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
+
+# What forgetting leaves of the square root of the initial information.
+FADED = 1e-4
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,8 @@ class Estimator:
     def step(
         self, state: Information, W: Array, y: Array, *, trace: bool
     ) -> tuple[Information, Array]:
-        return absorb(state, W, y, forgetting=self.forgetting, trace=trace)
+        floor = FADED / np.sqrt(self.p0)
+        return absorb(state, W, y, forgetting=self.forgetting, floor=floor, trace=trace)
 
     def fit(self, state: Information) -> Fit:
         return solve(state)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.terms import PLANAR_TERMS
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.kernels import plant
@@ -78,11 +79,9 @@ class ClosedLoop:
         position_seed, torque_seed = np.random.SeedSequence(self.seed).spawn(2)
         q = padded(q)
         resolution = padded(self.encoder_resolution)
-        reading = np.where(
-            resolution > 0.0,
-            np.round(q / np.where(resolution > 0.0, resolution, 1.0)) * resolution,
-            q,
-        )
+        steps = np.where(resolution > 0.0, resolution, 1.0)
+        # Rounded as the kernel does, or the first velocity would be that of a jump.
+        reading = np.where(resolution > 0.0, np.floor(q / steps + 0.5) * steps, q)
         return State(
             np.concatenate((q, np.zeros(2), reading, np.zeros(4))),
             np.random.default_rng(position_seed),
@@ -135,12 +134,11 @@ def mechanism(robot: Robot) -> Array:
     """The kernel's model of a robot, at its a priori values."""
     joints = len(robot.joints)
     terms = {parameter.term for parameter in robot.parameters}
-    planar = {"ZZ1R", "ZZ2", "L1MX2", "L1MY2"}
     friction = [
         robot.value(term, joint) for term in ("viscous", "coulomb", "offset") for joint in (1, 2)
     ]
-    if joints == 2 and planar <= terms and "mass" not in terms:
-        inertia = [robot.value(term) for term in ("ZZ1R", "ZZ2", "L1MX2", "L1MY2")]
+    if joints == 2 and terms >= set(PLANAR_TERMS) and "mass" not in terms:
+        inertia = [robot.value(term) for term in PLANAR_TERMS]
     elif joints == 1 and "mass" in terms:
         # The second joint is there for the kernel only: L1MX2 = -ZZ2 uncouples it (M12 = 0).
         inertia = [robot.value("mass", 1) + 1.0, 1.0, -1.0, 0.0]

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.robots.terms import TERMS
+from scarid_cli.algorithms.robots.terms import PLANAR_JOINTS, PLANAR_TERMS, TERMS
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
@@ -119,20 +119,28 @@ def load(name: str) -> Robot:
         raise UsageFault(f"unknown robot {name!r}; choose {', '.join(built_in())}, or a .toml file")
     try:
         return _robot(name, tomllib.loads(path.read_text("utf-8")))
-    except (KeyError, TypeError, tomllib.TOMLDecodeError) as error:
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise UsageFault(f"{name}: not a robot description: {_reason(error)}") from None
 
 
 def _robot(name: str, document: dict[str, Any]) -> Robot:
-    joints = tuple(Joint(**joint) for joint in document["joint"])
-    parameters = tuple(Parameter(**parameter) for parameter in document["parameter"])
+    joints = tuple(Joint(**_numbers(joint, "type")) for joint in document["joint"])
+    parameters = tuple(
+        Parameter(**_numbers(parameter, "name", "term", "unit"))
+        for parameter in document["parameter"]
+    )
     for joint in joints:
         if joint.type not in UNITS:
             raise UsageFault(f"{name}: joint type {joint.type!r}; choose {' or '.join(UNITS)}")
     for p in parameters:
         if p.term not in TERMS:
             raise UsageFault(f"{name}: {p.name} has term {p.term!r}; choose {', '.join(TERMS)}")
-        if not 0 <= p.joint <= len(joints):
+        if len(joints) < PLANAR_JOINTS and p.term in PLANAR_TERMS:
+            raise UsageFault(
+                f"{name}: {p.name} has term {p.term}, which needs {PLANAR_JOINTS} joints"
+            )
+        first = 0 if p.term in PLANAR_TERMS else 1
+        if not first <= p.joint <= len(joints):
             raise UsageFault(f"{name}: {p.name} is on joint {p.joint} of {len(joints)}")
     control = document.get("control")
     return Robot(
@@ -142,6 +150,14 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
         parameters=parameters,
         control=_control(control, len(joints)) if control else None,
     )
+
+
+def _numbers(entry: dict[str, Any], *texts: str) -> dict[str, Any]:
+    """The entry, all of whose values but those of `texts` must be numbers."""
+    for key, value in entry.items():
+        if key not in texts and not isinstance(value, int | float):
+            raise TypeError(f"{key} is {value!r}, not a number")
+    return entry
 
 
 def _control(gains: dict[str, Any], joints: int) -> Control:

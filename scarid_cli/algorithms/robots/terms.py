@@ -66,6 +66,10 @@ def l1my2(q: Array, dq: Array, ddq: Array, _joint: int) -> Column:
     }
 
 
+# The two-link planar arm; these terms concern both its joints.
+PLANAR_TERMS = ("ZZ1R", "ZZ2", "L1MX2", "L1MY2")
+PLANAR_JOINTS = 2
+
 TERMS: dict[str, Term] = {
     "viscous": viscous,
     "coulomb": coulomb,

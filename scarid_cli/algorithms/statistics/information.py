@@ -11,7 +11,7 @@ from scarid_cli.kernels import information
 
 
 class NotIdentifiableError(ValueError):
-    """The data leave a combination of parameters free; `direction` is it (one number each)."""
+    """The data leave a combination of parameters free; `direction` is it, of unit length."""
 
     def __init__(self, direction: Array) -> None:
         super().__init__("the data do not determine all parameters")
@@ -66,24 +66,33 @@ def prior(estimates: Array, p0: float) -> Information:
 
 
 def absorb(
-    state: Information, W: Array, y: Array, *, forgetting: float = 1.0, trace: bool = False
+    state: Information,
+    W: Array,
+    y: Array,
+    *,
+    forgetting: float = 1.0,
+    floor: float = 0.0,
+    trace: bool = False,
 ) -> tuple[Information, Array]:
-    """Take rows in; with `trace`, also the estimates after each sample."""
+    """Take rows in; with `trace`, also the estimates after each sample.
+
+    `floor` is the least that forgetting leaves on the diagonal of the triangle.
+    """
     samples, _, parameters = W.shape
     triangle = state.triangle.copy()
     sums = np.array([state.residual, state.weight])
     estimates = np.empty((samples if trace else 0, parameters))
-    information.update(W, y, triangle, np.empty(parameters + 1), sums, estimates, forgetting)
+    work = np.empty(parameters + 1)
+    information.update(W, y, triangle, work, sums, estimates, forgetting, floor)
     return Information(triangle, float(sums[0]), float(sums[1])), estimates
 
 
 def solve(state: Information) -> Fit:
-    """Estimates and statistics; NotIdentifiableError if the triangle is singular."""
+    """Estimates and statistics; NotIdentifiableError if the triangle is singular to rounding."""
     p = state.parameters
     R, z = state.triangle[:, :p], state.triangle[:, p]
-    singular, directions = np.linalg.svd(R)[1:]
-    if not singular[-1] > singular[0] * p * np.finfo(float).eps:
-        raise NotIdentifiableError(directions[-1])
+    _check_rank(R, max(p, state.weight))
+    singular = np.linalg.svd(R, compute_uv=False)
     inverse = np.linalg.inv(R)
     freedom = state.weight - p
     return Fit(
@@ -92,3 +101,14 @@ def solve(state: Information) -> Fit:
         variance=state.residual / freedom if freedom > 0 else float("nan"),
         condition=float(singular[0] / singular[-1]),
     )
+
+
+def _check_rank(R: Array, rows: float) -> None:
+    """By the singular values of R with columns of unit length, so that units do not matter."""
+    length = np.sqrt((R * R).sum(axis=0))
+    if not np.all(length > 0.0):
+        raise NotIdentifiableError(np.where(length > 0.0, 0.0, 1.0))
+    _, singular, directions = np.linalg.svd(R / length)
+    if not singular[-1] > singular[0] * rows * np.finfo(float).eps:
+        free = directions[-1] / length
+        raise NotIdentifiableError(free / np.linalg.norm(free))

@@ -42,7 +42,7 @@ class Quality:
         count, _, about, errors, squares = sums
         with np.errstate(divide="ignore", invalid="ignore"):
             return cls(
-                r2=float(1.0 - errors / about),
+                r2=float(1.0 - errors / about) if about > 0.0 else float("nan"),
                 rmse=float(np.sqrt(errors / count)),
                 relative_error=float(100.0 * np.sqrt(errors / squares)),
                 samples=int(count),

@@ -7,6 +7,7 @@ closed form: 15/8 D/T and 10/sqrt(3) D/T^2 for a distance D in a time T.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 
@@ -125,6 +126,8 @@ def _fit(lengths: Array, total: float, shortest: float, longest: float) -> Array
 def through(path: Path, bounds: Bounds, tolerance: float = 1e-9) -> Path:
     """The path itself, if it is at zero at both ends and within the bounds (eq. 28)."""
     slack = 1.0 + tolerance
+    if len(path.times) < 2 or np.any(np.diff(path.times) <= 0.0):
+        raise UsageFault("give two via points or more, with times that increase")
     for end, where in ((0, "begin"), (-1, "end")):
         if np.any(np.abs(path.points[end]) > tolerance):
             raise UsageFault(f"the via points must {where} at zero in every joint (eq. 28)")
@@ -150,5 +153,6 @@ def _too_fast(k: int, T: float, joint: int, distance: float, bounds: Bounds) -> 
         f"segment {k + 1}: joint {joint + 1} would reach velocity "
         f"{PEAK_VELOCITY * distance / T:.4g} and acceleration "
         f"{PEAK_ACCELERATION * distance / T**2:.4g}, its bounds are {bounds.dq[joint]:g} and "
-        f"{bounds.ddq[joint]:g}; give the segment at least {needed:.4g} s instead of {T:.4g} s"
+        f"{bounds.ddq[joint]:g}; give the segment at least {ceil(needed * 1e4) / 1e4} s "
+        f"instead of {T:.4g} s"
     )

@@ -1,0 +1,254 @@
+"""Estimators against numpy.linalg and the textbook's recursion."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from unit.support import cuts
+
+from scarid_cli.algorithms.estimators import ls, rls
+from scarid_cli.algorithms.registry import ESTIMATORS
+from scarid_cli.algorithms.statistics.information import Fit, Information, NotIdentifiableError
+from scarid_cli.arrays import Array
+from scarid_cli.errors import UsageFault
+
+THETA = np.array([3.0, -2.0, 0.5, 10.0])
+P = len(THETA)
+
+
+def data(samples: int, joints: int = 2, noise: float = 0.1, seed: int = 0) -> tuple[Array, Array]:
+    """Rows of a regression with known parameters: W (samples, joints, P) and y."""
+    rng = np.random.default_rng(seed)
+    W = rng.standard_normal((samples, joints, P))
+    return W, W @ THETA + noise * rng.standard_normal((samples, joints))
+
+
+def fitted(estimator: Any, W: Array, y: Array, prior: Array | None = None) -> Fit:
+    start = np.zeros(W.shape[2]) if prior is None else prior
+    state, _ = estimator.step(estimator.init(start), W, y, trace=False)
+    return estimator.fit(state)
+
+
+# Least squares
+
+
+@pytest.mark.parametrize(("samples", "joints"), [(2, 2), (50, 1), (500, 3)])
+def test_ls_agrees_with_lstsq(samples: int, joints: int) -> None:
+    """Estimates, residual variance, covariance s^2 (W'W)^-1 and condition number."""
+    W, y = data(samples, joints)
+    fit = fitted(ls.Estimator(), W, y)
+    flat = W.reshape(-1, P)
+    expected, _, _, singular = np.linalg.lstsq(flat, y.ravel())
+    np.testing.assert_allclose(fit.estimates, expected, rtol=1e-11)
+    np.testing.assert_allclose(fit.unit_covariance, np.linalg.inv(flat.T @ flat), rtol=1e-8)
+    assert fit.condition == pytest.approx(singular[0] / singular[-1], rel=1e-11)
+    freedom = samples * joints - P
+    if freedom == 0:
+        assert np.isnan(fit.variance)
+        return
+    residual = y.ravel() - flat @ expected
+    assert fit.variance == pytest.approx(residual @ residual / freedom, rel=1e-11)
+    errors = np.sqrt(fit.variance * np.diag(np.linalg.inv(flat.T @ flat)))
+    np.testing.assert_allclose(fit.standard_errors(), errors, rtol=1e-9)
+    unit = fit.standard_errors(unit_variance=True)
+    np.testing.assert_allclose(unit, errors / np.sqrt(fit.variance), rtol=1e-9)
+
+
+def test_ls_keeps_the_digits_that_normal_equations_lose() -> None:
+    """At a condition number of 1e7: eps times it is 2e-9, eps times its square is 2 %."""
+    rng = np.random.default_rng(0)
+    left, right = (np.linalg.qr(rng.standard_normal(shape))[0] for shape in ((2000, P), (P, P)))
+    W = left * np.logspace(0, -7, P) @ right.T
+    y = W @ THETA
+    fit = fitted(ls.Estimator(), W[:, None, :], y[:, None])
+    normal = np.linalg.solve(W.T @ W, W.T @ y)
+    assert fit.condition == pytest.approx(1e7, rel=1e-7)
+    np.testing.assert_allclose(fit.estimates, THETA, rtol=1e-7)
+    assert np.abs(normal / THETA - 1.0).max() > 1e-5, "not a test: normal equations do as well"
+
+
+def test_ls_cares_for_no_prior() -> None:
+    W, y = data(50)
+    far = fitted(ls.Estimator(), W, y, prior=1e6 * np.ones(P))
+    np.testing.assert_array_equal(far.estimates, fitted(ls.Estimator(), W, y).estimates)
+
+
+# Recursive least squares
+
+
+def textbook(W: Array, y: Array, forgetting: float, prior: Array, p0: float) -> tuple[Array, Array]:
+    """The covariance form of section 2.3: estimates after each sample, and the last covariance."""
+    theta, covariance = prior.copy(), p0 * np.eye(len(prior))
+    trace = []
+    for rows, torques in zip(W, y, strict=True):
+        covariance = covariance / forgetting  # once a sample, however many joints it has
+        for w, torque in zip(rows, torques, strict=True):
+            gain = covariance @ w / (1.0 + w @ covariance @ w)
+            theta = theta + gain * (torque - w @ theta)
+            covariance = covariance - np.outer(gain, w @ covariance)
+        trace.append(theta)
+    return np.array(trace), covariance
+
+
+@pytest.mark.parametrize("forgetting", [1.0, 0.98])
+@pytest.mark.parametrize("joints", [1, 2])
+def test_rls_is_the_recursion_of_the_textbook(joints: int, forgetting: float) -> None:
+    W, y = data(300, joints)
+    prior = np.array([1.0, 0.0, -1.0, 2.0])
+    estimator = rls.Estimator(forgetting, p0=100.0)
+    state, trace = estimator.step(estimator.init(prior), W, y, trace=True)
+    expected, covariance = textbook(W, y, forgetting, prior, p0=100.0)
+    fit = estimator.fit(state)
+    # The textbook's form loses P0 times some eps; the first samples are the worst.
+    np.testing.assert_allclose(trace, expected, rtol=1e-10, atol=1e-11)
+    np.testing.assert_allclose(fit.estimates, trace[-1], rtol=1e-12)
+    scale = np.abs(covariance).max()
+    np.testing.assert_allclose(fit.unit_covariance, covariance, rtol=1e-9, atol=1e-11 * scale)
+
+
+def test_rls_that_knows_and_forgets_nothing_is_ls() -> None:
+    W, y = data(500)
+    recursive = fitted(rls.Estimator(forgetting=1.0, p0=1e12), W, y)
+    plain = fitted(ls.Estimator(), W, y)
+    np.testing.assert_allclose(recursive.estimates, plain.estimates, rtol=1e-9)
+    np.testing.assert_allclose(recursive.unit_covariance, plain.unit_covariance, rtol=1e-9)
+    assert recursive.variance == pytest.approx(plain.variance, rel=1e-9)
+
+
+@pytest.mark.parametrize("forgetting", [1.0, 0.98])
+def test_rls_keeps_its_initial_parameters_without_excitation(forgetting: float) -> None:
+    prior = np.array([1.0, -2.0, 3.0, 0.0])
+    estimator = rls.Estimator(forgetting, p0=4.0)
+    W, y = np.zeros((50, 2, P)), np.zeros((50, 2))
+    state, trace = estimator.step(estimator.init(prior), W, y, trace=True)
+    np.testing.assert_allclose(trace, np.tile(prior, (50, 1)), rtol=1e-14)
+    # Forgetting is forgetting all the same.
+    covariance = estimator.fit(state).unit_covariance
+    np.testing.assert_allclose(covariance, 4.0 / forgetting**50 * np.eye(P), rtol=1e-12)
+
+
+def test_rls_follows_a_parameter_that_changes_if_it_forgets() -> None:
+    W, _ = data(2000)
+    y = W @ THETA
+    y[1000:] *= 2.0
+    last = {f: fitted(rls.Estimator(f), W, y).estimates for f in (1.0, 0.98)}
+    np.testing.assert_allclose(last[0.98], 2.0 * THETA, rtol=1e-6)
+    np.testing.assert_allclose(last[1.0], 1.5 * THETA, atol=0.5)  # the mean of before and after
+
+
+def test_rls_covariance_stays_positive_definite() -> None:
+    """With forgetting, and a column that is hardly ever excited, where the plain form gives up."""
+    W, y = data(100_000, joints=1)
+    W[1000:, :, 3] *= 1e-3
+    estimator = rls.Estimator(forgetting=0.95)
+    state, _ = estimator.step(estimator.init(np.zeros(P)), W, y, trace=False)
+    covariance = estimator.fit(state).unit_covariance
+    np.testing.assert_array_equal(covariance, covariance.T)
+    assert np.all(np.linalg.eigvalsh(covariance) > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("settings", "complaint"),
+    [
+        ({"forgetting": 0.0}, "forgetting must be positive"),
+        ({"forgetting": -0.5}, "forgetting must be positive"),
+        ({"forgetting": 1.01}, "forgetting must not exceed 1"),
+        ({"forgetting": np.nan}, "forgetting must"),
+        ({"p0": 0.0}, "p0 must be positive"),
+    ],
+)
+def test_setting_without_sense_is_refused(settings: dict[str, float], complaint: str) -> None:
+    with pytest.raises(UsageFault, match=complaint):
+        rls.Estimator(**settings)
+
+
+# Both
+
+ROWS = 40
+
+every_estimator = pytest.mark.parametrize(
+    "estimator",
+    [ESTIMATORS.load(name)() for name in ESTIMATORS.names] + [rls.Estimator(forgetting=0.97)],
+    ids=repr,
+)
+
+
+def contents(state: Information) -> list[Any]:
+    return [state.triangle.tolist(), state.residual, state.weight]
+
+
+@every_estimator
+@given(chunks=cuts(ROWS), trace=st.booleans())
+@settings(max_examples=30, deadline=None)
+def test_chunks_do_not_change_a_bit(estimator: Any, chunks: list[slice], *, trace: bool) -> None:
+    W, y = data(ROWS)
+    trace = trace and estimator.RECURSIVE
+    whole, expected = estimator.step(estimator.init(THETA), W, y, trace=trace)
+    state, traces = estimator.init(THETA), []
+    for chunk in chunks:
+        state, part = estimator.step(state, W[chunk], y[chunk], trace=trace)
+        traces.append(part)
+    assert contents(state) == contents(whole)
+    np.testing.assert_array_equal(np.concatenate(traces), expected)
+
+
+@every_estimator
+def test_step_leaves_its_state_alone(estimator: Any) -> None:
+    W, y = data(ROWS)
+    state = estimator.init(THETA)
+    first, second = (estimator.step(state, W, y, trace=False)[0] for _ in range(2))
+    assert contents(first) == contents(second)
+
+
+@every_estimator
+def test_estimates_come_near_the_truth(estimator: Any) -> None:
+    W, y = data(5000)
+    fit = fitted(estimator, W, y)
+    assert np.all(np.abs(fit.estimates - THETA) < 5.0 * fit.standard_errors())
+
+
+# Identifiability
+
+
+@pytest.mark.parametrize("samples", [20, 1000, 100_000])
+@pytest.mark.parametrize("seed", range(5))
+def test_direction_that_the_data_leave_free_is_named(samples: int, seed: int) -> None:
+    """Column 3 is 2 times column 0 less column 1: theta may move along (2, -1, 0, -1)."""
+    W, _ = data(samples, seed=seed)
+    W[:, :, 3] = 2.0 * W[:, :, 0] - W[:, :, 1]
+    with pytest.raises(NotIdentifiableError) as refused:
+        fitted(ls.Estimator(), W, W @ THETA)
+    direction = refused.value.direction
+    expected = np.array([2.0, -1.0, 0.0, -1.0]) / np.sqrt(6.0)
+    np.testing.assert_allclose(direction * np.sign(direction[0]), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("W", "direction"),
+    [
+        (np.zeros((10, 1, 2)), None),
+        (np.ones((1, 1, 2)), [1.0, -1.0]),
+        (np.tile([1.0, 0.0], (10, 1, 1)), [0.0, 1.0]),
+    ],
+    ids=["no motion", "too few rows", "a parameter without effect"],
+)
+def test_data_that_say_too_little_are_not_solved(W: Array, direction: list[float] | None) -> None:
+    with pytest.raises(NotIdentifiableError) as refused:
+        fitted(ls.Estimator(), W, np.ones(W.shape[:2]))
+    if direction is not None:
+        free = np.array(direction) / np.linalg.norm(direction)
+        assert abs(free @ refused.value.direction) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("tiny", [1e-100, 1e-170, 1e-310])
+def test_tiny_regressor_does_no_harm(tiny: float) -> None:
+    """What a filter leaves of a velocity at standstill: its square underflows to nothing."""
+    W, y = data(50)
+    W[0] = tiny
+    y[0] = 0.0
+    fit = fitted(ls.Estimator(), W, y)
+    np.testing.assert_allclose(fit.estimates, fitted(ls.Estimator(), W[1:], y[1:]).estimates)

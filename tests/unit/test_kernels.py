@@ -1,0 +1,199 @@
+"""Every kernel runs compiled, and gives the bits of its interpreted source."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import scarid_cli.kernels
+from scarid_cli.algorithms.filters.butterworth import Butterworth
+from scarid_cli.algorithms.plants.loop import mechanism
+from scarid_cli.algorithms.robots.description import load
+
+FOLDER = Path(scarid_cli.kernels.__file__).parent
+NAMES = sorted(path.stem for path in FOLDER.glob("*.pxd"))
+
+Arguments = list[Any]
+
+
+def compiled(name: str) -> ModuleType:
+    return importlib.import_module(f"scarid_cli.kernels.{name}")
+
+
+def interpreted(name: str) -> ModuleType:
+    """The same source, run by Python."""
+    spec = importlib.util.spec_from_file_location(f"interpreted_{name}", FOLDER / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def motion(rng: np.random.Generator, samples: int = 400) -> np.ndarray:
+    """A random walk in steps of a 13-bit encoder: equal neighbours do occur."""
+    return 2.0 * np.pi / 2**13 * np.cumsum(rng.integers(-3, 4, samples)).astype(float)
+
+
+def p2smd(rng: np.random.Generator) -> Arguments:
+    q = motion(rng)
+    gains = np.array([25.0, 20.0, 0.1, 0.0, 2.0, 1.0])
+    return [q, np.empty_like(q), np.empty_like(q), rng.random(6), gains, 0.005]
+
+
+def p2smd_literal(rng: np.random.Generator) -> Arguments:
+    arguments = p2smd(rng)
+    arguments[4] = np.array([25.0, 20.0, 0.0, -np.inf, np.inf, np.inf])
+    return arguments
+
+
+def smd2(rng: np.random.Generator) -> Arguments:
+    q = motion(rng)
+    return [q, np.empty_like(q), np.empty_like(q), rng.random(3), 10.0 * rng.random(3), 0.005]
+
+
+def astd(rng: np.random.Generator) -> Arguments:
+    q = motion(rng)
+    gains = np.array([1.0, 50.0, 0.1, 0.0015, 0.01])
+    return [q, np.empty_like(q), rng.random(3), gains, 0.005]
+
+
+def fir(rng: np.random.Generator) -> Arguments:
+    q = motion(rng)
+    return [q, np.empty_like(q), rng.standard_normal(12), rng.standard_normal(11), 0.005]
+
+
+def sos(rng: np.random.Generator) -> Arguments:
+    q = motion(rng)
+    sections = Butterworth(8.0, order=5).sections(0.005)
+    return [q, np.empty_like(q), rng.standard_normal((3, 2)), sections]
+
+
+def information(
+    rng: np.random.Generator, forgetting: float = 1.0, *, trace: bool = False
+) -> Arguments:
+    samples, joints, p = 60, 2, 5
+    W = rng.standard_normal((samples, joints, p))
+    W[rng.random(W.shape) < 0.3] = 0.0  # a regressor is full of them
+    y = rng.standard_normal((samples, joints))
+    triangle = np.column_stack((0.1 * np.eye(p), rng.standard_normal(p)))
+    estimates = np.empty((samples if trace else 0, p))
+    return [W, y, triangle, np.empty(p + 1), rng.random(2), estimates, forgetting, 0.05]
+
+
+def moments(rng: np.random.Generator) -> Arguments:
+    return [rng.standard_normal(100), rng.standard_normal(100), np.zeros(5)]
+
+
+def plant(rng: np.random.Generator, *, resolution: float = 1e-5) -> Arguments:
+    """Two joints with friction that follow a reference in steps: they slide, stop and stick."""
+    ticks = 2000
+    reference = np.zeros((ticks, 4))
+    reference[:, :2] = np.repeat(rng.uniform(-0.3, 0.3, (2, 2)), 1000, axis=0)
+    gains = [800.0, 25.0, 100.0, 2.5, 5.0, 0.5, 30.0, 2.0, resolution, resolution, 0.7]
+    return [
+        reference,
+        1e-6 * rng.standard_normal((ticks, 2)),
+        np.empty((ticks, 10)),
+        np.concatenate((0.1 * rng.standard_normal(4), np.zeros(6))),
+        mechanism(load("scara2")),
+        np.array(gains),
+        0.001,
+        4,
+    ]
+
+
+CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = {
+    "p2smd": ("p2smd", "differentiate", p2smd),
+    "p2smd, literal law": ("p2smd", "differentiate", p2smd_literal),
+    "smd2": ("smd2", "differentiate", smd2),
+    "astd": ("astd", "differentiate", astd),
+    "fir": ("fir", "differentiate", fir),
+    "sos": ("sos", "filtered", sos),
+    "information": ("information", "update", information),
+    "information, trace": ("information", "update", lambda rng: information(rng, trace=True)),
+    "information, forgetting": (
+        "information",
+        "update",
+        lambda rng: information(rng, 0.97, trace=True),
+    ),
+    "moments": ("moments", "accumulate", moments),
+    "plant": ("plant", "run", plant),
+    "plant, perfect encoder": ("plant", "run", lambda rng: plant(rng, resolution=0.0)),
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_kernel_is_compiled(name: str) -> None:
+    file = compiled(name).__file__ or ""
+    assert file.endswith(".so"), (
+        f"kernel {name} runs interpreted, from {file}: python setup.py build_ext --inplace"
+    )
+
+
+def test_every_kernel_is_compared_with_its_source() -> None:
+    sources = {path.stem for path in FOLDER.glob("*.py")} - {"__init__"}
+    assert sources == set(NAMES), "a kernel without its .pxd is not compiled"
+    assert {kernel for kernel, _, _ in CASES.values()} == sources
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("case", CASES)
+def test_compiled_and_interpreted_bits_are_equal(case: str, seed: int) -> None:
+    kernel, function, arguments = CASES[case]
+    ours, theirs = (arguments(np.random.default_rng(seed)) for _ in range(2))
+    fast = getattr(compiled(kernel), function)(*ours)
+    slow = getattr(interpreted(kernel), function)(*theirs)
+    assert fast == slow
+    for mine, other in zip(ours, theirs, strict=True):
+        np.testing.assert_array_equal(mine, other)
+
+
+@pytest.mark.parametrize("case", ["plant", "plant, perfect encoder"])
+def test_plant_case_does_slide_and_stick(case: str) -> None:
+    """Else the comparison of bits above would leave out half of the kernel."""
+    arguments = CASES[case][2](np.random.default_rng(0))
+    assert compiled("plant").run(*arguments) == len(arguments[0])
+    still = arguments[2][:, 6:8] == 0.0
+    assert still.any(axis=0).all()
+    assert not still.all(axis=0).any()
+
+
+def wrong_lengths() -> Iterator[Any]:
+    """Each array of each kernel, along each of its axes, one too short or too long."""
+    for case in ("p2smd", "smd2", "astd", "fir", "sos", "information, trace", "moments", "plant"):
+        for index, argument in enumerate(CASES[case][2](np.random.default_rng(0))):
+            for axis in range(np.ndim(argument)):
+                for change in (-1, 1):
+                    label = f"{case} argument {index} axis {axis} {change:+d}"
+                    yield pytest.param(case, index, axis, change, id=label)
+
+
+def resized(array: np.ndarray, axis: int, change: int) -> np.ndarray:
+    """Zeros of the array's shape but for one axis, within a larger piece of memory.
+
+    A kernel that misses the wrong length reads and writes beyond it, but harms nothing.
+    """
+    shape = list(array.shape)
+    shape[axis] += change
+    memory = np.zeros(2 * array.size + 64)
+    return memory[: int(np.prod(shape))].reshape(shape)
+
+
+@pytest.mark.parametrize("load_kernel", [compiled, interpreted])
+@pytest.mark.parametrize(("case", "index", "axis", "change"), list(wrong_lengths()))
+def test_wrong_length_is_refused(
+    case: str, index: int, axis: int, change: int, load_kernel: Callable[[str], ModuleType]
+) -> None:
+    kernel, function, make = CASES[case]
+    arguments = make(np.random.default_rng(0))
+    arguments[index] = resized(arguments[index], axis, change)
+    with pytest.raises(ValueError, match=r"lengths|numbers|sizes"):
+        getattr(load_kernel(kernel), function)(*arguments)

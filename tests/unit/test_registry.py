@@ -1,0 +1,104 @@
+"""A folder is a registry, and what a method says of its settings is what they are."""
+
+from __future__ import annotations
+
+import importlib
+import re
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import pytest
+
+from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS, FOLDER, Registry
+
+REGISTRIES = {"differentiators": DIFFERENTIATORS, "estimators": ESTIMATORS}
+CHOICES = [
+    pytest.param(registry, name, id=name)
+    for registry in REGISTRIES.values()
+    for name in registry.names
+]
+every_choice = pytest.mark.parametrize(("registry", "name"), CHOICES)
+
+# A line such as `leak = 0.1 [1/s], cap = 2: ...` or `eta0 = eta1 = eta2 = 0: ...`.
+NAME, NUMBER = r"[a-z]\w*", r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf"
+GROUP = rf"(?:{NAME} = )+(?:{NUMBER})(?: \[[^\]]+\])?"
+LINE = re.compile(rf"^({GROUP}(?:, {GROUP})*):", re.MULTILINE)
+
+
+def documented(docstring: str) -> dict[str, float]:
+    """The settings that the lines of a docstring begin with, and their defaults."""
+    found: dict[str, float] = {}
+    for line in LINE.finditer(docstring):
+        for group in re.finditer(rf"((?:{NAME} = )+)({NUMBER})", line[1]):
+            for name in re.findall(NAME, group[1]):
+                assert name not in found, f"{name} is described twice"
+                found[name] = float(group[2])
+    return found
+
+
+def module_of(registry: Registry, name: str) -> Any:
+    return importlib.import_module(registry.load(name).__module__)
+
+
+@pytest.mark.parametrize("folder", REGISTRIES)
+def test_names_are_those_of_the_modules(folder: str) -> None:
+    stems = {path.stem for path in (FOLDER / folder).glob("*.py")} - {"__init__"}
+    names = REGISTRIES[folder].names
+    assert names == sorted(names)
+    assert {name.replace("-", "_") for name in names} == {stem.lstrip("_") for stem in stems}
+    assert len(names) == len(stems)
+
+
+def test_methods_of_the_paper_are_there() -> None:
+    assert {"p2smd", "2smd", "astd", "ed-fir"} <= set(DIFFERENTIATORS.names)
+    assert {"ls", "rls"} <= set(ESTIMATORS.names)
+
+
+@every_choice
+def test_choice_is_a_frozen_dataclass_of_its_module(registry: Registry, name: str) -> None:
+    method = registry.load(name)
+    assert method.__name__ == registry.class_name
+    assert is_dataclass(method)
+    assert method.__dataclass_params__.frozen
+
+
+@every_choice
+def test_description_is_the_docstring(registry: Registry, name: str) -> None:
+    described = registry.describe(name)
+    assert described
+    assert described.split() == (module_of(registry, name).__doc__ or "").split()
+
+
+@every_choice
+def test_docstring_gives_every_setting_with_its_default(registry: Registry, name: str) -> None:
+    defaults = {field.name: field.default for field in fields(registry.load(name))}
+    assert documented(registry.describe(name)) == defaults
+
+
+@every_choice
+def test_method_without_settings_says_so(registry: Registry, name: str) -> None:
+    none = not fields(registry.load(name))
+    assert ("No settings." in registry.describe(name)) == none
+
+
+@every_choice
+def test_presets_set_what_there_is_to_set(registry: Registry, name: str) -> None:
+    method = registry.load(name)
+    settings = {field.name for field in fields(method)}
+    for preset, values in getattr(method, "PRESETS", {}).items():
+        assert values.keys() <= settings, preset
+        made = method(**values)
+        assert {key: getattr(made, key) for key in values} == values
+
+
+def test_documented_settings_are_told_from_rules_and_prose() -> None:
+    """The parser above, on what a docstring may say."""
+    text = """A method (paper eq. 1). Rule: eta = 2 L^(1/3), gamma = 1 / (wanted delay): try it.
+
+    leak = 0.1 [1/s], cap = 2, nu_max = 1e-3 [s]: bounds. The printed eta = 1.5 is not meant.
+    eta0 = eta1 = 0: nothing.
+    eta = 1.5 L^(1/2): a rule again.
+    """
+    lines = "\n".join(line.strip() for line in text.splitlines())
+    expected = {"leak": 0.1, "cap": 2.0, "nu_max": 1e-3, "eta0": 0.0, "eta1": 0.0}
+    assert documented(lines) == expected
