@@ -61,7 +61,7 @@ class Job:
         if self._verbose:
             rate = f"{1.0 / table.meta.period:.6g} Hz, " if table.meta.period else ""
             self.say(f"{source.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
-        return table
+        return _counted(table, self._quiet)
 
     def read_for(self, path: str, kind: str, robot: str | None) -> tuple[Table, Robot]:
         """A checked table with every column that the robot's joints need of this kind."""
@@ -74,8 +74,8 @@ class Job:
         return table, arm
 
     def write(self, table: Table, output: Output) -> None:
-        """Send a table out, with a progress line where a person waits."""
-        write_table(_counted(table, self._quiet), output)
+        """Send a table out."""
+        write_table(table, output)
 
     def recorded(self, table: Table) -> Table:
         """The table with this command at the end of its history."""
