@@ -77,7 +77,7 @@ def command(
     with job(rest) as run:
         out = run.output(rest["output"], rest["format"])
         side = run.output(trace) if trace else None
-        table, arm = run.read_for(file, "motion", robot)
+        table, arm = run.read_for(file, "motion", robot, torques=True)
         if initial == "apriori":
             start = arm.apriori
         elif initial:

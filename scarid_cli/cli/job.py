@@ -63,12 +63,15 @@ class Job:
             self.say(f"{source.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
         return _counted(table, self._quiet)
 
-    def read_for(self, path: str, kind: str, robot: str | None) -> tuple[Table, Robot]:
+    def read_for(
+        self, path: str, kind: str, robot: str | None, *, torques: bool = False
+    ) -> tuple[Table, Robot]:
         """A checked table with every column that the robot's joints need of this kind."""
         table = self.read(path, kind)
         arm = robot_of(robot, table)
         joints = range(1, len(arm.joints) + 1)
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
+        fields += ["tau{i}"] if torques else []
         columns = [name.replace("{i}", str(i)) for name in fields for i in joints]
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
         return table, arm

@@ -38,6 +38,6 @@ def command(
         out = run.output(rest["output"], rest["format"])
         side = run.output(predictions) if predictions else None
         known = run.read(parameters, "parameters")
-        table, arm = run.read_for(file, "motion", robot or known.meta.robot)
+        table, arm = run.read_for(file, "motion", robot or known.meta.robot, torques=True)
         theta = stage.estimates(known, arm)
         run.write(stage.validate(run.recorded(table), arm, theta, predictions=side), out)

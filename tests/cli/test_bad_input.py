@@ -98,6 +98,19 @@ def test_a_motion_without_derivatives_points_to_differentiate(scarid: Run, sampl
     assert "estimate it with `scarid differentiate`" in result.err
 
 
+@pytest.mark.parametrize("command", ["identify", "validate"])
+def test_a_motion_without_torques_is_told(
+    command: str, scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    log = tmp_path / "log.csv"
+    log.write_text("t,q1,q2,dq1,dq2,ddq1,ddq2\n0,1,2,3,4,5,6\n0.1,1,2,3,4,5,6\n")
+    option = ["--parameters", samples / "scara2.parameters.csv"] if command == "validate" else []
+    result = scarid(command, *option, log)
+    assert result.status == 65
+    assert "column tau1: found the columns t, q1, q2" in result.err
+    assert result.err.count("\n") == 1
+
+
 def test_a_robot_with_more_joints_than_the_log_is_told(scarid: Run, tmp_path: Path) -> None:
     log = tmp_path / "log.csv"
     log.write_text("t,q1,dq1,ddq1,tau1\n0,1,2,3,4\n0.1,1,2,3,4\n")
