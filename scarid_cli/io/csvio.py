@@ -29,11 +29,18 @@ def read_csv(source: ByteSource) -> Table:
     Of the others, one whose first value is a number holds numbers, any other holds text: the
     first row alone decides, so that the type does not depend on how the rows arrive.
     """
+    try:
+        return _table(source)
+    except csv.Error:
+        raise BadData(f"{source.name}: neither CSV nor Parquet nor Arrow; is it a table?") from None
+
+
+def _table(source: ByteSource) -> Table:
     lines = _complete_lines(source)
     first = next(lines, b"")
-    while first and not (header_end := _header_end(first)):
-        first = b"".join((first, next(lines, b"")))  # pragma: no cover (only comments so far)
-    if not first.strip():
+    while not (header_end := _header_end(first)) and (more := next(lines, None)):
+        first += more
+    if not header_end:
         raise bad_data(
             source.name,
             "no rows",
@@ -42,10 +49,7 @@ def read_csv(source: ByteSource) -> Table:
         )
     names = _header(first, header_end, source.name)
     body = first[header_end:]
-    while not body.strip():
-        more = next(lines, None)
-        if more is None:
-            break
+    while not body.strip() and (more := next(lines, None)):
         body = more
     types = _types(names, body)
     schema = pa.schema(list(zip(names, types, strict=True)))
@@ -75,6 +79,8 @@ def _last_row_end(block: bytes) -> int:
 
 def _header_end(block: bytes) -> int:
     """Where the rows begin: after leading comments and the header; 0 if not yet there."""
+    if not block.strip():
+        return 0
     start = 0
     while block.startswith(b"#", start):
         start = block.find(b"\n", start) + 1

@@ -45,6 +45,7 @@ CASES = {
     "other separator": (["t;q1;tau1", "0;1;2"], "found the single column 't;q1;tau1', expected"),
     "one row": (GOOD[:2], "found 1 rows, expected at least 2 samples; give a longer log"),
     "header only": (GOOD[:1], "found 0 rows, expected at least 2 samples; give a longer log"),
+    "comments only": (["# a", "# b"], "found no rows, expected a CSV header; is the file empty"),
     "nothing": ([], "found no rows, expected a CSV header; is the file empty, or did"),
 }
 
@@ -143,6 +144,15 @@ def test_a_cut_binary_file_is_told(
     assert result.err.startswith(f"scarid filter: {whole}: ")
     assert result.err.count("\n") == 1
     assert not (tmp_path / "out.csv").exists()
+
+
+@pytest.mark.parametrize("data", [b"a\rb\0c\n" * 9, b"x" * 200_000], ids=["binary", "one line"])
+def test_what_is_no_table_is_told(data: bytes, scarid: Run, tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    log.write_bytes(data)
+    result = scarid("info", log)
+    assert result.status == 65
+    assert result.err == f"scarid info: {log}: neither CSV nor Parquet nor Arrow; is it a table?\n"
 
 
 USAGE = {
