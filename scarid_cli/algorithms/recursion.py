@@ -23,6 +23,26 @@ class Method(Protocol):
     def finish(self, state: Any) -> Derivatives: ...
 
 
+class Lowpass(Protocol):
+    """A causal filter of one column: at rest at its first sample x, sampled every h [s]."""
+
+    def init(self, x: float, h: float) -> Any: ...
+    def step(self, state: Any, x: Array) -> tuple[Any, Array]: ...
+
+
+class Matched(Method, Protocol):
+    """A method whose derivatives are exactly those of what `companion` makes of the position.
+
+    tau = W(q, dq, ddq) theta holds between signals of the same instant only. So positions and
+    torques pass through the companion, the low-pass that the method is between position and
+    derivatives; the derivatives are the central differences of the position so filtered.
+    """
+
+    @property
+    def companion(self) -> Lowpass | None:
+        """None for a method that adds no dynamics."""
+
+
 @dataclass(frozen=True)
 class Recursion:
     """The state of a recursion: its numbers, and the sampling period h [s] they belong to."""

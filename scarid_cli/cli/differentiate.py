@@ -39,15 +39,26 @@ class MethodsCommand(click.Command):
     help="A setting of the method, one value for all joints or one per joint; repeatable.",
 )
 @click.option("--preset", metavar="NAME", help="Named settings; table1: as printed in the paper.")
+@click.option(
+    "--match/--no-match",
+    default=False,
+    help="Pass q and tau through the dynamics of the derivatives, so that all belong to the same "
+    "instant.  [default: no-match, the paper's procedure]",
+)
 @options.table_output
 @options.common
 def command(
-    file: str, method: str, settings: tuple[str, ...], preset: str | None, **rest: Any
+    file: str,
+    method: str,
+    settings: tuple[str, ...],
+    preset: str | None,
+    match: bool,
+    **rest: Any,
 ) -> None:
     """Estimate velocities and accelerations from positions (the soft sensor).
 
     \b
-      scarid differentiate --method p2smd log.csv
+      scarid differentiate --method p2smd --match log.csv
       scarid differentiate --method p2smd --set gamma0=25,40 --set gamma1=20,35 log.csv
       scarid differentiate --method 2smd --preset table1 log.csv
       scarid filter --zero-phase --cutoff 20 log.csv | scarid differentiate --method central
@@ -56,7 +67,7 @@ def command(
     Table 1, or the nearest settings that work at 200 Hz.
     """
     from scarid_cli.cli.job import job
-    from scarid_cli.cli.methods import configured
+    from scarid_cli.cli.methods import configured, matched
     from scarid_cli.io.schemas import joints_of
     from scarid_cli.stages import differentiate as stage
 
@@ -65,4 +76,8 @@ def command(
         table = run.read(file, "measurement")
         joints = joints_of(table.columns, "q")
         methods = configured(DIFFERENTIATORS.load(method), method, joints, settings, preset)
-        run.write(stage.differentiate(run.recorded(table), methods), out)
+        table = run.recorded(table)
+        if match:
+            run.write(stage.matched(table, matched(methods, method)), out)
+        else:
+            run.write(stage.differentiate(table, methods), out)

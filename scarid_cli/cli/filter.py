@@ -69,8 +69,11 @@ def command(
         out = run.output(rest["output"], rest["format"])
         table = run.read(file, "measurement")
         chosen = select(columns, table.columns) if columns else measured(table.columns)
-        apply = stage.zero_phase if zero_phase else stage.causal
-        run.write(apply(run.recorded(table), chosen, lowpass), out)
+        table = run.recorded(table)
+        if zero_phase:
+            run.write(stage.zero_phase(table, chosen, lowpass), out)
+        else:
+            run.write(stage.causal(table, dict.fromkeys(chosen, lowpass)), out)
 
 
 def measured(names: list[str]) -> list[str]:

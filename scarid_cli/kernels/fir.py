@@ -1,4 +1,19 @@
-"""Backward difference followed by a finite impulse response filter (ED+FIR of the paper)."""
+"""Finite impulse response filter, alone and after a backward difference (ED+FIR of the paper)."""
+
+
+def filtered(x, y, line, taps):
+    """Write the filtered x to y. line: the last samples, newest first; changed in place."""
+    n = len(taps)
+    if len(y) != len(x) or len(line) != n:
+        raise ValueError("fir: lengths differ")
+    for k in range(len(x)):
+        for i in range(n - 1, 0, -1):
+            line[i] = line[i - 1]
+        line[0] = float(x[k])
+        total = 0.0
+        for i in range(n):
+            total += float(taps[i]) * float(line[i])
+        y[k] = total
 
 
 def differentiate(g, out, line, taps, h):

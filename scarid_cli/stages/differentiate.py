@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.recursion import Method
+from scarid_cli.algorithms.recursion import Lowpass, Matched, Method
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import Table, matrix, number, with_columns
+from scarid_cli.stages.filter import causal
 
 
 def differentiate(table: Table, methods: list[Method]) -> Table:
@@ -28,6 +29,17 @@ def differentiate(table: Table, methods: list[Method]) -> Table:
     schema = _schema(table, new)
     meta = replace(table.meta, kind="motion")
     return replace(table, schema=schema, meta=meta, batches=_rows(table, methods, schema, new))
+
+
+def matched(table: Table, methods: list[Matched]) -> Table:
+    """A motion whose positions and torques passed through the dynamics of the derivatives."""
+    filters: dict[str, Lowpass] = {}
+    for i, method in enumerate(methods, start=1):
+        if method.companion:
+            pair = {f"q{i}": method.companion, f"tau{i}": method.companion}
+            filters |= {name: f for name, f in pair.items() if name in table.columns}
+    motion = differentiate(table, list(methods))
+    return causal(motion, filters) if filters else motion
 
 
 def _schema(table: Table, new: list[str]) -> pa.Schema:

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.filters.butterworth import Butterworth, State
+from scarid_cli.algorithms.filters.butterworth import Butterworth
+from scarid_cli.algorithms.recursion import Lowpass
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import Table, matrix, with_columns
 
 
-def causal(table: Table, columns: list[str], lowpass: Butterworth) -> Table:
-    """Streaming: each row leaves as it comes."""
-    lowpass.sections(table.meta.period or 0.0)  # refuses a cut-off before anything is written
-    return replace(table, batches=_causal(table, columns, lowpass))
+def causal(table: Table, filters: dict[str, Lowpass]) -> Table:
+    """Streaming: each row leaves as it comes. One filter per column."""
+    for lowpass in filters.values():
+        lowpass.init(0.0, table.meta.period or 0.0)  # refuses settings before anything is written
+    return replace(table, batches=_causal(table, filters))
 
 
 def zero_phase(table: Table, columns: list[str], lowpass: Butterworth) -> Table:
@@ -25,15 +28,16 @@ def zero_phase(table: Table, columns: list[str], lowpass: Butterworth) -> Table:
     return replace(table, batches=_zero_phase(table, columns, lowpass))
 
 
-def _causal(table: Table, columns: list[str], lowpass: Butterworth) -> Iterator[pa.RecordBatch]:
-    states: list[State] = []
+def _causal(table: Table, filters: dict[str, Lowpass]) -> Iterator[pa.RecordBatch]:
+    period = table.meta.period or 0.0
+    states: dict[str, Any] = {}
     for batch in table.batches:
-        values = matrix(batch, columns)
-        states = states or [lowpass.init(x[0], table.meta.period or 0.0) for x in values]
-        results = [lowpass.step(state, x) for state, x in zip(states, values, strict=True)]
-        states = [state for state, _ in results]
-        filtered = {name: y for name, (_, y) in zip(columns, results, strict=True)}
-        yield with_columns(batch, table.schema, filtered)
+        columns = dict(zip(filters, matrix(batch, list(filters)), strict=True))
+        for name, x in columns.items():
+            if name not in states:
+                states[name] = filters[name].init(float(x[0]), period)
+            states[name], columns[name] = filters[name].step(states[name], x)
+        yield with_columns(batch, table.schema, columns)
 
 
 def _zero_phase(table: Table, columns: list[str], lowpass: Butterworth) -> Iterator[pa.RecordBatch]:

@@ -167,6 +167,7 @@ USAGE = {
     "no number": (["differentiate", "--set", "gamma0=x", "LOG"], "'x' is not a number"),
     "negative gain": (["differentiate", "--set", "gamma0=-1", "LOG"], "gamma0 must be positive"),
     "too many values": (["differentiate", "--set", "gamma0=1,2,3", "LOG"], "3 values for 2 joints"),
+    "no matched form": (["differentiate", "--method", "2smd", "--match", "LOG"], "no matched form"),
     "no such preset": (["differentiate", "--preset", "best", "LOG"], "it has table1"),
     "time filtered": (["filter", "-c", "*", "LOG"], "the time column t cannot be filtered"),
     "two cut-offs": (["filter", "--cutoff", "1", "--natural-frequency", "1"], "not both"),

@@ -27,6 +27,20 @@ def test_emps_gives_its_published_mass(shell: Shell, real_logs: Path) -> None:
     assert float(rows["offset"]["estimate"]) == pytest.approx(-3.1648, rel=0.01)
 
 
+@pytest.mark.parametrize(("method", "within"), [("p2smd", 0.02), ("ed-fir", 0.003)])
+def test_matching_gives_emps_its_mass_online(
+    method: str, within: float, shell: Shell, real_logs: Path
+) -> None:
+    """Causal at 1 kHz with the gains of Table 1; unmatched, p2smd gives 27 kg."""
+    pipe = (
+        f"scarid differentiate --method {method} MATCH {real_logs}/emps/emps_train.csv |"
+        " scarid identify -q --robot emps --estimator ls | awk -F, '$1 == \"M\" {print $3}'"
+    )
+    matched = float(shell(pipe.replace("MATCH", "--match")).out)
+    assert matched == pytest.approx(95.1089, rel=within)
+    assert float(shell(pipe.replace("MATCH", "--no-match")).out) < 0.92 * matched
+
+
 def test_a_jittered_clock_is_refused_with_its_row(shell: Shell, real_logs: Path) -> None:
     log = real_logs / "double_pendulum" / "20230629-143524.csv"
     result = shell(f"scarid differentiate {log}")

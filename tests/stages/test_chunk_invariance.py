@@ -15,7 +15,7 @@ from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path
 from scarid_cli.io.table import Table
-from scarid_cli.stages.differentiate import differentiate
+from scarid_cli.stages.differentiate import differentiate, matched
 from scarid_cli.stages.filter import causal, zero_phase
 from scarid_cli.stages.identify import identify
 from scarid_cli.stages.simulate import simulate
@@ -28,6 +28,10 @@ SIZES = st.lists(st.sampled_from([1, 2, 7, 64, 8192]), min_size=1, max_size=4)
 
 def differentiated(name: str) -> Stage:
     return lambda source: differentiate(source, [DIFFERENTIATORS.load(name)()] * 2)
+
+
+def matching(name: str) -> Stage:
+    return lambda source: matched(source, [DIFFERENTIATORS.load(name)().matched()] * 2)
 
 
 def identified(name: str) -> Stage:
@@ -50,11 +54,12 @@ def simulated(source: Table) -> Table:
 
 
 STAGES: dict[str, Stage] = {
-    "filter": lambda source: causal(source, ["q1", "tau2"], Butterworth(20.0)),
+    "filter": lambda source: causal(source, dict.fromkeys(["q1", "tau2"], Butterworth(20.0))),
     "filter zero-phase": lambda source: zero_phase(source, ["q1", "tau2"], Butterworth(20.0)),
     "validate": lambda source: validate(source, SCARA, SCARA.apriori),
     "simulate": simulated,
     **{f"differentiate {name}": differentiated(name) for name in DIFFERENTIATORS.names},
+    **{f"differentiate {name} --match": matching(name) for name in ("central", "ed-fir", "p2smd")},
     **{f"identify {name}": identified(name) for name in ESTIMATORS.names},
 }
 

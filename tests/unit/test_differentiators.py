@@ -83,8 +83,11 @@ def test_standing_still_starts_without_a_jump(make: Any, position: float) -> Non
         ("ed-fir", "order", inf),
         ("ed-fir", "cutoff", 0.0),
         ("p2smd", "gamma0", 0.0),
+        ("p2smd", "gamma0", inf),
+        ("p2smd", "leak", inf),
         ("p2smd", "cap", 0.0),
         ("2smd", "eta2", 0.0),
+        ("2smd", "eta0", inf),
         ("astd", "gamma", 0.0),
     ],
 )
@@ -180,7 +183,8 @@ def test_p2smd_stays_bounded_for_half_an_hour_at_standstill() -> None:
     peaks = []
     for second in moving[-1] + LSB * dither:
         state, (_, a) = method.step(state, second)
-        adaptive = state.values[3:]
+        nu, adaptive = state.values[2], state.values[3:]
+        assert abs(nu) <= method.nu_max
         assert np.all((adaptive >= 0.0) & (adaptive <= method.cap))
         peaks.append(np.abs(a).max())
     # The most that the linear observer makes of half a bit up and down; 5 % for the rest.

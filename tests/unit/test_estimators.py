@@ -131,6 +131,26 @@ def test_rls_keeps_its_initial_parameters_without_excitation(forgetting: float) 
     np.testing.assert_allclose(covariance, 4.0 / forgetting**50 * np.eye(P), rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "row",
+    [[0.0, 0.0], [1.0, 1.0], [1.0, 1000.0], [1000.0, 1.0]],
+    ids=["none", "both", "mostly the second", "mostly the first"],
+)
+def test_rls_forgets_no_more_than_it_has_to(row: list[float]) -> None:
+    """Without excitation, or with excitation in one direction alone, for a long time.
+
+    Where 0.95^50000 is nothing at all, the estimates stay finite and explain the torque, and no
+    row of the triangle has faded below 1e-4 P0^(-1/2).
+    """
+    samples, estimator, truth = 50_000, rls.Estimator(forgetting=0.95, p0=100.0), [3.0, 2.0]
+    W = np.tile(row, (samples, 1, 1))
+    state, trace = estimator.step(estimator.init(np.zeros(2)), W, W @ truth, trace=True)
+    fit = estimator.fit(state)
+    assert np.isfinite(trace).all()
+    np.testing.assert_allclose(W[-1] @ fit.estimates, W[-1] @ truth, rtol=1e-6)
+    assert np.abs(np.diag(state.triangle)).min() >= 0.999e-4 / np.sqrt(estimator.p0)
+
+
 def test_rls_follows_a_parameter_that_changes_if_it_forgets() -> None:
     W, _ = data(2000)
     y = W @ THETA
@@ -159,6 +179,7 @@ def test_rls_covariance_stays_positive_definite() -> None:
         ({"forgetting": 1.01}, "forgetting must not exceed 1"),
         ({"forgetting": np.nan}, "forgetting must"),
         ({"p0": 0.0}, "p0 must be positive"),
+        ({"p0": np.inf}, "p0 must be positive"),
     ],
 )
 def test_setting_without_sense_is_refused(settings: dict[str, float], complaint: str) -> None:
@@ -239,9 +260,21 @@ def test_direction_that_the_data_leave_free_is_named(samples: int, seed: int) ->
 def test_data_that_say_too_little_are_not_solved(W: Array, direction: list[float] | None) -> None:
     with pytest.raises(NotIdentifiableError) as refused:
         fitted(ls.Estimator(), W, np.ones(W.shape[:2]))
+    assert np.linalg.norm(refused.value.direction) == pytest.approx(1.0)
     if direction is not None:
         free = np.array(direction) / np.linalg.norm(direction)
         assert abs(free @ refused.value.direction) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("unit", [1e-18, 1e12])
+def test_units_of_a_parameter_do_not_matter(unit: float) -> None:
+    """Neither for what is identifiable, nor for the estimates."""
+    W, y = data(500)
+    scale = np.array([1.0, unit, 1.0, 1.0])
+    scaled, plain = fitted(ls.Estimator(), W * scale, y), fitted(ls.Estimator(), W, y)
+    np.testing.assert_allclose(scaled.estimates * scale, plain.estimates, rtol=1e-11)
+    errors = scaled.standard_errors() * scale
+    np.testing.assert_allclose(errors, plain.standard_errors(), rtol=1e-11)
 
 
 @pytest.mark.parametrize("tiny", [1e-100, 1e-170, 1e-310])

@@ -84,8 +84,7 @@ def test_kinetic_energy_is_kept_without_friction_and_control(dq: list[float]) ->
     M = inertia(SMOOTH, log.q_true)
     energy = 0.5 * np.einsum("ik,kij,jk->k", log.dq_true, M, log.dq_true)
     assert np.ptp(log.dq_true[1]) > 0.5
-    # Runge-Kutta at 4 kHz, to the fourth power of the step.
-    np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
 
 
 def test_kinetic_energy_is_kept_when_a_joint_reverses() -> None:
@@ -94,7 +93,7 @@ def test_kinetic_energy_is_kept_when_a_joint_reverses() -> None:
     M = inertia(SMOOTH, log.q_true)
     energy = 0.5 * np.einsum("ik,kij,jk->k", log.dq_true, M, log.dq_true)
     assert np.any(log.dq_true[1] < 0.0)
-    np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
 
 
 def test_motion_agrees_with_a_reference_integrator() -> None:
@@ -116,12 +115,13 @@ def test_motion_agrees_with_a_reference_integrator() -> None:
         np.zeros(4),
         "DOP853",
         np.arange(ticks) / RATE,
-        rtol=1e-10,
-        atol=1e-12,
+        rtol=1e-13,
+        atol=1e-14,
     ).y
     assert np.all(log.dq_true[:, 1:] > 0.0)  # no reversal, no sticking
-    np.testing.assert_allclose(log.q_true, expected[:2], atol=1e-8)
-    np.testing.assert_allclose(log.dq_true, expected[2:], atol=1e-8)
+    # Both integrators are of a high order with small steps: what is left is near rounding.
+    np.testing.assert_allclose(log.q_true, expected[:2], atol=1e-11)
+    np.testing.assert_allclose(log.dq_true, expected[2:], atol=1e-11)
 
 
 @pytest.mark.parametrize("name", ["scara2", "emps"])
@@ -163,11 +163,12 @@ def test_joint_stays_where_it_is_below_the_dry_friction(sign: float) -> None:
     np.testing.assert_array_equal(log.ddq_true, 0.0)
 
 
-def test_joint_accelerates_with_what_exceeds_the_dry_friction() -> None:
-    log = push(pushed(AXIS, 1.5 * COULOMB), 3000)
-    t = np.arange(3000) / RATE
-    np.testing.assert_allclose(log.ddq_true[0], 0.5 * COULOMB / MASS, rtol=1e-12)
-    np.testing.assert_allclose(log.q_true[0], 0.25 * COULOMB / MASS * t**2, rtol=1e-10)
+@pytest.mark.parametrize("excess", [0.001, 0.5])
+def test_joint_accelerates_with_what_exceeds_the_dry_friction(excess: float) -> None:
+    log = push(pushed(AXIS, (1.0 + excess) * COULOMB), 3000)
+    t, ddq = np.arange(3000) / RATE, excess * COULOMB / MASS
+    np.testing.assert_allclose(log.ddq_true[0], ddq, rtol=1e-10)
+    np.testing.assert_allclose(log.q_true[0], 0.5 * ddq * t**2, rtol=1e-10)
 
 
 @pytest.mark.parametrize("dq", [0.1, -0.37])

@@ -181,6 +181,8 @@ def test_via_points_within_the_bounds_are_taken_as_they_are() -> None:
     [
         (via((0.1, 0.0), (0.0, 0.0)), "must begin at zero in every joint"),
         (via((0.0, 0.0), (0.0, 0.1)), "must end at zero in every joint"),
+        (via((0.0, 0.0)), "two via points or more"),
+        (via((0.0, 0.0), (0.0, 0.0), T=0.0), "times that increase"),
         (
             via((0.0, 0.0), (0.0, 2.1), (0.0, 0.0)),
             "via point 2: joint 2 at 2.1 is beyond its position bound of 2",

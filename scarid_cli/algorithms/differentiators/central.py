@@ -1,7 +1,7 @@
 """Central difference, twice: no delay and no filter, for positions that are filtered already.
 
 The field's standard after a zero-phase filter. One-sided at both ends, like numpy.gradient. A row
-waits for the two that follow it. No settings.
+waits for the two that follow it. Matched as it is. No settings.
 """
 
 from __future__ import annotations
@@ -35,6 +35,12 @@ class State:
 class Differentiator:
     LAG: ClassVar[int] = 2
     PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
+
+    companion: ClassVar[None] = None
+
+    def matched(self) -> Differentiator:
+        """Central differences add no dynamics."""
+        return self
 
     def init(self, q: float, h: float) -> State:  # noqa: ARG002 (no state before the first sample)
         none = np.empty(0)

@@ -1,7 +1,8 @@
 """Euler (backward) difference and a low-pass FIR filter, once for velocity, twice for acceleration.
 
 The paper's ED+FIR: a Hamming window design. Delay: order / 2 samples and half a sample a stage
-(27.5 ms for the velocity and 55 ms for the acceleration at 200 Hz).
+(27.5 ms for the velocity and 55 ms for the acceleration at 200 Hz). Matched (--match): the velocity
+passes both filters, position and torque as well.
 order = 10, cutoff = 5 [Hz]: as in Table 1. So short a filter is -3 dB at 12.8 Hz, not at 5 Hz.
 """
 
@@ -47,6 +48,54 @@ class Differentiator(Causal):
         fir.differentiate(q, v, state.values[0], taps, state.h)
         fir.differentiate(v, a, state.values[1], taps, state.h)
         return state, (v, a)
+
+    def matched(self) -> Matched:
+        return Matched(self)
+
+
+@dataclass(frozen=True)
+class MatchedState:
+    """The method's own state, and the velocities that the second filter holds."""
+
+    own: Recursion
+    line: Array
+
+
+@dataclass(frozen=True)
+class Matched(Causal):
+    """The velocity filtered once more, and averaged over the sample that the second step takes."""
+
+    method: Differentiator
+
+    @property
+    def companion(self) -> Twice:
+        return Twice(self.method)
+
+    def init(self, q: float, h: float) -> MatchedState:
+        return MatchedState(self.method.init(q, h), np.zeros(int(self.method.order) + 2))
+
+    def step(self, state: MatchedState, q: Array) -> tuple[MatchedState, Derivatives]:
+        own, (once, a) = self.method.step(state.own, q)
+        taps = np.convolve(lowpass(int(self.method.order), self.method.cutoff * own.h), [0.5, 0.5])
+        line, v = state.line.copy(), np.empty_like(q)
+        fir.filtered(once, v, line, taps)
+        return MatchedState(own, line), (v, a)
+
+
+@dataclass(frozen=True)
+class Twice:
+    """Both filters in a row, and the one sample by which their differences are central."""
+
+    method: Differentiator
+
+    def init(self, x: float, h: float) -> Recursion:
+        return Recursion(np.full(2 * int(self.method.order) + 2, x), h)
+
+    def step(self, state: Recursion, x: Array) -> tuple[Recursion, Array]:
+        taps = lowpass(int(self.method.order), self.method.cutoff * state.h)
+        state, y = state.copy(), np.empty_like(x)
+        fir.filtered(x, y, state.values, np.concatenate(([0.0], np.convolve(taps, taps))))
+        return state, y
 
 
 def lowpass(order: int, cutoff: float) -> Array:

@@ -1,7 +1,7 @@
 """Recursive least squares with a constant forgetting factor (paper section 2.3).
 
-In square-root information form: the covariance stays symmetric positive definite, and at most
-1e8 P0 where forgetting meets no excitation.
+In square-root information form: the covariance stays symmetric positive definite, and finite
+where forgetting meets no excitation.
 forgetting = 1: forgetting factor per sample, in (0, 1].
 p0 = 100: initial covariance, P0 = p0 I.
 """

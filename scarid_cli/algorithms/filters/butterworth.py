@@ -6,21 +6,13 @@ form starts at rest at the first sample, so that it makes no transient.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_rest
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
-from scarid_cli.kernels import sos
-
-
-@dataclass(frozen=True)
-class State:
-    """Two numbers per section."""
-
-    values: Array
-    sections: Array
 
 
 @dataclass(frozen=True)
@@ -53,19 +45,13 @@ class Butterworth:
             rows.append(_single(w))
         return np.array(rows)
 
-    def init(self, x: float, h: float) -> State:
+    def init(self, x: float, h: float) -> SectionState:
         """At rest at x."""
-        sections = self.sections(h)
-        b1, b2, a1, a2 = sections[:, 1], sections[:, 2], sections[:, 3], sections[:, 4]
-        second = (b2 - a2) * x
-        return State(np.column_stack(((b1 - a1) * x + second, second)), sections)
+        return at_rest(self.sections(h), x)
 
-    def step(self, state: State, x: Array) -> tuple[State, Array]:
+    def step(self, state: SectionState, x: Array) -> tuple[SectionState, Array]:
         """The filtered samples x, causally."""
-        values = state.values.copy()
-        y = np.empty_like(x)
-        sos.filtered(x, y, values, state.sections)
-        return replace(state, values=values), y
+        return advanced(state, x)
 
     def zero_phase(self, x: Array, h: float) -> Array:
         """Forwards and backwards over more than `padding` samples, extended oddly at both ends."""

@@ -107,7 +107,8 @@ def _check_rank(R: Array, rows: float) -> None:
     """By the singular values of R with columns of unit length, so that units do not matter."""
     length = np.sqrt((R * R).sum(axis=0))
     if not np.all(length > 0.0):
-        raise NotIdentifiableError(np.where(length > 0.0, 0.0, 1.0))
+        free = np.where(length > 0.0, 0.0, 1.0)
+        raise NotIdentifiableError(free / np.linalg.norm(free))
     _, singular, directions = np.linalg.svd(R / length)
     if not singular[-1] > singular[0] * rows * np.finfo(float).eps:
         free = directions[-1] / length
