@@ -8,11 +8,11 @@ import scipy.signal
 from scarid_cli.algorithms.filters.butterworth import Butterworth
 from scarid_cli.algorithms.plants.loop import ClosedLoop, Log
 from scarid_cli.algorithms.registry import DIFFERENTIATORS
-from scarid_cli.algorithms.robots import description
+from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.trajectories.hermite import refine
 from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path
 
-ROBOT = description.load("scara2")
+ROBOT = reading.load("scara2")
 PERIOD, RATIO = 0.005, 5
 SEEDS = (1, 3, 5)
 SETTINGS: list[tuple[str, str, dict[str, float]]] = [

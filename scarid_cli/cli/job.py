@@ -112,10 +112,10 @@ def job(options: dict[str, Any]) -> Iterator[Job]:
 
 def robot_of(name: str | None, *tables: Table) -> Robot:
     """The robot asked for, else that of the first table that names one, else the paper's."""
-    from scarid_cli.algorithms.robots import description
+    from scarid_cli.algorithms.robots import reading
 
     stated = (table.meta.robot for table in tables if table.meta.robot)
-    return description.load(name or next(stated, description.DEFAULT))
+    return reading.load(name or next(stated, reading.DEFAULT))
 
 
 def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:

@@ -83,8 +83,9 @@ def command(
         own = [getattr(joint, f"{name}_limit") for joint in arm.joints]
         option = {"position": "--q-max", "velocity": "--dq-max", "acceleration": "--ddq-max"}[name]
         values = np.array(per_joint(given, len(own), option) if given else own)
-        if not (values > 0.0).all():
-            raise UsageFault(f"{option}: the bounds must be positive")
+        if not ((values > 0.0) & (values < 1e9)).all():
+            lack = "" if given else f" (the description of {arm.name} gives none)"
+            raise UsageFault(f"{option}: the bounds must be positive and finite{lack}")
         return values
 
     bounds = quintic.Bounds(

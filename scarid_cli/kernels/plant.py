@@ -38,23 +38,23 @@ def inertia(model, q2):
     return float(model[0]) + m22 + 2.0 * coupling, m22 + coupling, m22, bend
 
 
-def accelerations(model, q2, v1, v2, tau1, tau2, s1, s2, free1, free2):
+def accelerations(model, q2, v1, v2, tau1, tau2, s1, s2):
     """The accelerations of both joints, 0 for one that sticks.
 
     model: ZZ1R, ZZ2, L1MX2, L1MY2, then viscous, Coulomb and offset torques of joints 1 and 2.
-    s1, s2: directions of sliding. free1, free2: 1 for a joint that slides, 0 for one that sticks.
+    s1, s2: directions of sliding, 0 for a joint that sticks.
     """
     m11, m12, m22, bend = inertia(model, q2)
     r1 = tau1 + bend * v2 * (2.0 * v1 + v2)
     r1 -= float(model[4]) * v1 + float(model[6]) * s1 + float(model[8])
     r2 = tau2 - bend * v1 * v1
     r2 -= float(model[5]) * v2 + float(model[7]) * s2 + float(model[9])
-    if free1 > 0.0 and free2 > 0.0:
+    if s1 != 0.0 and s2 != 0.0:
         d = m11 * m22 - m12 * m12
         return (m22 * r1 - m12 * r2) / d, (m11 * r2 - m12 * r1) / d
-    if free1 > 0.0:
+    if s1 != 0.0:
         return r1 / m11, 0.0
-    if free2 > 0.0:
+    if s2 != 0.0:
         return 0.0, r2 / m22
     return 0.0, 0.0
 
@@ -69,29 +69,37 @@ def holding(model, q2, v1, v2, tau1, tau2, a1, a2):
     return f1, f2
 
 
-def contact(model, q2, v1, v2, tau1, tau2):
-    """Which joints slide, and which way: s1, s2, free1, free2.
+def trial(i):
+    """The three ways of a joint at rest: to stick, and to slide forwards or backwards."""
+    return 0.0 if i == 0 else 3.0 - 2.0 * i
 
-    A joint at rest slides only if holding it would take more than its dry friction, given what
-    the other joint does.
+
+def suits(v, s, a, f, dry):
+    """Whether a direction is right: 0 sticks within the dry friction, 1 and -1 leave that way."""
+    if v != 0.0:
+        return True
+    if s == 0.0:
+        return abs(f) <= dry
+    return a * s > 0.0
+
+
+def contact(model, q2, v1, v2, tau1, tau2):
+    """Which joints slide, and which way: s1, s2, each 1, -1 or 0 for a joint that sticks.
+
+    A joint that moves slides the way it moves. For a joint at rest all three are tried: of all
+    ways that both can stick and slide, one suits.
     """
-    s1 = sign(v1)
-    s2 = sign(v2)
-    free1 = abs(s1)
-    free2 = abs(s2)
-    for _ in range(2):
-        a1, a2 = accelerations(model, q2, v1, v2, tau1, tau2, s1, s2, free1, free2)
-        f1, f2 = holding(model, q2, v1, v2, tau1, tau2, a1, a2)
-        over1 = abs(f1) - float(model[6]) if free1 == 0.0 else -1.0
-        over2 = abs(f2) - float(model[7]) if free2 == 0.0 else -1.0
-        # The joint that is furthest over goes first: its motion may unload the other.
-        if over1 > 0.0 and over1 >= over2:
-            s1 = sign(f1)
-            free1 = 1.0
-        elif over2 > 0.0:
-            s2 = sign(f2)
-            free2 = 1.0
-    return s1, s2, free1, free2
+    if v1 != 0.0 and v2 != 0.0:
+        return sign(v1), sign(v2)
+    for i in range(3):
+        s1 = sign(v1) if v1 != 0.0 else trial(i)
+        for j in range(3):
+            s2 = sign(v2) if v2 != 0.0 else trial(j)
+            a1, a2 = accelerations(model, q2, v1, v2, tau1, tau2, s1, s2)
+            f1, f2 = holding(model, q2, v1, v2, tau1, tau2, a1, a2)
+            if suits(v1, s1, a1, f1, float(model[6])) and suits(v2, s2, a2, f2, float(model[7])):
+                return s1, s2
+    return sign(v1), sign(v2)
 
 
 def run(reference, noise, log, state, model, control, h, substeps):
@@ -130,25 +138,21 @@ def run(reference, noise, log, state, model, control, h, substeps):
         tau1 = clip(tau1, float(control[6]))
         tau2 = clip(tau2, float(control[7]))
         for n in range(substeps):
-            s1, s2, free1, free2 = contact(model, q2, v1, v2, tau1, tau2)
-            a1, a2 = accelerations(model, q2, v1, v2, tau1, tau2, s1, s2, free1, free2)
+            s1, s2 = contact(model, q2, v1, v2, tau1, tau2)
+            a1, a2 = accelerations(model, q2, v1, v2, tau1, tau2, s1, s2)
             if n == 0:
                 log[k, 0], log[k, 1], log[k, 2], log[k, 3] = m1, m2, tau1, tau2
                 log[k, 4], log[k, 5], log[k, 6], log[k, 7] = q1, q2, v1, v2
                 log[k, 8], log[k, 9] = a1, a2
             u1 = v1 + 0.5 * d * a1
             u2 = v2 + 0.5 * d * a2
-            b1, b2 = accelerations(
-                model, q2 + 0.5 * d * v2, u1, u2, tau1, tau2, s1, s2, free1, free2
-            )
+            b1, b2 = accelerations(model, q2 + 0.5 * d * v2, u1, u2, tau1, tau2, s1, s2)
             x1 = v1 + 0.5 * d * b1
             x2 = v2 + 0.5 * d * b2
-            c1, c2 = accelerations(
-                model, q2 + 0.5 * d * u2, x1, x2, tau1, tau2, s1, s2, free1, free2
-            )
+            c1, c2 = accelerations(model, q2 + 0.5 * d * u2, x1, x2, tau1, tau2, s1, s2)
             y1 = v1 + d * c1
             y2 = v2 + d * c2
-            d1, d2 = accelerations(model, q2 + d * x2, y1, y2, tau1, tau2, s1, s2, free1, free2)
+            d1, d2 = accelerations(model, q2 + d * x2, y1, y2, tau1, tau2, s1, s2)
             q1 += d / 6.0 * (v1 + 2.0 * u1 + 2.0 * x1 + y1)
             q2 += d / 6.0 * (v2 + 2.0 * u2 + 2.0 * x2 + y2)
             v1 += d / 6.0 * (a1 + 2.0 * b1 + 2.0 * c1 + d1)

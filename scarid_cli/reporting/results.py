@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.robots import description
+from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
@@ -114,7 +114,7 @@ def collect(tables: Sequence[Table]) -> list[Result]:
 def _stated_robot(table: Table) -> Robot | None:
     """The robot that the metadata names, if its description is here."""
     try:
-        return description.load(table.meta.robot) if table.meta.robot else None
+        return reading.load(table.meta.robot) if table.meta.robot else None
     except (UsageFault, OSError, UnicodeDecodeError):
         return None
 

@@ -11,6 +11,8 @@ import pyarrow.parquet as pq
 import pytest
 from conftest import Result
 
+from scarid_cli.algorithms.robots.reading import FOLDER
+
 Run = Callable[..., Result]
 
 GOOD = ["t,q1,tau1"] + [f"{k / 100},{k},{k * 0.5}" for k in range(20)]
@@ -178,7 +180,10 @@ USAGE = {
     "forgetting of ls": (["identify", "--estimator", "ls", "--p0", "1"], "belong to rls"),
     "forgetting above 1": (["identify", "--forgetting", "1.1"], "forgetting must not exceed 1"),
     "unknown extension": (["convert", "LOG", "-o", "x.xlsx"], "x.xlsx: unknown extension"),
-    "bounds of no size": (["trajgen", "--q-max", "0"], "--q-max: the bounds must be positive"),
+    "bounds of no size": (
+        ["trajgen", "--q-max", "0"],
+        "--q-max: the bounds must be positive and finite",
+    ),
     "duration too short": (["trajgen", "--duration", "1"], "too short for 2 segments"),
     "rates do not fit": (
         ["simulate", "--control-rate", "300", "REF"],
@@ -210,6 +215,15 @@ def test_via_points_that_break_the_bounds_are_refused(scarid: Run, tmp_path: Pat
     assert result.status == 2
     assert "segment 1: joint 1 would reach" in result.err
     assert "give the segment at least 0.5373 s instead of 0.5 s" in result.err
+
+
+def test_a_robot_without_bounds_needs_them_as_options(scarid: Run, tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text((FOLDER / "emps.toml").read_text("utf-8").replace("velocity_limit", "# v"))
+    result = scarid("trajgen", "--robot", path)
+    assert result.status == 2
+    assert "--dq-max: the bounds must be positive and finite (the description of" in result.err
+    assert scarid("trajgen", "--robot", path, "--dq-max", 0.1, "-q").status == 0
 
 
 def test_a_loop_that_blows_up_is_an_error_and_not_a_table(scarid: Run, tmp_path: Path) -> None:

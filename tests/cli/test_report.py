@@ -17,11 +17,11 @@ import pyarrow.parquet as pq
 import pytest
 from conftest import Result
 
-from scarid_cli.algorithms.robots import description
+from scarid_cli.algorithms.robots import reading
 from scarid_cli.io.table import METADATA_KEY, Metadata
 
 Run = Callable[..., Result]
-SCARA = description.load("scara2")
+SCARA = reading.load("scara2")
 DIGEST = "0123456789abcdef" * 4
 HISTORY = (
     {"command": "scarid filter 'a & b.csv'", "version": "0.1.0", "inputs": {"a & b.csv": DIGEST}},

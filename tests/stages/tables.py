@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.robots import description
+from scarid_cli.algorithms.robots import reading
 from scarid_cli.io.table import Metadata, Table, doubles, number
 
 PERIOD = 0.005
@@ -67,4 +67,4 @@ def motion(rows: int = 400, seed: int = 0) -> dict[str, np.ndarray]:
     return columns
 
 
-SCARA = description.load("scara2")
+SCARA = reading.load("scara2")

@@ -119,8 +119,9 @@ def test_p2smd_without_adaptation_is_a_linear_observer(gamma0: float, gamma1: fl
     # The adaptive gains stay below the cap, far under the last bit of anything.
     v, a = derivatives(p2smd.Differentiator(gamma0=gamma0, gamma1=gamma1, cap=1e-300), q)
     expected_v, expected_a = observer(q, gamma0, gamma1, PERIOD)
-    np.testing.assert_allclose(v, expected_v, atol=1e-10)
-    np.testing.assert_allclose(a, expected_a, atol=1e-8)  # rounding of q times gamma0 gamma1
+    # The rounding of q, times gamma0 and times gamma0 gamma1.
+    np.testing.assert_allclose(v, expected_v, rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(a, expected_a, rtol=0.0, atol=1e-9)
 
 
 def literal_p2smd(q: Array, h: float, eta: tuple[float, float, float]) -> tuple[Array, Array]:
@@ -150,8 +151,8 @@ def test_p2smd_preset_is_the_printed_law(eta: tuple[float, float, float]) -> Non
     v, a = derivatives(method, q)
     expected_v, expected_a = literal_p2smd(q, PERIOD, eta)
     # cbrt(e)^2 and |e|^(2/3) differ in their last bit, and nothing else does.
-    np.testing.assert_allclose(v, expected_v, atol=1e-11)
-    np.testing.assert_allclose(a, expected_a, atol=1e-9)
+    np.testing.assert_allclose(v, expected_v, rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(a, expected_a, rtol=0.0, atol=1e-9)
 
 
 def delay(x: Array, reference: Array, omega: float) -> float:
@@ -251,8 +252,8 @@ def test_ed_fir_is_two_stages_of_difference_and_filter(order: int, cutoff: float
     expected_v = signal.lfilter(taps, 1.0, np.diff(q, prepend=q[0]) / PERIOD)
     expected_a = signal.lfilter(taps, 1.0, np.diff(expected_v, prepend=0.0) / PERIOD)
     v, a = derivatives(ed_fir.Differentiator(order, cutoff), q)
-    np.testing.assert_allclose(v, expected_v, atol=1e-12)
-    np.testing.assert_allclose(a, expected_a, atol=1e-10)
+    np.testing.assert_allclose(v, expected_v, rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(a, expected_a, rtol=0.0, atol=1e-10)
 
 
 def test_ed_fir_refuses_a_cutoff_above_half_the_rate() -> None:

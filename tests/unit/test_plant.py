@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from typing import Any
 
@@ -12,9 +13,11 @@ from scipy.integrate import solve_ivp
 from unit.support import adjusted, cuts
 
 from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, Log, State
-from scarid_cli.algorithms.robots.description import Robot, load
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
+from scarid_cli.kernels import plant
 
 RATE = 1000.0
 GAINS = {"kp": np.array([800.0, 25.0]), "kd": np.array([100.0, 2.5])}
@@ -120,8 +123,8 @@ def test_motion_agrees_with_a_reference_integrator() -> None:
     ).y
     assert np.all(log.dq_true[:, 1:] > 0.0)  # no reversal, no sticking
     # Both integrators are of a high order with small steps: what is left is near rounding.
-    np.testing.assert_allclose(log.q_true, expected[:2], atol=1e-11)
-    np.testing.assert_allclose(log.dq_true, expected[2:], atol=1e-11)
+    np.testing.assert_allclose(log.q_true, expected[:2], rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(log.dq_true, expected[2:], rtol=0.0, atol=1e-11)
 
 
 @pytest.mark.parametrize("name", ["scara2", "emps"])
@@ -218,7 +221,7 @@ def test_torque_is_equation_29_on_what_the_encoder_says() -> None:
         error = q_ref[:, : k + 1] - log.q[:, : k + 1]
         integral = ki * error.sum(axis=1) / RATE
         expected[:, k] = GAINS["kp"] * error[:, k] + GAINS["kd"] * (dq_ref[:, k] - dq) + integral
-    np.testing.assert_allclose(log.tau_true, expected, atol=1e-9)
+    np.testing.assert_allclose(log.tau_true, expected, rtol=0.0, atol=1e-9)
 
 
 def test_torque_stays_within_its_limit() -> None:
@@ -335,3 +338,75 @@ def test_robot_of_another_kind_is_refused() -> None:
     loop = closed_loop(two_axes)
     with pytest.raises(UsageFault, match="only one axis"):
         loop.step(loop.init(np.zeros(2)), *reference(2, 1))
+
+
+ARM = [3.42, 0.064, 0.131, 0.03]
+
+
+def coast(model: list[float], q: list[float], dq: list[float], ticks: int) -> Array:
+    """The log without control, at 1 kHz."""
+    state, log = np.array([*q, *dq, *q, *np.zeros(4)]), np.empty((ticks, 10))
+    control = np.array([0.0] * 6 + [1e300] * 2 + [0.0] * 3)
+    reference, noise = np.zeros((ticks, 4)), np.zeros((ticks, 2))
+    assert plant.run(reference, noise, log, state, np.array(model), control, 1e-3, 4) == ticks
+    return log
+
+
+def mass_matrix(q2: Any) -> Array:
+    zz1r, zz2, mx, my = ARM
+    coupling = mx * np.cos(q2) - my * np.sin(q2)
+    return np.array([[zz1r + zz2 + 2.0 * coupling, zz2 + coupling], [zz2 + coupling, zz2]])
+
+
+@pytest.mark.parametrize("dq", [[1.0, 6.0], [-2.0, -9.0], [2.0, 1.0]])
+def test_momentum_of_joint_1_is_kept_without_friction_and_control(dq: list[float]) -> None:
+    """The kinetic energy does not depend on q1."""
+    log = coast([*ARM, *np.zeros(6)], [0.0, 0.3], dq, 5000)
+    coupled = mass_matrix(0.0)[1, 1] + ARM[2] * np.cos(log[:, 5]) - ARM[3] * np.sin(log[:, 5])
+    momentum = (ARM[0] - ARM[1] + 2.0 * coupled) * log[:, 6] + coupled * log[:, 7]
+    np.testing.assert_allclose(momentum, momentum[0], rtol=1e-12)
+
+
+def test_viscous_coasting_agrees_with_a_reference_integrator() -> None:
+    viscous = np.array([0.7, 0.015])
+
+    def motion(_: float, state: Array) -> Array:
+        v, bend = state[2:], ARM[2] * np.sin(state[1]) + ARM[3] * np.cos(state[1])
+        coriolis = np.array([-bend * v[1] * (2.0 * v[0] + v[1]), bend * v[0] ** 2])
+        return np.concatenate((v, np.linalg.solve(mass_matrix(state[1]), -coriolis - viscous * v)))
+
+    start, t = [0.0, 0.3, 2.0, -4.0], np.arange(3000) / 1000.0
+    expected = solve_ivp(motion, (0.0, 3.0), start, "DOP853", t, rtol=1e-11, atol=1e-13).y
+    log = coast([*ARM, *viscous, *np.zeros(4)], start[:2], start[2:], 3000)
+    assert np.ptp(np.sign(log[:, 7])) == 2.0  # joint 2 reverses on its way
+    np.testing.assert_allclose(log[:, 4:8].T, expected, atol=1e-9)  # (0.25 ms)^4 = 4e-15 a second
+
+
+def complementary(q2: float, tau: Array, dry: Array) -> Array:
+    """The accelerations from rest, by trying all nine ways to stick and slide: one is right."""
+    M, found = mass_matrix(q2), []
+    for way in itertools.product((-1.0, 0.0, 1.0), repeat=2):
+        s, a = np.array(way), np.zeros(2)
+        slides = np.flatnonzero(s)
+        if len(slides):
+            a[slides] = np.linalg.solve(M[np.ix_(slides, slides)], (tau - dry * s)[slides])
+        holding = tau - M @ a
+        if np.all(np.where(s == 0.0, np.abs(holding) <= dry, a * s > 0.0)):
+            found.append(a)
+    assert len(found) == 1
+    return found[0]
+
+
+def test_both_joints_leave_rest_as_complementarity_says() -> None:
+    rng = np.random.default_rng(0)
+    dry = np.array([0.58, 0.156])
+    for _ in range(300):
+        q2, tau = rng.uniform(-1.5, 1.5), rng.uniform(-1.0, 1.0, 2) * [3.0, 0.8]
+        model = np.array([*ARM, 0.0, 0.0, *dry, 0.0, 0.0])
+        state = np.array([0.0, q2, 0.0, 0.0, 0.0, q2, *np.zeros(4)])
+        reference = np.array([[*(np.sign(tau) * 1e6), 0.0, 0.0]])
+        control = np.array([1e9, 1e9, 0.0, 0.0, 0.0, 0.0, *np.abs(tau), 0.0, 0.0, 0.0])
+        log = np.empty((1, 10))
+        plant.run(reference, np.zeros((1, 2)), log, state, model, control, 1e-3, 4)
+        np.testing.assert_allclose(log[0, 2:4], tau)
+        np.testing.assert_allclose(log[0, 8:10], complementary(q2, tau, dry), atol=1e-10)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scarid_cli.algorithms.robots import description
+from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.reporting import content, figures, text
 from scarid_cli.reporting.content import Bars, Panels, Section, number, sections, split
@@ -18,7 +18,7 @@ from scarid_cli.reporting.curves import POINTS, Curve
 from scarid_cli.reporting.naming import Name, name_of, names_of
 from scarid_cli.reporting.results import Metrics, Parameters, Prediction, Trace
 
-SCARA = description.load("scara2")
+SCARA = reading.load("scara2")
 NAMES = ("ZZ1R", "Fv1")
 UNITS = ("kg m2", "N m s/rad")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scarid_cli.algorithms.robots.description import FOLDER, built_in, load
+from scarid_cli.algorithms.robots.reading import FOLDER, built_in, load
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
@@ -169,7 +169,7 @@ def test_unknown_robot_is_refused_with_the_choice(name: str) -> None:
         ("joint = 1", "joint = 2", "on joint 2 of 1"),
         ("joint = 1", "joint = -1", "on joint -1 of 1"),
         ("joint = 1", "", "joint"),
-        ("joint = 1", 'joint = "1"', "not a number"),
+        ("joint = 1", 'joint = "1"', "not a whole number"),
         ("[control]", "[control", "at line"),
         ("prismatic axis", "prismatic axis\xe9", "utf-8"),
     ],
@@ -193,4 +193,46 @@ def test_term_of_the_planar_arm_needs_two_joints(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text((FOLDER / "emps.toml").read_text("utf-8").replace('"mass"', '"ZZ2"'), "utf-8")
     with pytest.raises(UsageFault, match="ZZ2"):
+        load(str(path))
+
+
+@pytest.mark.parametrize(
+    ("text", "instead"),
+    [
+        ("kp = [1370725.0]", 'kp = "5"'),
+        ("kp = [1370725.0]", 'kp = ["5"]'),
+        ("kp = [1370725.0]", "kp = [[1.0]]"),
+        ("velocity_cutoff = 200.0", 'velocity_cutoff = "x"'),
+        ("joint = 1", "joint = 1.0"),
+        ("apriori = 95.1089", "apriori = 1" + 400 * "0"),
+        ("apriori = 95.1089", 'apriori = 95.1089\n"a\\nb" = 1'),
+    ],
+)
+def test_description_that_cannot_be_used_is_refused_at_once(
+    tmp_path: Path, text: str, instead: str
+) -> None:
+    path = tmp_path / "mine.toml"
+    good = (FOLDER / "emps.toml").read_text("utf-8")
+    assert text in good
+    path.write_text(good.replace(text, instead), "utf-8")
+    with pytest.raises(UsageFault) as refused:
+        load(str(path))
+    assert str(path) in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("joint", ["joint = []", 'joint = [{type = "revolute"}]'])
+def test_robot_without_parameters_is_refused(tmp_path: Path, joint: str) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(f'title = "none"\nparameter = []\n{joint}\n', "utf-8")
+    with pytest.raises(UsageFault, match=r"mine\.toml"):
+        load(str(path))
+
+
+def test_term_given_twice_is_refused(tmp_path: Path) -> None:
+    """The regressor would add both, and the plant take one."""
+    path = tmp_path / "mine.toml"
+    good = (FOLDER / "emps.toml").read_text("utf-8")
+    path.write_text(good.replace('"coulomb"', '"viscous"'), "utf-8")
+    with pytest.raises(UsageFault, match="stands twice"):
         load(str(path))

@@ -1,1 +1,1 @@
-"""Robots: one TOML file each, read into one interface (`description.py`)."""
+"""Robots: one TOML file each, read (`reading.py`) into one interface (`description.py`)."""

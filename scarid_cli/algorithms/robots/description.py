@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from math import inf
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.robots.terms import PLANAR_JOINTS, PLANAR_TERMS, TERMS
+from scarid_cli.algorithms.robots.terms import TERMS
 from scarid_cli.arrays import Array
-from scarid_cli.errors import UsageFault
 
-FOLDER = Path(__file__).parent
-DEFAULT = "scara2"
 UNITS = {"revolute": ("rad", "N m"), "prismatic": ("m", "N")}
 
 
@@ -105,68 +99,3 @@ class Robot:
         for index in range(1, len(theta)):
             total += W[:, :, index] * theta[index]
         return np.ascontiguousarray(total.T)
-
-
-def built_in() -> list[str]:
-    """The names of the robots that come with the package."""
-    return sorted(path.stem for path in FOLDER.glob("*.toml"))
-
-
-def load(name: str) -> Robot:
-    """A built-in robot by name, or one described in a TOML file."""
-    path = Path(name) if name.endswith(".toml") else FOLDER / f"{name}.toml"
-    if not path.is_file():
-        raise UsageFault(f"unknown robot {name!r}; choose {', '.join(built_in())}, or a .toml file")
-    try:
-        return _robot(name, tomllib.loads(path.read_text("utf-8")))
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise UsageFault(f"{name}: not a robot description: {_reason(error)}") from None
-
-
-def _robot(name: str, document: dict[str, Any]) -> Robot:
-    joints = tuple(Joint(**_numbers(joint, "type")) for joint in document["joint"])
-    parameters = tuple(
-        Parameter(**_numbers(parameter, "name", "term", "unit"))
-        for parameter in document["parameter"]
-    )
-    for joint in joints:
-        if joint.type not in UNITS:
-            raise UsageFault(f"{name}: joint type {joint.type!r}; choose {' or '.join(UNITS)}")
-    for p in parameters:
-        if p.term not in TERMS:
-            raise UsageFault(f"{name}: {p.name} has term {p.term!r}; choose {', '.join(TERMS)}")
-        if len(joints) < PLANAR_JOINTS and p.term in PLANAR_TERMS:
-            raise UsageFault(
-                f"{name}: {p.name} has term {p.term}, which needs {PLANAR_JOINTS} joints"
-            )
-        first = 0 if p.term in PLANAR_TERMS else 1
-        if not first <= p.joint <= len(joints):
-            raise UsageFault(f"{name}: {p.name} is on joint {p.joint} of {len(joints)}")
-    control = document.get("control")
-    return Robot(
-        name=name,
-        title=document["title"],
-        joints=joints,
-        parameters=parameters,
-        control=_control(control, len(joints)) if control else None,
-    )
-
-
-def _numbers(entry: dict[str, Any], *texts: str) -> dict[str, Any]:
-    """The entry, all of whose values but those of `texts` must be numbers."""
-    for key, value in entry.items():
-        if key not in texts and not isinstance(value, int | float):
-            raise TypeError(f"{key} is {value!r}, not a number")
-    return entry
-
-
-def _control(gains: dict[str, Any], joints: int) -> Control:
-    rows = {key: tuple(gains[key]) for key in ("kp", "kd", "ki")}
-    for key, row in rows.items():
-        if len(row) != joints:
-            raise TypeError(f"{key} has {len(row)} values for {joints} joints")
-    return Control(**rows, velocity_cutoff=gains["velocity_cutoff"])
-
-
-def _reason(error: Exception) -> str:
-    return f"missing {error}" if isinstance(error, KeyError) else str(error)

@@ -84,6 +84,7 @@ def random_path(
     for k in range(1, len(times)):
         low = np.maximum(points[k - 1] - reach[k - 1], -back[k - 1])
         high = np.minimum(points[k - 1] + reach[k - 1], back[k - 1])
+        high = np.maximum(low, high)  # equal but for rounding where the way back is the shortest
         points[k] = np.where(moving[k - 1], rng.uniform(low, high), points[k - 1])
     return Path(times, points)
 
