@@ -4,7 +4,7 @@
 def filtered(x, y, line, taps):
     """Write the filtered x to y. line: the last samples, newest first; changed in place."""
     n = len(taps)
-    if len(y) != len(x) or len(line) != n:
+    if len(y) != len(x) or len(line) != n or n == 0:
         raise ValueError("fir: lengths differ")
     for k in range(len(x)):
         for i in range(n - 1, 0, -1):
@@ -21,7 +21,7 @@ def differentiate(g, out, line, taps, h):
 
     line: the last differences, newest first, then the last sample; changed in place. h [s].
     """
-    if len(out) != len(g) or len(line) != len(taps) + 1:
+    if len(out) != len(g) or len(line) != len(taps) + 1 or len(taps) == 0:
         raise ValueError("fir: lengths differ")
     n = len(taps)
     last = float(line[n])

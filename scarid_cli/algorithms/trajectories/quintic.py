@@ -101,8 +101,10 @@ def _times(
             f"{shortest:g} s; lengthen it or shorten the segments"
         )
     lengths: list[float] = []
-    while sum(lengths) < duration:
+    total = 0.0
+    while total < duration:
         lengths.append(rng.uniform(shortest, longest))
+        total += lengths[-1]
     # Stretch or shrink all a little, so that they end on time and stay within their limits.
     count = max(len(lengths), at_least)
     if duration / count < shortest:
