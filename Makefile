@@ -70,6 +70,7 @@ paper: $(P)/report.html
 
 $(P)/report.html: $(RESULTS)
 	$(SCARID) report $^ --html $@ --markdown $(P)/report.md --title "The paper's procedure"
+	@echo; echo "With figures: $@"
 
 $(P)/%.trajectory.parquet: $(VENV)/installed
 	@mkdir -p $(P)
