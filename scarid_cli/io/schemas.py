@@ -33,6 +33,12 @@ class Field:
     def per_joint(self) -> bool:
         return "{i}" in self.name
 
+    def about(self, column: str) -> str:
+        """The description, of the joint that this column belongs to."""
+        match = self.pattern.match(column)
+        joint = match.group(1) if match and self.per_joint else "i"
+        return self.description.replace("joint i", f"joint {joint}")
+
     @property
     def pattern(self) -> re.Pattern[str]:
         return re.compile(re.escape(self.name).replace(r"\{i\}", r"([1-9]\d*)") + r"\Z")

@@ -28,7 +28,7 @@ def described(table: Table) -> Iterator[str]:
     for field in table.schema:
         known = schema.field_of(field.name) if schema else None
         unit = table.unit(field.name) or "-"
-        about = known.description if known else ""
+        about = known.about(field.name) if known else ""
         yield f"  {field.name:<{width}}  {field.type!s:<7} {unit:<10} {about}".rstrip()
     yield "history" if meta.history else "history   none"
     for entry in meta.history:
