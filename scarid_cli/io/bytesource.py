@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import stat
 from typing import BinaryIO
@@ -104,6 +103,8 @@ class ByteSource:
         """The digest of a regular file, as `sha256sum` prints it; None for a pipe."""
         if not self.regular:
             return None
+        import hashlib  # a few milliseconds that a pipe need not pay
+
         digest = hashlib.sha256()
         offset = 0
         while data := os.pread(self.fd, BLOCK, offset):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 import pyarrow as pa
@@ -39,7 +39,7 @@ class Field:
         joint = match.group(1) if match and self.per_joint else "i"
         return self.description.replace("joint i", f"joint {joint}")
 
-    @property
+    @cached_property
     def pattern(self) -> re.Pattern[str]:
         return re.compile(re.escape(self.name).replace(r"\{i\}", r"([1-9]\d*)") + r"\Z")
 
