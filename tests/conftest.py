@@ -9,9 +9,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import hypothesis
 import pytest
 
 from scarid_cli.__main__ import main
+
+# Time is measured by benchmarks, not by tests: the machines are shared. The profile that is in
+# force, which on CI is one that repeats the same examples, stays otherwise as it is.
+hypothesis.settings.register_profile("patient", hypothesis.settings(), deadline=None)
+hypothesis.settings.load_profile("patient")
 
 ROOT = Path(__file__).parent.parent
 SHARED = ROOT.parent / "shared"
