@@ -59,7 +59,10 @@ STAGES: dict[str, Stage] = {
     "validate": lambda source: validate(source, SCARA, SCARA.apriori),
     "simulate": simulated,
     **{f"differentiate {name}": differentiated(name) for name in DIFFERENTIATORS.names},
-    **{f"differentiate {name} --match": matching(name) for name in ("central", "ed-fir", "p2smd")},
+    **{
+        f"differentiate {name} --match": matching(name)
+        for name in ("backward", "central", "ed-fir", "p2smd")
+    },
     **{f"identify {name}": identified(name) for name in ESTIMATORS.names},
 }
 

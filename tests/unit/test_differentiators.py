@@ -268,3 +268,15 @@ def test_central_is_the_gradient_of_the_gradient(rows: int) -> None:
     once = np.gradient(q, PERIOD)
     np.testing.assert_array_equal(v, once)
     np.testing.assert_array_equal(a, np.gradient(once, PERIOD))
+
+
+def test_backward_is_the_difference_to_the_sample_before_once_and_twice() -> None:
+    """Against scipy's filter, at rest before the first sample."""
+    q = np.random.default_rng(2).standard_normal(200)
+    method = DIFFERENTIATORS.load("backward")()
+    _, (v, a) = method.step(method.init(float(q[0]), PERIOD), q)
+    from_rest = q - q[0]
+    np.testing.assert_allclose(v, signal.lfilter([1.0, -1.0], [PERIOD], from_rest), atol=1e-9)
+    np.testing.assert_allclose(
+        a, signal.lfilter([1.0, -2.0, 1.0], [PERIOD**2], from_rest), atol=1e-7
+    )
