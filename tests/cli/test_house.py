@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -62,6 +64,22 @@ def test_a_streaming_stage_imports_numpy_and_pyarrow_only(
     assert scarid("trajgen", "--duration", 2, "-o", tmp_path / "reference.csv").status == 0
     log = (samples / "scara2.csv").read_text()
     assert loaded(log, *STREAMING[name], cwd=tmp_path) <= {"numpy", "pyarrow"}
+
+
+def test_what_the_program_imports_it_declares() -> None:
+    """The test extra brings packages along; a user has only the declared ones."""
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"][
+        "dependencies"
+    ]
+    names = {re.split(r"\W", requirement)[0] for requirement in declared}
+    imported = set()
+    for path in (ROOT / "scarid_cli").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Import):
+                imported |= {alias.name.partition(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                imported.add((node.module or "").partition(".")[0])
+    assert imported - set(sys.stdlib_module_names) - {"scarid_cli"} == names
 
 
 def test_imports_follow_the_architecture(monkeypatch: pytest.MonkeyPatch) -> None:
