@@ -67,7 +67,7 @@ def command(
     Table 1, or the nearest settings that work at 200 Hz.
     """
     from scarid_cli.cli.job import job
-    from scarid_cli.cli.methods import configured, matched
+    from scarid_cli.cli.methods import configured
     from scarid_cli.io.schemas import joints_of
     from scarid_cli.stages import differentiate as stage
 
@@ -78,6 +78,6 @@ def command(
         methods = configured(DIFFERENTIATORS.load(method), method, joints, settings, preset)
         table = run.recorded(table)
         if match:
-            run.write(stage.matched(table, matched(methods, method)), out)
+            run.write(stage.matched(table, methods), out)
         else:
             run.write(stage.differentiate(table, methods), out)

@@ -55,7 +55,7 @@ def command(
     delays what it filters, so give q and tau the same one. Zero phase extends the record oddly by
     three times the order at both ends, as MATLAB's filtfilt does.
     """
-    from scarid_cli.algorithms.filters.butterworth import Butterworth
+    from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
     from scarid_cli.cli.job import job
     from scarid_cli.errors import UsageFault
     from scarid_cli.stages import filter as stage
@@ -64,16 +64,13 @@ def command(
         raise UsageFault("give --cutoff or --natural-frequency, not both")
     if cutoff is None:
         cutoff = 10.0 * (2.0 if natural_frequency is None else natural_frequency)
-    lowpass = Butterworth(cutoff, order)
+    lowpass = (ZeroPhase if zero_phase else Butterworth)(cutoff, order)
     with job(rest) as run:
         out = run.output(rest["output"], rest["format"])
         table = run.read(file, "measurement")
         chosen = select(columns, table.columns) if columns else measured(table.columns)
         table = run.recorded(table)
-        if zero_phase:
-            run.write(stage.zero_phase(table, chosen, lowpass), out)
-        else:
-            run.write(stage.causal(table, dict.fromkeys(chosen, lowpass)), out)
+        run.write(stage.filtered(table, dict.fromkeys(chosen, lowpass)), out)
 
 
 def measured(names: list[str]) -> list[str]:

@@ -41,10 +41,3 @@ def _preset(method: Any, name: str, preset: str | None) -> dict[str, float]:
         raise UsageFault(f"--preset: {name} has no preset {preset!r}; it has {choice}")
     settings: dict[str, float] = method.PRESETS[preset]
     return settings
-
-
-def matched(methods: list[Any], name: str) -> list[Any]:
-    """The phase-matched form of each."""
-    if not hasattr(methods[0], "matched"):
-        raise UsageFault(f"--match: {name} is not linear, and has no matched form")
-    return [method.matched() for method in methods]

@@ -85,9 +85,25 @@ def doubles(values: Array) -> pa.Array:
     return pa.Array.from_buffers(pa.float64(), len(data), [None, pa.py_buffer(data)])
 
 
-def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Array]) -> pa.RecordBatch:
+def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any]) -> pa.RecordBatch:
     """The batch with some columns replaced or added, in the order of the schema."""
-    return pa.RecordBatch.from_arrays(
-        [doubles(new[name]) if name in new else batch.column(name) for name in schema.names],
-        schema=schema,
-    )
+
+    def column(name: str) -> pa.Array:
+        values = new.get(name)
+        if values is None:
+            return batch.column(name)
+        return values if isinstance(values, pa.Array) else doubles(values)
+
+    return pa.RecordBatch.from_arrays([column(name) for name in schema.names], schema=schema)
+
+
+def settled(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+    """Only the rows that a soft sensor has marked as settled; all where there is no such mark."""
+    for batch in batches:
+        if "settled" not in batch.schema.names:
+            yield batch
+            continue
+        marks = batch.column("settled").to_numpy(zero_copy_only=False) != 0
+        ends = np.flatnonzero(np.diff(marks, prepend=False, append=False))
+        for start, end in ends.reshape(-1, 2):
+            yield batch.slice(int(start), int(end - start))

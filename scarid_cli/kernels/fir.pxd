@@ -1,15 +1,7 @@
 cimport cython
 
 @cython.locals(
-    k=cython.Py_ssize_t, i=cython.Py_ssize_t, n=cython.Py_ssize_t, total=double,
+    k=cython.Py_ssize_t, i=cython.Py_ssize_t, n=cython.Py_ssize_t, whole=cython.Py_ssize_t,
+    newest=cython.Py_ssize_t, s0=double, s1=double, s2=double, s3=double,
 )
-cpdef filtered(
-    const double[::1] x, double[::1] y, double[::1] line, const double[::1] taps,
-)
-
-@cython.locals(
-    k=cython.Py_ssize_t, i=cython.Py_ssize_t, n=cython.Py_ssize_t, last=double, x=double, y=double,
-)
-cpdef differentiate(
-    const double[::1] g, double[::1] out, double[::1] line, const double[::1] taps, double h,
-)
+cpdef filtered(const double[::1] x, double[::1] y, const double[::1] taps)

@@ -1,38 +1,24 @@
-"""Finite impulse response filter, alone and after a backward difference (ED+FIR of the paper)."""
+"""Finite impulse response filter."""
 
 
-def filtered(x, y, line, taps):
-    """Write the filtered x to y. line: the last samples, newest first; changed in place."""
-    n = len(taps)
-    if len(y) != len(x) or len(line) != n or n == 0:
-        raise ValueError("fir: lengths differ")
-    for k in range(len(x)):
-        for i in range(n - 1, 0, -1):
-            line[i] = line[i - 1]
-        line[0] = float(x[k])
-        total = 0.0
-        for i in range(n):
-            total += float(taps[i]) * float(line[i])
-        y[k] = total
+def filtered(x, y, taps):
+    """Write the filtered x to y: y[k] is the sum of taps[i] x[k + n - 1 - i], n taps.
 
-
-def differentiate(g, out, line, taps, h):
-    """Write the filtered backward difference of g to out.
-
-    line: the last differences, newest first, then the last sample; changed in place. h [s].
+    x: the n - 1 samples before the first of y, then one for each of y. Four partial sums, because
+    one would wait for itself.
     """
-    if len(out) != len(g) or len(line) != len(taps) + 1 or len(taps) == 0:
-        raise ValueError("fir: lengths differ")
     n = len(taps)
-    last = float(line[n])
-    for k in range(len(g)):
-        x = float(g[k])
-        for i in range(n - 1, 0, -1):
-            line[i] = line[i - 1]
-        line[0] = (x - last) / h
-        last = x
-        y = 0.0
-        for i in range(n):
-            y += float(taps[i]) * float(line[i])
-        out[k] = y
-    line[n] = last
+    if n == 0 or len(x) != len(y) + n - 1:
+        raise ValueError("fir: lengths differ")
+    whole = n - n % 4
+    for k in range(len(y)):
+        newest = k + n - 1
+        s0 = s1 = s2 = s3 = 0.0
+        for i in range(0, whole, 4):
+            s0 += float(taps[i]) * float(x[newest - i])
+            s1 += float(taps[i + 1]) * float(x[newest - i - 1])
+            s2 += float(taps[i + 2]) * float(x[newest - i - 2])
+            s3 += float(taps[i + 3]) * float(x[newest - i - 3])
+        for i in range(whole, n):
+            s0 += float(taps[i]) * float(x[newest - i])
+        y[k] = (s0 + s1) + (s2 + s3)

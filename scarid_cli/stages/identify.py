@@ -13,7 +13,7 @@ from scarid_cli.algorithms.statistics.information import Fit, Information, NotId
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Metadata, Table, doubles, matrix, number
+from scarid_cli.io.table import Metadata, Table, doubles, matrix, number, settled
 from scarid_cli.stages import Sink
 
 
@@ -66,7 +66,7 @@ def identify(
     if trace:
         meta = replace(table.meta, kind="trace", robot=robot.name)
         trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    for batch in table.batches:
+    for batch in settled(table.batches):
         W, tau = columns.regression(batch)
         state, estimates = estimator.step(
             state, W, np.ascontiguousarray(tau.T), trace=trace is not None

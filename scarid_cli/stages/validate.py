@@ -12,7 +12,7 @@ from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, emp
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, doubles, number
+from scarid_cli.io.table import Table, doubles, number, settled
 from scarid_cli.stages import Sink
 from scarid_cli.stages.identify import Columns, known
 
@@ -43,7 +43,7 @@ def validate(table: Table, robot: Robot, theta: Array, *, predictions: Sink | No
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    for batch in table.batches:
+    for batch in settled(table.batches):
         W, tau = columns.regression(batch)
         predicted = robot.torques(W, theta)
         sums = [accumulate(s, x, y) for s, x, y in zip(sums, tau, predicted, strict=True)]

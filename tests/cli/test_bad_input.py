@@ -169,7 +169,14 @@ USAGE = {
     "no number": (["differentiate", "--set", "gamma0=x", "LOG"], "'x' is not a number"),
     "negative gain": (["differentiate", "--set", "gamma0=-1", "LOG"], "gamma0 must be positive"),
     "too many values": (["differentiate", "--set", "gamma0=1,2,3", "LOG"], "3 values for 2 joints"),
-    "no matched form": (["differentiate", "--method", "2smd", "--match", "LOG"], "no matched form"),
+    "even window": (
+        ["differentiate", "--method", "savgol", "--set", "window=80", "LOG"],
+        "window must be odd, not 80",
+    ),
+    "cutoff above half the rate": (
+        ["differentiate", "--method", "zero-phase", "--set", "cutoff=60", "LOG"],
+        "cutoff 60 Hz is not below half the rate, 50 Hz",
+    ),
     "no such preset": (["differentiate", "--preset", "best", "LOG"], "it has table1"),
     "time filtered": (["filter", "-c", "*", "LOG"], "the time column t cannot be filtered"),
     "two cut-offs": (["filter", "--cutoff", "1", "--natural-frequency", "1"], "not both"),
@@ -206,6 +213,27 @@ def test_a_wrong_command_line_is_told_in_one_line(
     assert message in result.err
     assert result.err.count("\n") == 1
     assert result.out == ""
+
+
+@pytest.mark.parametrize(
+    ("method", "setting", "message"),
+    [
+        ("kalman-lag", "delay=6", "a lag of 600 samples is longer than the log of 501 rows"),
+        ("savgol", "window=1003", "a lag of 501 samples is longer than the log of 501 rows"),
+        ("savgol", "window=503", "window of 503 samples is longer than the log of 501 rows"),
+    ],
+)
+def test_a_lag_longer_than_the_log_leaves_no_output(
+    method: str, setting: str, message: str, scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    """Which can only be known at its end."""
+    out = tmp_path / "motion.csv"
+    log = samples / "scara2.csv"
+    result = scarid("differentiate", "--method", method, "--set", setting, log, "-o", out)
+    assert result.status == 2
+    assert message in result.err
+    assert result.err.count("\n") == 1
+    assert not out.exists()
 
 
 def test_via_points_that_break_the_bounds_are_refused(scarid: Run, tmp_path: Path) -> None:

@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.tables import PERIOD, SCARA, Kept, collected, motion, table
 
-from scarid_cli.algorithms.filters.butterworth import Butterworth
+from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path
 from scarid_cli.io.table import Table
 from scarid_cli.stages.differentiate import differentiate, matched
-from scarid_cli.stages.filter import causal, zero_phase
+from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
 from scarid_cli.stages.simulate import simulate
 from scarid_cli.stages.validate import validate
@@ -31,7 +31,7 @@ def differentiated(name: str) -> Stage:
 
 
 def matching(name: str) -> Stage:
-    return lambda source: matched(source, [DIFFERENTIATORS.load(name)().matched()] * 2)
+    return lambda source: matched(source, [DIFFERENTIATORS.load(name)()] * 2)
 
 
 def identified(name: str) -> Stage:
@@ -54,15 +54,14 @@ def simulated(source: Table) -> Table:
 
 
 STAGES: dict[str, Stage] = {
-    "filter": lambda source: causal(source, dict.fromkeys(["q1", "tau2"], Butterworth(20.0))),
-    "filter zero-phase": lambda source: zero_phase(source, ["q1", "tau2"], Butterworth(20.0)),
+    "filter": lambda source: filtered(source, dict.fromkeys(["q1", "tau2"], Butterworth(20.0))),
+    "filter zero-phase": lambda source: filtered(
+        source, dict.fromkeys(["q1", "tau2"], ZeroPhase(20.0))
+    ),
     "validate": lambda source: validate(source, SCARA, SCARA.apriori),
     "simulate": simulated,
     **{f"differentiate {name}": differentiated(name) for name in DIFFERENTIATORS.names},
-    **{
-        f"differentiate {name} --match": matching(name)
-        for name in ("backward", "central", "ed-fir", "p2smd")
-    },
+    **{f"differentiate {name} --match": matching(name) for name in DIFFERENTIATORS.names},
     **{f"identify {name}": identified(name) for name in ESTIMATORS.names},
 }
 

@@ -14,7 +14,7 @@ from scarid_cli.algorithms.filters.butterworth import Butterworth
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Table, doubles, number
 from scarid_cli.stages.differentiate import differentiate
-from scarid_cli.stages.filter import causal
+from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
 from scarid_cli.stages.validate import validate
 
@@ -36,7 +36,7 @@ def test_columns_a_stage_does_not_know_pass_untouched_and_in_order() -> None:
     )
     source = table({"t": t})
     source = Table("test", schema, source.meta, cut(batch, [4]))
-    result = collected(differentiate(causal(source, {"q1": Butterworth(20.0)}), [Central()]))
+    result = collected(differentiate(filtered(source, {"q1": Butterworth(20.0)}), [Central()]))
     assert result.column_names == ["t", "note", "q1", "volt", "dq1", "ddq1"]
     assert result.column("note").combine_chunks().equals(notes)
     assert result.column("volt").combine_chunks().equals(batch.column("volt"))

@@ -48,7 +48,7 @@ def derivatives(
         state, part = method.step(state, q[chunk])
         parts.append(part)
     parts.append(method.finish(state))
-    v, a = (np.concatenate(rows) for rows in zip(*parts, strict=True))
+    v, a = (np.concatenate(rows) for rows in zip(*filter(None, parts), strict=True))
     return v, a
 
 

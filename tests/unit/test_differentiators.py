@@ -17,9 +17,9 @@ from unit.support import PERIOD, cuts, derivatives, encoder_readings, every_diff
 from scarid_cli.algorithms.differentiators import central, ed_fir, p2smd
 from scarid_cli.algorithms.registry import DIFFERENTIATORS
 from scarid_cli.arrays import Array
-from scarid_cli.errors import UsageFault
+from scarid_cli.errors import ScaridError, UsageFault
 
-ROWS = 60
+ROWS = 120
 LSB = 2.0 * np.pi / 2**13
 
 METHODS = dict(every_differentiator())
@@ -51,22 +51,33 @@ def test_step_leaves_its_state_alone(make: Any) -> None:
 @every_method
 @pytest.mark.parametrize("rows", [2, 3, ROWS])
 def test_every_position_gets_its_derivatives(make: Any, rows: int) -> None:
-    v, a = derivatives(make(), encoder_readings(rows))
-    assert len(v) == len(a) == rows
+    method = make()
+    try:
+        v, a = derivatives(method, encoder_readings(rows))
+    except ScaridError:
+        assert method.lag(PERIOD) > 2, "only a method that looks far ahead needs a longer record"
+        assert rows < ROWS
+    else:
+        assert len(v) == len(a) == rows
 
 
 @every_method
 def test_output_lags_by_what_the_method_declares(make: Any) -> None:
     method, q = make(), encoder_readings(ROWS)
-    _, (v, a) = method.step(method.init(q[0], PERIOD), q)
-    assert len(v) == len(a) == ROWS - method.LAG
+    _, settled = method.step(method.init(q[0], PERIOD), q)
+    lengths = {len(x) for x in settled} or {0}
+    assert lengths == {max(ROWS - method.lag(PERIOD), 0)}
 
 
 @every_method
 @given(position=st.floats(-1e3, 1e3))
 @settings(max_examples=20, deadline=None)
 def test_standing_still_starts_without_a_jump(make: Any, position: float) -> None:
-    np.testing.assert_array_equal(derivatives(make(), np.full(ROWS, position)), 0.0)
+    # What the differences of a rounded position may be
+    v, a = derivatives(make(), np.full(ROWS, position))
+    bit = np.spacing(max(abs(position), 1.0))
+    np.testing.assert_allclose(v, 0.0, atol=10.0 * bit / PERIOD)
+    np.testing.assert_allclose(a, 0.0, atol=10.0 * bit / PERIOD**2)
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,8 @@ import pytest
 
 import scarid_cli.kernels
 from scarid_cli.algorithms.filters.butterworth import Butterworth
+from scarid_cli.algorithms.filters.kalman import Records
+from scarid_cli.algorithms.filters.kalman import Settings as Kalman
 from scarid_cli.algorithms.plants.loop import mechanism
 from scarid_cli.algorithms.robots.reading import load
 
@@ -66,14 +68,57 @@ def astd(rng: np.random.Generator) -> Arguments:
     return [q, np.empty_like(q), rng.random(3), gains, 0.005]
 
 
+def levant(rng: np.random.Generator, filters: int = 0, taylor: int = 1) -> Arguments:
+    q = motion(rng)
+    state, gains = rng.random(5), 10.0 * rng.random(5)
+    return [q, np.empty_like(q), np.empty_like(q), state, gains, filters, taylor, 0.005]
+
+
+def implicit_levant(rng: np.random.Generator, order: int = 3) -> Arguments:
+    q = motion(rng)
+    gains = 10.0 * rng.random(order + 1)
+    return [q, np.empty_like(q), np.empty_like(q), rng.random(order + 1), gains, 0.005]
+
+
+def tracking(rng: np.random.Generator) -> Arguments:
+    q = motion(rng)
+    return [q, np.empty_like(q), np.empty_like(q), rng.random(2), np.array([30.0, 0.02]), 0.005]
+
+
+def kalman(rng: np.random.Generator) -> Arguments:
+    """A glitch now and then, and a step that stays."""
+    q = motion(rng)
+    q[::50] += 1.0
+    q[300:] += 0.5
+    state = Kalman().model(0.005).at_rest(float(q[0]))
+    numbers = [state.x, state.P, state.gain, state.work]
+    return [q, np.empty((400, 4)), *numbers, state.model.F, state.model.Q, state.model.noise]
+
+
+def kalman_records(rng: np.random.Generator) -> Arguments:
+    q, _, *rest = kalman(rng)
+    records = [np.zeros_like(array) for array in Records.of(400, 4).arrays]
+    return [q, *records, *rest]
+
+
+def smoothing(rng: np.random.Generator) -> Arguments:
+    """The records of a filter whose gain settles, glitches included."""
+    q, *records, x, P, gain, work, F, Q, noise = kalman_records(rng)
+    interpreted("kalman").recorded(q, *records, x, P, gain, work, F, Q, noise)
+    return [*records, P, F]
+
+
+def lagged(rng: np.random.Generator) -> Arguments:
+    return [*smoothing(rng), rng.standard_normal((2, 8)), np.empty((395, 2)), np.empty(8)]
+
+
+def smoothed(rng: np.random.Generator) -> Arguments:
+    return [*smoothing(rng), np.empty((400, 3)), np.empty(8)]
+
+
 def fir(rng: np.random.Generator) -> Arguments:
     q = motion(rng)
-    return [q, np.empty_like(q), rng.standard_normal(12), rng.standard_normal(11), 0.005]
-
-
-def fir_alone(rng: np.random.Generator) -> Arguments:
-    q = motion(rng)
-    return [q, np.empty_like(q), rng.standard_normal(11), rng.standard_normal(11)]
+    return [q, np.empty(len(q) - 10), rng.standard_normal(11)]
 
 
 def sos(rng: np.random.Generator) -> Arguments:
@@ -121,8 +166,22 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
     "p2smd, literal law": ("p2smd", "differentiate", p2smd_literal),
     "smd2": ("smd2", "differentiate", smd2),
     "astd": ("astd", "differentiate", astd),
-    "fir": ("fir", "differentiate", fir),
-    "fir, alone": ("fir", "filtered", fir_alone),
+    "p2smd, implicit": ("p2smd", "implicit", p2smd),
+    "levant": ("levant", "differentiate", levant),
+    "levant, Euler": ("levant", "differentiate", lambda rng: levant(rng, taylor=0)),
+    "levant, filtering": ("levant", "differentiate", lambda rng: levant(rng, filters=2)),
+    "implicit_levant": ("implicit_levant", "differentiate", implicit_levant),
+    "implicit_levant, order 5": (
+        "implicit_levant",
+        "differentiate",
+        lambda rng: implicit_levant(rng, 5),
+    ),
+    "tracking": ("tracking", "follow", tracking),
+    "kalman": ("kalman", "filtered", kalman),
+    "kalman, records": ("kalman", "recorded", kalman_records),
+    "kalman, lagged": ("kalman", "lagged", lagged),
+    "kalman, smoothed": ("kalman", "smoothed", smoothed),
+    "fir": ("fir", "filtered", fir),
     "sos": ("sos", "filtered", sos),
     "information": ("information", "update", information),
     "information, trace": ("information", "update", lambda rng: information(rng, trace=True)),
@@ -185,8 +244,9 @@ def test_plant_case_does_slide_and_stick(case: str) -> None:
 
 def wrong_lengths() -> Iterator[Any]:
     """Each array of each kernel, along each of its axes, one too short or too long."""
-    cases = ["p2smd", "smd2", "astd", "fir", "fir, alone", "sos", "information, trace"]
-    for case in [*cases, "moments", "plant"]:
+    variants = {"levant, Euler", "kalman, lagged"}  # whose records and outputs may differ in length
+    one = {(kernel, function): case for case, (kernel, function, _) in CASES.items()}
+    for case in sorted(set(one.values()) - variants):
         for index, argument in enumerate(CASES[case][2](np.random.default_rng(0))):
             for axis in range(np.ndim(argument)):
                 for change in (-1, 1):

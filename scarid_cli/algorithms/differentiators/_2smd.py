@@ -1,6 +1,8 @@
 """Second-order sliding mode differentiator (paper eq. 6 with its exponent mended; Levant 2003).
 
-Explicit Euler, output at the posterior states. Exact after convergence if eta2 exceeds the jerk.
+Causal, explicit Euler, output at the posterior states. Exact after convergence if eta2 exceeds the
+jerk; then the delay is that of the sampling, else tens of milliseconds. Matched (--match): by the
+delays measured on quintic moves of 1 rad in 0.8 to 2 s at the settings given.
 Rule: eta0 = 2 L^(1/3), eta1 = 1.5 L^(1/2), eta2 = 1.1 L, with L the largest jerk [1/s3].
 eta0 = 10: as in Table 1.
 eta1 = 12, eta2 = 70: the rule for L = 64 rad/s3, what moves of 1 rad in a second need. Table 1
@@ -14,7 +16,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.recursion import Causal, Derivatives, Recursion
+from scarid_cli.algorithms.matching import Measured
+from scarid_cli.algorithms.process import Causal, Recursion
 from scarid_cli.algorithms.settings import require_positive
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import smd2
@@ -31,12 +34,15 @@ class Differentiator(Causal):
     def __post_init__(self) -> None:
         require_positive(self, "eta0", "eta1", "eta2")
 
-    def init(self, q: float, h: float) -> Recursion:
-        return Recursion(np.array([q, 0.0, 0.0]), h)
+    def init(self, x: float, h: float) -> Recursion:
+        return Recursion(np.array([x, 0.0, 0.0]), h)
 
-    def step(self, state: Recursion, q: Array) -> tuple[Recursion, Derivatives]:
+    def step(self, state: Recursion, x: Array) -> tuple[Recursion, tuple[Array, ...]]:
         state = state.copy()
-        v, a = np.empty_like(q), np.empty_like(q)
+        v, a = np.empty_like(x), np.empty_like(x)
         gains = np.array([self.eta0, self.eta1, self.eta2])
-        smd2.differentiate(q, v, a, state.values, gains, state.h)
+        smd2.differentiate(x, v, a, state.values, gains, state.h)
         return state, (v, a)
+
+    def matched(self) -> Measured:
+        return Measured(self)

@@ -1,7 +1,7 @@
 """Central difference, twice: no delay and no filter, for positions that are filtered already.
 
-The field's standard after a zero-phase filter. One-sided at both ends, like numpy.gradient. A row
-waits for the two that follow it. Matched as it is. No settings.
+The field's standard after a zero-phase filter. Fixed lag of two samples; one-sided at both ends,
+like numpy.gradient. Matched as it is. No settings.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.recursion import Derivatives
+from scarid_cli.algorithms.matching import WithPosition
 from scarid_cli.arrays import Array
 
 
@@ -33,26 +33,25 @@ class State:
 
 @dataclass(frozen=True)
 class Differentiator:
-    LAG: ClassVar[int] = 2
     PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
 
-    companion: ClassVar[None] = None
+    def lag(self, h: float) -> float:  # noqa: ARG002 (the same at every rate)
+        return 2
 
-    def matched(self) -> Differentiator:
-        """Central differences add no dynamics."""
-        return self
+    def matched(self) -> WithPosition:
+        return WithPosition(self)
 
-    def init(self, q: float, h: float) -> State:  # noqa: ARG002 (no state before the first sample)
+    def init(self, x: float, h: float) -> State:  # noqa: ARG002 (no state before the first sample)
         none = np.empty(0)
         return State(Line(none), Line(none), none, h)
 
-    def step(self, state: State, q: Array) -> tuple[State, Derivatives]:
-        position, v = advance(state.position, q, state.h)
+    def step(self, state: State, x: Array) -> tuple[State, tuple[Array, ...]]:
+        position, v = advance(state.position, x, state.h)
         velocity, a = advance(state.velocity, v, state.h)
         waiting = np.concatenate((state.waiting, v))
         return State(position, velocity, waiting[len(a) :], state.h), (waiting[: len(a)], a)
 
-    def finish(self, state: State) -> Derivatives:
+    def finish(self, state: State) -> tuple[Array, ...]:
         last = settle(state.position, state.h)
         velocity, a = advance(state.velocity, last, state.h)
         a = np.concatenate((a, settle(velocity, state.h)))

@@ -11,34 +11,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_rest
+from scarid_cli.algorithms.process import Causal, Record, Whole
+from scarid_cli.algorithms.settings import require_below_nyquist, require_positive, require_whole
 from scarid_cli.arrays import Array
-from scarid_cli.errors import UsageFault
+from scarid_cli.errors import bad_data
 
 
 @dataclass(frozen=True)
-class Butterworth:
+class Butterworth(Causal):
     """Low-pass of an order with -3 dB at the cut-off [Hz]."""
 
     cutoff: float
     order: int = 4
 
     def __post_init__(self) -> None:
-        if not self.cutoff > 0.0:
-            raise UsageFault(f"the cut-off must be positive, not {self.cutoff:g} Hz")
-        if self.order < 1:
-            raise UsageFault(f"the order must be at least 1, not {self.order}")
-
-    @property
-    def padding(self) -> int:
-        """Samples that the zero-phase form extends a record by, as MATLAB does."""
-        return 3 * self.order
+        require_positive(self, "cutoff", "order")
+        require_whole(self, "order")
 
     def sections(self, h: float) -> Array:
         """Rows b0, b1, b2, a1, a2, each section of unit gain at rest; h [s]."""
-        if self.cutoff * h >= 0.5:
-            raise UsageFault(
-                f"the cut-off of {self.cutoff:g} Hz is not below half the rate, {0.5 / h:g} Hz"
-            )
+        require_below_nyquist(self.cutoff, h)
         w = 2.0 * np.tan(np.pi * self.cutoff * h)
         rows = [_pair(w, angle) for angle in _angles(self.order)]
         if self.order % 2:
@@ -49,17 +41,42 @@ class Butterworth:
         """At rest at x."""
         return at_rest(self.sections(h), x)
 
-    def step(self, state: SectionState, x: Array) -> tuple[SectionState, Array]:
+    def step(self, state: SectionState, x: Array) -> tuple[SectionState, tuple[Array, ...]]:
         """The filtered samples x, causally."""
-        return advanced(state, x)
+        state, y = advanced(state, x)
+        return state, (y,)
 
-    def zero_phase(self, x: Array, h: float) -> Array:
-        """Forwards and backwards over more than `padding` samples, extended oddly at both ends."""
+
+@dataclass(frozen=True)
+class ZeroPhase(Whole):
+    """Forwards and backwards; the record is extended oddly at both ends, as MATLAB does."""
+
+    cutoff: float
+    order: int = 4
+
+    def __post_init__(self) -> None:
+        Butterworth(self.cutoff, self.order)
+
+    def init(self, x: float, h: float) -> Record:
+        self._sections(h)
+        return super().init(x, h)
+
+    def over(self, x: Array, h: float) -> tuple[Array, ...]:
         from scipy import signal
 
-        rows = np.insert(self.sections(h), 3, 1.0, axis=1)
-        y: Array = signal.sosfiltfilt(rows, x, padtype="odd", padlen=self.padding)
-        return y
+        padding = 3 * int(self.order)
+        if len(x) <= padding:
+            raise bad_data(
+                "the log",
+                f"{len(x)} rows",
+                expected=f"more than {padding} for a zero-phase filter of this order",
+                remedy="give a longer log",
+            )
+        sections = np.insert(self._sections(h), 3, 1.0, axis=1)
+        return (signal.sosfiltfilt(sections, x, padtype="odd", padlen=padding),)
+
+    def _sections(self, h: float) -> Array:
+        return Butterworth(self.cutoff, int(self.order)).sections(h)
 
 
 def _angles(order: int) -> Array:

@@ -1,0 +1,34 @@
+"""Savitzky-Golay at the end of its window: the polynomial that fits the last samples best.
+
+Causal. Savitzky and Golay, Anal. Chem. 36 (1964) 1627; scipy.signal.savgol_coeffs with pos at the
+newest sample. No delay on motions of the degree; on others some 20 ms at the default. Matched
+(--match, exact): position and torque pass the low-pass whose second difference the acceleration
+is, and the velocity is the first difference of the same. Rule: the longest window over which the
+motion is nearly a polynomial of the degree; noise goes down with its length to the power 2.5.
+window = 45: samples.
+degree = 3: of the polynomial, 2 or more and below the window.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from scarid_cli.algorithms.filters.convolution import FirMethod, integrated_twice
+from scarid_cli.algorithms.filters.polynomials import derivative_taps, require_window
+from scarid_cli.arrays import Array
+
+
+@dataclass(frozen=True)
+class Differentiator(FirMethod):
+    window: int = 45
+    degree: int = 3
+
+    def __post_init__(self) -> None:
+        require_window(self)
+
+    def taps(self, h: float) -> tuple[Array, ...]:
+        velocity, acceleration = derivative_taps(int(self.window), int(self.degree), 0, h)
+        return velocity, acceleration
+
+    def lowpass(self, h: float) -> Array:
+        return integrated_twice(self.taps(h)[1], h)

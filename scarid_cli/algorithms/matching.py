@@ -1,0 +1,238 @@
+"""Phase matching: position, derivatives and torque of one instant (A.3 of the equations; ours).
+
+tau = W(q, dq, ddq) theta holds between signals of the same instant only. A linear method is a
+low-pass followed by differences; its matched form gives the derivatives that are exactly the
+central differences of the low-passed position, and torques go through the same low-pass.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from scarid_cli.algorithms.process import Causal, Process
+from scarid_cli.arrays import Array
+
+
+@dataclass(frozen=True)
+class Behind:
+    """The state of a low-pass, its last two outputs, and the sampling period [s]."""
+
+    lowpass: Any
+    last: Array
+    h: float
+
+
+class AfterLowpass:
+    """What is made of a low-pass and the samples on both sides."""
+
+    lowpass: Process
+
+    def lag(self, h: float) -> float:
+        return self.lowpass.lag(h)
+
+    def init(self, x: float, h: float) -> Behind:
+        return Behind(self.lowpass.init(x, h), np.full(2, x), h)
+
+    def step(self, state: Behind, x: Array) -> tuple[Behind, tuple[Array, ...]]:
+        after, (y,) = self.lowpass.step(state.lowpass, x)
+        samples = np.concatenate((state.last, y))
+        return Behind(after, samples[-2:], state.h), self.outputs(samples, state.h)
+
+    def finish(self, state: Behind) -> tuple[Array, ...]:
+        rest = self.lowpass.finish(state.lowpass)
+        return self.outputs(np.concatenate((state.last, *rest)), state.h) if rest else ()
+
+    @abstractmethod
+    def outputs(self, samples: Array, h: float) -> tuple[Array, ...]:
+        """Those of all samples but the first and the last."""
+
+
+@dataclass(frozen=True)
+class Differences(AfterLowpass):
+    """The matched form of a linear method: its low-pass, and the central differences of that.
+
+    torques: the same low-pass where it is another for torques, without a gate against glitches.
+    """
+
+    lowpass: Process
+    torques: Process | None = None
+
+    @property
+    def companion(self) -> Delayed:
+        return Delayed(self.torques or self.lowpass)
+
+    def outputs(self, samples: Array, h: float) -> tuple[Array, ...]:
+        v = (samples[2:] - samples[:-2]) / (2.0 * h)
+        return samples[1:-1], v, np.diff(np.diff(samples)) / h**2
+
+
+@dataclass(frozen=True)
+class Delayed(AfterLowpass):
+    """A low-pass and the sample of delay by which its differences are central."""
+
+    lowpass: Process
+
+    def outputs(self, samples: Array, h: float) -> tuple[Array, ...]:  # noqa: ARG002
+        return (samples[1:-1],)
+
+
+@dataclass(frozen=True)
+class Beside:
+    """The state of a method, and the positions that wait for their derivatives."""
+
+    own: Any
+    positions: Array
+
+
+@dataclass(frozen=True)
+class WithPosition:
+    """The matched form of a method that adds no dynamics: the position as it is."""
+
+    method: Process
+    companion: ClassVar[None] = None
+
+    def lag(self, h: float) -> float:
+        return self.method.lag(h)
+
+    def init(self, x: float, h: float) -> Beside:
+        return Beside(self.method.init(x, h), np.empty(0))
+
+    def step(self, state: Beside, x: Array) -> tuple[Beside, tuple[Array, ...]]:
+        own, outputs = self.method.step(state.own, x)
+        positions = np.concatenate((state.positions, x))
+        rows = len(outputs[0]) if outputs else 0
+        return Beside(own, positions[rows:]), (positions[:rows], *outputs) if outputs else ()
+
+    def finish(self, state: Beside) -> tuple[Array, ...]:
+        return state.positions, *self.method.finish(state.own)
+
+
+@dataclass(frozen=True)
+class Line:
+    """The samples that a delay holds, and the part of a period beyond whole ones."""
+
+    samples: Array
+    fraction: float
+
+    @classmethod
+    def of(cls, seconds: float, x: float, h: float) -> Line:
+        return cls(np.full(int(seconds / h) + 1, x), seconds / h % 1.0)
+
+    def delayed(self, x: Array) -> tuple[Line, Array]:
+        """Between samples by linear interpolation."""
+        samples = np.concatenate((self.samples, x))
+        late, early = samples[: len(x)], samples[1 : len(x) + 1]
+        return Line(samples[len(x) :], self.fraction), early + self.fraction * (late - early)
+
+
+@dataclass(frozen=True)
+class MeasuredState:
+    """The method's own state, and the positions and velocities that wait."""
+
+    own: Any
+    position: Line
+    velocity: Line
+
+
+@dataclass(frozen=True)
+class Measured(Causal):
+    """The matched form of a nonlinear method: by the delays that it has on a reference motion."""
+
+    method: Any
+
+    @property
+    def companion(self) -> Delay:
+        return Delay(self.method)
+
+    def init(self, x: float, h: float) -> MeasuredState:
+        v, a = delays(self.method, h)
+        return MeasuredState(self.method.init(x, h), Line.of(a, x, h), Line.of(a - v, 0.0, h))
+
+    def step(self, state: MeasuredState, x: Array) -> tuple[MeasuredState, tuple[Array, ...]]:
+        own, (v, a) = self.method.step(state.own, x)
+        position, q = state.position.delayed(x)
+        velocity, v = state.velocity.delayed(v)
+        return MeasuredState(own, position, velocity), (q, v, a)
+
+
+@dataclass(frozen=True)
+class Delay(Causal):
+    """The delay of a method's acceleration."""
+
+    method: Any
+
+    def init(self, x: float, h: float) -> Line:
+        return Line.of(delays(self.method, h)[1], x, h)
+
+    def step(self, state: Line, x: Array) -> tuple[Line, tuple[Array, ...]]:
+        after, late = state.delayed(x)
+        return after, (late,)
+
+
+def delays(method: Any, h: float) -> tuple[float, float]:
+    """By how much velocity and acceleration are late [s] on moves of 1 rad in 0.8 to 2 s.
+
+    The delay of the least squared error; the velocity's is no longer than the acceleration's.
+    """
+    q, v, a = reference(h)
+    _, (got_v, got_a) = method.step(method.init(float(q[0]), h), q)
+    late = lateness(got_a, a, h)
+    return min(lateness(got_v, v, h), late), late
+
+
+def reference(h: float) -> tuple[Array, Array, Array]:
+    """Quintic moves to and fro, the fastest and the slowest of the paper's excitation."""
+    parts = []
+    for sign, duration in zip((1.0, -1.0) * 4, (0.8, 1.2, 1.6, 2.0) * 2, strict=True):
+        s = np.arange(0.0, duration, h) / duration
+        q = s**3 * (10.0 + s * (-15.0 + 6.0 * s))
+        v = 30.0 * s**2 * (1.0 - s) ** 2 / duration
+        a = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / duration**2
+        start = 0.0 if sign > 0.0 else 1.0
+        parts.append(np.array([start + sign * q, sign * v, sign * a]))
+    q, v, a = np.concatenate(parts, axis=1)
+    return q, v, a
+
+
+def lateness(estimate: Array, truth: Array, h: float) -> float:
+    """The delay [s], not negative, after which the truth is nearest to the estimate."""
+    t = np.arange(len(truth)) * h
+    grid = np.linspace(0.0, 0.2, 81)
+    errors = [np.sum((estimate - np.interp(t - d, t, truth)) ** 2) for d in grid]
+    at = int(np.argmin(errors))
+    if not 0 < at < len(grid) - 1:
+        return float(grid[at])
+    left, here, right = errors[at - 1 : at + 2]
+    return float(grid[at] + 0.5 * grid[1] * (left - right) / (left - 2.0 * here + right))
+
+
+def spread(process: Process, h: float) -> tuple[int, int]:
+    """Rows before and after a step over which the response is more than 1 % off.
+
+    So many rows at the end and at the start of a record are not what they would be in the middle.
+    """
+    known: tuple[int, int] | None = getattr(process, "edges", None)
+    if known is not None:
+        return known
+    half = 64
+    while True:
+        step = np.repeat([0.0, 1.0], half)
+        off = np.flatnonzero(np.abs(over(process, step, h)[0] - step) > 0.01)
+        if not len(off):
+            return 0, 0
+        before, after = max(half - int(off[0]), 0), max(int(off[-1]) + 1 - half, 0)
+        if max(before, after) <= half // 2 or half > 1e6:
+            return before, after
+        half *= 2
+
+
+def over(process: Process, x: Array, h: float) -> tuple[Array, ...]:
+    """The outputs of a process for a whole record x."""
+    state, begun = process.step(process.init(float(x[0]), h), x)
+    rest = process.finish(state)
+    parts = [rows for rows in (begun, rest) if rows]
+    return tuple(np.concatenate(pieces) for pieces in zip(*parts, strict=True))
