@@ -2,6 +2,9 @@
 # make test    the whole test suite
 # make lint    ruff and mypy
 # make bench   start-up, time per sample, memory
+# make bench-differentiators   every differentiator and its peers on known signals
+# make crossvalidate           online identification of twenty simulated experiments
+# make emps EMPS=emps_train.csv   every differentiator on the real EMPS log
 # make docs    docs/tables.md from schemas/
 # make samples the small log and parameters under samples/
 # make clean   remove what the above made
@@ -14,7 +17,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper test lint bench docs samples clean
+.PHONY: all paper test lint bench bench-differentiators crossvalidate emps docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -46,6 +49,20 @@ lint: $(VENV)/tested
 
 bench: $(VENV)/tested
 	$(BIN)/python benchmarks/bench.py
+
+$(VENV)/compared: $(VENV)/tested
+	$(PIP) install --editable '.[compare]'
+	@touch $@
+
+bench-differentiators: $(VENV)/compared
+	$(BIN)/python benchmarks/differentiators.py
+
+crossvalidate: $(VENV)/tested
+	$(BIN)/python benchmarks/crossvalidation.py
+
+EMPS ?= ../shared/data/emps/emps_train.csv
+emps: $(VENV)/tested
+	$(BIN)/python benchmarks/emps.py $(EMPS)
 
 docs: $(VENV)/installed
 	$(BIN)/python -m scarid_cli.reporting.schemas > docs/tables.md
@@ -83,10 +100,10 @@ $(P)/%.filtered.parquet: $(P)/%.log.parquet
 	$(SCARID) filter --natural-frequency 2 $< -o $@
 
 $(P)/%.direct.motion.parquet: $(P)/direct.filtered.parquet
-	$(SCARID) differentiate --method $* $< -o $@
+	$(SCARID) differentiate --no-match --method $* $< -o $@
 
 $(P)/%.cross.motion.parquet: $(P)/cross.filtered.parquet
-	$(SCARID) differentiate --method $* $< -o $@
+	$(SCARID) differentiate --no-match --method $* $< -o $@
 
 $(P)/%.parameters.parquet $(P)/%.trace.parquet: $(P)/%.direct.motion.parquet
 	$(SCARID) identify --estimator rls --trace $(P)/$*.trace.parquet $< -o $(P)/$*.parameters.parquet

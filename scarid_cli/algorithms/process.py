@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.arrays import Array
 
 
@@ -39,6 +40,7 @@ class Method(Process, Protocol):
     """The interface of every differentiator (see `differentiators/__init__.py`)."""
 
     PRESETS: ClassVar[dict[str, dict[str, float]]]
+    TUNED: ClassVar[dict[str, Range]]
 
     def matched(self) -> Matched: ...
 
@@ -59,6 +61,7 @@ class Causal:
     """A process whose output belongs to the sample just taken."""
 
     PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
+    TUNED: ClassVar[dict[str, Range]] = {}
 
     def lag(self, h: float) -> float:  # noqa: ARG002 (the same at every rate)
         return 0
@@ -88,6 +91,7 @@ class Whole:
     """A process that needs the whole record before the first row of its output."""
 
     PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
+    TUNED: ClassVar[dict[str, Range]] = {}
 
     def lag(self, h: float) -> float:  # noqa: ARG002 (the same at every rate)
         return inf

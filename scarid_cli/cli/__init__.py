@@ -13,6 +13,7 @@ COMMANDS = {
     "trajgen": "Generate an excitation trajectory.",
     "simulate": "Let a simulated robot follow a trajectory, in closed loop.",
     "filter": "Low-pass filter columns of a log.",
+    "tune": "Find settings of differentiators in a log, without the truth.",
     "differentiate": "Estimate velocities and accelerations from positions (the soft sensor).",
     "identify": "Estimate a robot's dynamic parameters from a motion.",
     "validate": "Predict torques with identified parameters, and measure how well.",

@@ -16,13 +16,13 @@ from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import checked, open_table, require
 from scarid_cli.io.table import Table
-from scarid_cli.io.writer import Output, all_or_none, write_table
+from scarid_cli.io.writer import Document, Output, all_or_none, write_table
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
 
 # Options that do not change what the table holds.
-SILENT = {"output", "format", "no_history", "quiet", "verbose", "debug"}
+SILENT = {"output", "save", "format", "no_history", "quiet", "verbose", "debug"}
 
 
 class Job:
@@ -33,7 +33,7 @@ class Job:
         self._verbose = verbose and not quiet
         self._history = history
         self._inputs: dict[str, str | None] = {}
-        self.outputs: list[Output] = []
+        self.outputs: list[Output | Document] = []
         self.sources: list[ByteSource] = []
 
     def output(self, path: str, wanted: str | None = None) -> Output:
@@ -45,6 +45,14 @@ class Job:
         output = Output(path, wanted)
         self.outputs.append(output)
         return output
+
+    def text(self, path: str) -> Document:
+        """Where a document beside the tables will go."""
+        if path in {output.path for output in self.outputs}:
+            raise UsageFault(f"{path}: a table and a document cannot share it")
+        document = Document(path)
+        self.outputs.append(document)
+        return document
 
     def read(self, path: str, kind: str | None) -> Table:
         """A checked table of a kind, or any table as it stands for None."""

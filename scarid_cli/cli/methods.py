@@ -1,29 +1,50 @@
-"""From `--set NAME=VALUE[,VALUE...]` and `--preset` to one configured method per joint."""
+"""From `--settings FILE`, `--preset` and `--set NAME=VALUE[,VALUE...]` to one method per joint."""
 
 from __future__ import annotations
 
 from dataclasses import fields
 from typing import Any
 
+from scarid_cli.algorithms.registry import Registry
 from scarid_cli.cli.job import per_joint
+from scarid_cli.cli.settings import Settings
 from scarid_cli.errors import UsageFault
 
 
 def configured(
-    method: Any, name: str, joints: int, settings: tuple[str, ...], preset: str | None
+    registry: Registry,
+    name: str,
+    joints: int,
+    settings: tuple[str, ...],
+    preset: str | None,
+    saved: Settings,
 ) -> list[Any]:
-    """One instance of the method for each joint."""
-    values = {key: [value] * joints for key, value in _preset(method, name, preset).items()}
+    """One instance of the method for each joint; what is set by hand comes last."""
+    method = _method(registry, name)
     known = [field.name for field in fields(method)]
+    values = {key: [value] * joints for key, value in _preset(method, name, preset).items()}
+    for key, numbers in saved.get(name, {}).items():
+        _require(known, key, name, f"--settings: {key}")
+        values[key] = per_joint(numbers, joints, f"--settings: {name}, {key}")
     for text in settings:
         key, sign, value = text.partition("=")
         if not sign:
             raise UsageFault(f"--set {text}: write NAME=VALUE")
-        if key not in known:
-            choice = ", ".join(known) or "none"
-            raise UsageFault(f"--set {text}: {name} has no setting {key!r}; it has {choice}")
+        _require(known, key, name, f"--set {text}")
         values[key] = per_joint(_numbers(text, value), joints, f"--set {key}")
     return [method(**{key: row[joint] for key, row in values.items()}) for joint in range(joints)]
+
+
+def _method(registry: Registry, name: str) -> Any:
+    if name not in registry.names:
+        raise UsageFault(f"--settings: no method {name!r}; there are {', '.join(registry.names)}")
+    return registry.load(name)
+
+
+def _require(known: list[str], key: str, name: str, where: str) -> None:
+    if key not in known:
+        choice = ", ".join(known) or "none"
+        raise UsageFault(f"{where}: {name} has no setting {key!r}; it has {choice}")
 
 
 def _numbers(text: str, value: str) -> list[float]:

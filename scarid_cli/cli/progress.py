@@ -1,13 +1,30 @@
-"""A line on a terminal's standard error that counts rows, for a run that takes a while."""
+"""A line on a terminal's standard error that counts, for a run that takes a while."""
 
 from __future__ import annotations
 
+import contextlib
+import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pyarrow as pa
 
 PATIENCE = 1.0  # seconds before anything is shown
+
+
+@contextlib.contextmanager
+def steps(*, quiet: bool) -> Iterator[Callable[[], None]]:
+    """What to call at each step of a search, counted where a person waits."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = (SpinnerColumn(), TextColumn("{task.completed} settings tried"), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("", total=None)
+        yield lambda: progress.advance(task)
 
 
 def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:

@@ -107,7 +107,16 @@ def _units(unit: str | dict[str, str] | None) -> tuple[str, ...]:
 
 
 # From the most to the least demanding, so that the first whose required columns are there is it.
-KINDS = ("parameters", "metrics", "prediction", "motion", "measurement", "trajectory", "trace")
+KINDS = (
+    "parameters",
+    "metrics",
+    "trials",
+    "prediction",
+    "motion",
+    "measurement",
+    "trajectory",
+    "trace",
+)
 
 
 def detect(columns: list[str]) -> TableSchema | None:

@@ -148,6 +148,23 @@ class Output:
         self.target.discard()
 
 
+class Document:
+    """A text beside the tables."""
+
+    def __init__(self, path: str) -> None:
+        self.path = path
+        self.target = Target(path)
+
+    def write(self, text: str) -> None:
+        self.target.write(text.encode())
+
+    def finish(self) -> None:
+        """There is nothing to add."""
+
+    def abort(self) -> None:
+        self.target.discard()
+
+
 def _writer(name: str) -> Any:
     if name == "csv":
         from scarid_cli.io.csvio import CsvWriter
@@ -163,7 +180,7 @@ def _writer(name: str) -> Any:
 
 
 @contextlib.contextmanager
-def all_or_none(outputs: list[Output]) -> Iterator[None]:
+def all_or_none(outputs: list[Output | Document]) -> Iterator[None]:
     """All outputs are finished when the block ends, or all are aborted when it fails."""
     try:
         yield

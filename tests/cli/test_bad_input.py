@@ -166,9 +166,9 @@ USAGE = {
     "no such method": (["differentiate", "--method", "magic"], "'magic' is not one of"),
     "no such column": (["filter", "-c", "q7", "LOG"], "no column 'q7'; the table has t, q1"),
     "no such setting": (["differentiate", "--set", "gamma2=1", "LOG"], "has no setting 'gamma2'"),
-    "no number": (["differentiate", "--set", "gamma0=x", "LOG"], "'x' is not a number"),
-    "negative gain": (["differentiate", "--set", "gamma0=-1", "LOG"], "gamma0 must be positive"),
-    "too many values": (["differentiate", "--set", "gamma0=1,2,3", "LOG"], "3 values for 2 joints"),
+    "no number": (["differentiate", "--set", "noise=x", "LOG"], "'x' is not a number"),
+    "negative gain": (["differentiate", "--set", "noise=-1", "LOG"], "noise must be positive"),
+    "too many values": (["differentiate", "--set", "noise=1,2,3", "LOG"], "3 values for 2 joints"),
     "even window": (
         ["differentiate", "--method", "savgol", "--set", "window=80", "LOG"],
         "window must be odd, not 80",
@@ -177,7 +177,10 @@ USAGE = {
         ["differentiate", "--method", "zero-phase", "--set", "cutoff=60", "LOG"],
         "cutoff 60 Hz is not below half the rate, 50 Hz",
     ),
-    "no such preset": (["differentiate", "--preset", "best", "LOG"], "it has table1"),
+    "no such preset": (
+        ["differentiate", "--method", "p2smd", "--preset", "best", "LOG"],
+        "it has table1",
+    ),
     "time filtered": (["filter", "-c", "*", "LOG"], "the time column t cannot be filtered"),
     "two cut-offs": (["filter", "--cutoff", "1", "--natural-frequency", "1"], "not both"),
     "cut-off above Nyquist": (
@@ -229,7 +232,8 @@ def test_a_lag_longer_than_the_log_leaves_no_output(
     """Which can only be known at its end."""
     out = tmp_path / "motion.csv"
     log = samples / "scara2.csv"
-    result = scarid("differentiate", "--method", method, "--set", setting, log, "-o", out)
+    words = ["--no-match", "--method", method, "--set", setting]
+    result = scarid("differentiate", *words, log, "-o", out)
     assert result.status == 2
     assert message in result.err
     assert result.err.count("\n") == 1

@@ -41,6 +41,19 @@ def test_matching_gives_emps_its_mass_online(
     assert float(shell(pipe.replace("MATCH", "--no-match")).out) < 0.92 * matched
 
 
+def test_the_default_gives_emps_its_published_mass_online(shell: Shell, real_logs: Path) -> None:
+    """Causal at 1 kHz, nothing tuned: published offline are 95.1089 kg and an error of 4.08 %."""
+    result = shell(
+        f"scarid differentiate {real_logs}/emps/emps_train.csv -o motion.parquet;"
+        " scarid identify -q --robot emps --estimator ls motion.parquet -o p.csv;"
+        " awk -F, '$1 == \"M\" {print $3}' p.csv;"
+        " scarid validate --robot emps --parameters p.csv motion.parquet | tail -1 | cut -d, -f5"
+    )
+    mass, error = map(float, result.out.split())
+    assert mass == pytest.approx(95.1089, rel=0.003)
+    assert error < 4.4
+
+
 def test_a_jittered_clock_is_refused_with_its_row(shell: Shell, real_logs: Path) -> None:
     log = real_logs / "double_pendulum" / "20230629-143524.csv"
     result = shell(f"scarid differentiate {log}")

@@ -67,7 +67,7 @@ def test_p2smd_in_implicit_steps_is_matched_exactly_too() -> None:
     )
 
 
-@pytest.mark.parametrize("name", ["high-gain", "kalman", "kalman-lag", "savgol-end", "savgol"])
+@pytest.mark.parametrize("name", ["kalman-lag", "savgol"])
 def test_the_matched_acceleration_is_the_methods_own(name: str) -> None:
     """On a settled record, at the method's own sample or the one before."""
     q = positions()

@@ -18,6 +18,7 @@ import numpy as np
 
 from scarid_cli.algorithms.matching import Measured
 from scarid_cli.algorithms.process import Causal, Recursion
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_positive
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import smd2
@@ -30,6 +31,11 @@ class Differentiator(Causal):
     eta2: float = 70.0
 
     PRESETS: ClassVar = {"table1": {"eta1": 8.0, "eta2": 5.0}}
+    TUNED: ClassVar = {
+        "eta0": Range(1.0, 100.0),
+        "eta1": Range(1.0, 300.0),
+        "eta2": Range(1.0, 10000.0),
+    }
 
     def __post_init__(self) -> None:
         require_positive(self, "eta0", "eta1", "eta2")

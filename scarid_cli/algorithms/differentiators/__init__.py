@@ -2,11 +2,14 @@
 
 A module defines `Differentiator`, a frozen dataclass of settings for one joint, with
 
-- `init(q, h)`: the state before the first position q [rad or m], sampled every h [s];
-- `step(state, q)`: the state after the positions q, and the velocities [1/s] and accelerations
+- `lag(h)`: by how many samples the output of a row has to wait, sampled every h [s]; inf for the
+  whole record;
+- `init(x, h)`: the state before the first position x [rad or m];
+- `step(state, x)`: the state after the positions x, and the velocities [1/s] and accelerations
   [1/s2] of the samples that are settled by then;
-- `finish(state)`: those of the last `LAG` samples, once there are no more;
-- `LAG`: by how many samples the output of a row has to wait;
-- `matched()`, if it has one: the phase-matched form (see `recursion.Matched`);
-- `PRESETS`: named settings (`table1`: as printed in the paper).
+- `finish(state)`: those of the last `lag` samples, once there are no more;
+- `matched()`: the phase-matched form (see `process.Matched`);
+- `fitted(x, h)`, if it tunes itself: the method for a whole record x of positions;
+- `PRESETS`: named settings (`table1`: as printed in the paper);
+- `TUNED`: where `scarid tune` looks for which settings.
 """

@@ -13,10 +13,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import gamma
+from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.filters.convolution import FirMethod
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_above, require_between, require_positive
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -28,6 +30,8 @@ class Differentiator(FirMethod):
     alpha: float = 4.0
     beta: float = 4.0
     degree: int = 0
+
+    TUNED: ClassVar = {"window": Range(0.02, 1.0)}
 
     def __post_init__(self) -> None:
         require_positive(self, "window")

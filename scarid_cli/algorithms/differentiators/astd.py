@@ -20,6 +20,7 @@ import numpy as np
 
 from scarid_cli.algorithms.matching import Measured
 from scarid_cli.algorithms.process import Causal, Recursion
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_positive
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import astd
@@ -35,6 +36,7 @@ class Differentiator(Causal):
     k0m: float = 5.0
 
     PRESETS: ClassVar = {"table1": {"gamma": 1.5, "k0m": 0.01}}
+    TUNED: ClassVar = {"gamma": Range(1e-4, 0.3), "k0m": Range(0.1, 100.0)}
 
     def __post_init__(self) -> None:
         require_positive(self, "epsilon", "alpha1", "alpha0", "mu1", "gamma", "k0m")

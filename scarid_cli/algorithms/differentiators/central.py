@@ -12,6 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.matching import WithPosition
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.arrays import Array
 
 
@@ -34,6 +35,7 @@ class State:
 @dataclass(frozen=True)
 class Differentiator:
     PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
+    TUNED: ClassVar[dict[str, Range]] = {}
 
     def lag(self, h: float) -> float:  # noqa: ARG002 (the same at every rate)
         return 2

@@ -15,6 +15,7 @@ from typing import ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.filters.convolution import FirMethod
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_below_nyquist, require_positive, require_whole
 from scarid_cli.arrays import Array
 
@@ -25,6 +26,7 @@ class Differentiator(FirMethod):
     cutoff: float = 5.0
 
     PRESETS: ClassVar = {"table1": {}}
+    TUNED: ClassVar = {"order": Range(0.02, 0.5, samples=True, step=1), "cutoff": Range(1.0, 50.0)}
 
     def __post_init__(self) -> None:
         require_positive(self, "order", "cutoff")

@@ -12,11 +12,13 @@ filters = 2: order of the filter, at least 1; both orders are 7 at most.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.matching import Measured
 from scarid_cli.algorithms.process import Causal, Recursion
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_between, require_positive
 from scarid_cli.algorithms.sliding import gains
 from scarid_cli.arrays import Array
@@ -28,6 +30,8 @@ class Differentiator(Causal):
     bound: float = 64.0
     order: int = 2
     filters: int = 2
+
+    TUNED: ClassVar = {"bound": Range(1.0, 1e6)}
 
     def __post_init__(self) -> None:
         require_positive(self, "bound")

@@ -2,8 +2,8 @@
 
 Causal. Int. J. Robust Nonlinear Control 24, 993; discretised exactly. Delay: of the acceleration
 about 1.5 / bandwidth for 4 states. Matched (--match, exact): position and torque pass the low-pass
-between position and acceleration. Rule: bandwidth by the delay; more states, less delay and more
-noise.
+between position and highest derivative, which does not overshoot. Rule: bandwidth by the delay;
+more states, less delay and more noise.
 bandwidth = 30 [rad/s]: of the poles.
 states = 4: 3 to 5.
 """
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import exp, inf
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from scarid_cli.algorithms.filters import kalman
 from scarid_cli.algorithms.filters.observer import Lowpass
 from scarid_cli.algorithms.matching import Differences
 from scarid_cli.algorithms.process import Causal
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_between, require_positive
 from scarid_cli.arrays import Array
 
@@ -27,6 +29,8 @@ from scarid_cli.arrays import Array
 class Differentiator(Causal):
     bandwidth: float = 30.0
     states: int = 4
+
+    TUNED: ClassVar = {"bandwidth": Range(3.0, 300.0)}
 
     def __post_init__(self) -> None:
         require_positive(self, "bandwidth")

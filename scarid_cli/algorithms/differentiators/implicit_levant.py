@@ -12,11 +12,13 @@ order = 3: 2 to 5.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.matching import Measured
 from scarid_cli.algorithms.process import Causal, Recursion
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_between, require_positive
 from scarid_cli.algorithms.sliding import gains
 from scarid_cli.arrays import Array
@@ -27,6 +29,8 @@ from scarid_cli.kernels import implicit_levant
 class Differentiator(Causal):
     bound: float = 400.0
     order: int = 3
+
+    TUNED: ClassVar = {"bound": Range(1.0, 1e6)}
 
     def __post_init__(self) -> None:
         require_positive(self, "bound")

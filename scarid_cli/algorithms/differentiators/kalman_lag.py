@@ -6,8 +6,8 @@ glitches): constant gain; position and torque pass the low-pass between position
 Rule: `scarid tune` finds the others by maximum likelihood; a delay of 2 / bandwidth (see kalman)
 buys most of what there is to gain.
 delay = 0.1 [s]: the lag.
-noise = 2e-4: standard deviation of the position, at least resolution / 3.5.
-intensity = 100: spectral density of the white noise, [rad2/s7] for 4 states.
+noise = 5e-5: standard deviation of the position, at least resolution / 3.5.
+intensity = 10000: spectral density of the white noise, [rad2/s7] for 4 states.
 states = 4: 3 to 5.
 damping = frequency = 0: of the acceleration process [1/s], [rad/s].
 gate = 5: standard deviations from which on an innovation is a glitch and left out (5 in a row at
@@ -25,6 +25,7 @@ import numpy as np
 from scarid_cli.algorithms.filters import kalman
 from scarid_cli.algorithms.filters.smoother import Lowpass
 from scarid_cli.algorithms.matching import Differences
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_positive
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -44,6 +45,7 @@ class Differentiator(kalman.Settings):
     delay: float = 0.1
 
     PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
+    TUNED: ClassVar = {"intensity": Range(1e-2, 1e8)}
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -13,11 +13,13 @@ euler = 0: 1 for Euler's steps, whose error is proportional to the period for ev
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.matching import Measured
 from scarid_cli.algorithms.process import Causal, Recursion
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_between, require_positive
 from scarid_cli.algorithms.sliding import gains
 from scarid_cli.arrays import Array
@@ -29,6 +31,8 @@ class Differentiator(Causal):
     bound: float = 400.0
     order: int = 3
     euler: int = 0
+
+    TUNED: ClassVar = {"bound": Range(1.0, 1e6)}
 
     def __post_init__(self) -> None:
         require_positive(self, "bound")

@@ -22,6 +22,7 @@ import numpy as np
 
 from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_rest
 from scarid_cli.algorithms.process import Causal, Recursion
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import (
     require_between,
     require_not_negative,
@@ -46,6 +47,7 @@ class Differentiator(Causal):
     implicit: int = 0
 
     PRESETS: ClassVar = {"table1": {"leak": 0.0, "cap": inf, "nu_max": inf}}
+    TUNED: ClassVar = {"gamma0": Range(2.0, 300.0), "gamma1": Range(2.0, 300.0)}
 
     def __post_init__(self) -> None:
         require_positive(self, "gamma0", "gamma1")

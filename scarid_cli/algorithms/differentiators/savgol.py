@@ -11,11 +11,13 @@ degree = 5: of the polynomial, 2 or more and below the window.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.convolution import FirMethod, convolved, integrated_twice
+from scarid_cli.algorithms.filters.convolution import FirMethod, convolved, integrated
 from scarid_cli.algorithms.filters.polynomials import derivative_taps, require_window
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_odd
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -34,6 +36,8 @@ class Differentiator(FirMethod):
     window: int = 81
     degree: int = 5
 
+    TUNED: ClassVar = {"window": Range(0.05, 1.5, samples=True, step=2)}
+
     def __post_init__(self) -> None:
         require_window(self)
         require_odd(self, "window")
@@ -49,7 +53,7 @@ class Differentiator(FirMethod):
         return self._fit(self.half, h)
 
     def lowpass(self, h: float) -> Array:
-        return integrated_twice(self.taps(h)[1], h)
+        return integrated(self.taps(h)[1], 2, h)
 
     def init(self, x: float, h: float) -> State:  # type: ignore[override]  # noqa: ARG002
         return State(np.empty(0), h)
@@ -84,4 +88,7 @@ class Differentiator(FirMethod):
         )
 
     def _fit(self, age: int, h: float) -> tuple[Array, Array]:
-        return derivative_taps(int(self.window), int(self.degree), age, h)
+        first, second = (
+            derivative_taps(int(self.window), int(self.degree), order, age, h) for order in (1, 2)
+        )
+        return first, second

@@ -2,8 +2,8 @@
 
 Causal. Savitzky and Golay, Anal. Chem. 36 (1964) 1627; scipy.signal.savgol_coeffs with pos at the
 newest sample. No delay on motions of the degree; on others some 20 ms at the default. Matched
-(--match, exact): position and torque pass the low-pass whose second difference the acceleration
-is, and the velocity is the first difference of the same. Rule: the longest window over which the
+(--match, exact): position and torque pass the low-pass whose difference the derivative of the
+degree is, and the derivatives are its differences. Rule: the longest window over which the
 motion is nearly a polynomial of the degree; noise goes down with its length to the power 2.5.
 window = 45: samples.
 degree = 3: of the polynomial, 2 or more and below the window.
@@ -12,9 +12,11 @@ degree = 3: of the polynomial, 2 or more and below the window.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
-from scarid_cli.algorithms.filters.convolution import FirMethod, integrated_twice
+from scarid_cli.algorithms.filters.convolution import FirMethod, integrated
 from scarid_cli.algorithms.filters.polynomials import derivative_taps, require_window
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.arrays import Array
 
 
@@ -23,12 +25,16 @@ class Differentiator(FirMethod):
     window: int = 45
     degree: int = 3
 
+    TUNED: ClassVar = {"window": Range(0.03, 1.0, samples=True, step=1)}
+
     def __post_init__(self) -> None:
         require_window(self)
 
     def taps(self, h: float) -> tuple[Array, ...]:
-        velocity, acceleration = derivative_taps(int(self.window), int(self.degree), 0, h)
-        return velocity, acceleration
+        return self._taps(1, h), self._taps(2, h)
 
     def lowpass(self, h: float) -> Array:
-        return integrated_twice(self.taps(h)[1], h)
+        return integrated(self._taps(int(self.degree), h), int(self.degree), h)
+
+    def _taps(self, order: int, h: float) -> Array:
+        return derivative_taps(int(self.window), int(self.degree), order, 0, h)

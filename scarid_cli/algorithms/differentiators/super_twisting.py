@@ -11,11 +11,13 @@ acceleration = 20 [1/s2], jerk = 150 [1/s3]: the largest of the motion; gains 1.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.matching import Measured
 from scarid_cli.algorithms.process import Causal, Recursion
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_positive
 from scarid_cli.algorithms.sliding import gains
 from scarid_cli.arrays import Array
@@ -26,6 +28,8 @@ from scarid_cli.kernels import levant
 class Differentiator(Causal):
     acceleration: float = 20.0
     jerk: float = 150.0
+
+    TUNED: ClassVar = {"acceleration": Range(1.0, 300.0), "jerk": Range(10.0, 1e4)}
 
     def __post_init__(self) -> None:
         require_positive(self, "acceleration", "jerk")

@@ -13,11 +13,13 @@ jerk = 100000 [1/s3]: the same of the second stage.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_rest
 from scarid_cli.algorithms.process import Causal, Recursion
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_positive
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -29,6 +31,8 @@ class Differentiator(Causal):
     smoothing: float = 0.02
     limit: float = 1000.0
     jerk: float = 100000.0
+
+    TUNED: ClassVar = {"smoothing": Range(0.005, 0.3)}
 
     def __post_init__(self) -> None:
         require_positive(self, "smoothing", "limit", "jerk")

@@ -10,10 +10,12 @@ order = 4: of the filter each way.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.filters.butterworth import ZeroPhase
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.arrays import Array
 
 
@@ -21,6 +23,8 @@ from scarid_cli.arrays import Array
 class Differentiator(ZeroPhase):
     cutoff: float = 8.0
     order: int = 4
+
+    TUNED: ClassVar = {"cutoff": Range(0.5, 50.0)}
 
     def over(self, x: Array, h: float) -> tuple[Array, ...]:
         return self.matched().over(x, h)[1:]

@@ -61,7 +61,7 @@ class FirMethod(Convolution):
 
     @abstractmethod
     def lowpass(self, h: float) -> Array:
-        """What the acceleration is the second difference of: taps of unit sum; h [s]."""
+        """What a derivative is the difference of: taps of unit sum; h [s]."""
 
     def matched(self) -> Differences:
         return Differences(Lowpass(self))
@@ -80,8 +80,8 @@ class Lowpass(Convolution):
         return (self.method.lowpass(h),)
 
 
-def integrated_twice(taps: Array, h: float) -> Array:
-    """The low-pass whose second difference these taps of an acceleration are."""
-    once = np.cumsum(taps) * h
-    twice: Array = np.cumsum(once)[:-2] * h
-    return twice
+def integrated(taps: Array, order: int, h: float) -> Array:
+    """The low-pass whose difference of this order these taps of a derivative are."""
+    for _ in range(order):
+        taps = np.cumsum(taps)[:-1] * h
+    return taps

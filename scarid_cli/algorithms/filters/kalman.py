@@ -84,8 +84,8 @@ class Model:
 class Settings:
     """What the Kalman differentiators have in common."""
 
-    noise: float = 2e-4
-    intensity: float = 100.0
+    noise: float = 5e-5
+    intensity: float = 10000.0
     states: int = 4
     damping: float = 0.0
     frequency: float = 0.0

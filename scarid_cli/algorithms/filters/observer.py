@@ -12,13 +12,12 @@ from scarid_cli.algorithms.process import Causal
 from scarid_cli.arrays import Array
 
 
-def readout(observer: State, h: float, c: Array) -> Array:
-    """u such that y(k+1) = u x(k), x the filtered state, has an output as second difference.
+def readout(observer: State, h: float, c: Array, order: int = 2) -> Array:
+    """u such that y(k+1) = u x(k), x the filtered state, has h^order c p as a difference.
 
-    The output is c p of the predicted state p, and a part of the measurement:
-    y(k+1) - 2 y(k) + y(k-1) = h^2 (c p(k) + ...). With the closed loop A = F (I - K H):
-    w (A - I)^2 = h^2 c A and u = w F. That is so if the observer follows constant positions and
-    velocities, and the output is zero then: y is two orders lower than the observer.
+    p is the predicted state; c p must be zero as long as the derivatives of lower order of the
+    measurement are constant. Of order 2 the difference is central: y(k+1) - 2 y(k) + y(k-1). With
+    the closed loop A = F (I - K H): w (A - I)^order = h^order c A and u = w F.
     """
     F, K = observer.model.F, observer.gain
     identity = np.eye(len(K))
@@ -26,16 +25,9 @@ def readout(observer: State, h: float, c: Array) -> Array:
     scale = (K[0] / K[1]) ** np.arange(len(K))
     F, K = F * scale[:, None] / scale[None, :], K * scale
     A = F @ (identity - np.outer(K, identity[0]))
-    double = np.linalg.matrix_power(A - identity, 2)
-    u: Array = np.linalg.solve(double.T, h**2 * (c / scale) @ A) @ F * scale
+    power = np.linalg.matrix_power(A - identity, order)
+    u: Array = np.linalg.solve(power.T, h**order * (c / scale) @ A) @ F * scale
     return u
-
-
-def filtered_acceleration(observer: State) -> Array:
-    """The filtered acceleration of the predicted state."""
-    c = np.zeros(len(observer.gain))
-    c[2], c[0] = 1.0, -observer.gain[2]
-    return c
 
 
 def read(u: Array, rows: Array) -> Array:
@@ -63,13 +55,17 @@ class ObserverState:
 
 @dataclass(frozen=True)
 class Lowpass(Causal):
-    """What an observer is between position and acceleration, one sample early."""
+    """What an observer is between position and its highest derivative, one sample early.
+
+    All poles and no zero: it does not overshoot as what lies below the acceleration would.
+    """
 
     method: Observing
 
     def init(self, x: float, h: float) -> ObserverState:
         observer = self.method.observer(x, h)
-        u = readout(observer, h, filtered_acceleration(observer))
+        m = len(observer.x)
+        u = readout(observer, h, np.eye(m)[-1], m - 1)
         # Unit gain: a model with damping follows a constant acceleration not quite.
         return ObserverState(observer, u / u[0])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -22,16 +23,19 @@ def require_window(settings: Any) -> None:
         )
 
 
-def derivative_taps(window: int, degree: int, age: int, h: float) -> tuple[Array, Array]:
-    """First and second derivative at the sample `age` periods h [s] ago, newest sample first."""
+def derivative_taps(window: int, degree: int, order: int, age: int, h: float) -> Array:
+    """The derivative of this order at the sample `age` periods h [s] ago, newest sample first."""
     # Chebyshev's polynomials on -1..1: powers would be nearly dependent.
     x = np.linspace(1.0, -1.0, window)
-    at = x[age]
     scale = (window - 1) * h / 2.0
-    fit = np.linalg.pinv(np.polynomial.chebyshev.chebvander(x, degree))
-    rows = []
-    for order in (1, 2):
-        basis = np.polynomial.chebyshev.chebder(np.eye(degree + 1), order)
-        value = np.polynomial.chebyshev.chebval(at, basis)
-        rows.append(value @ fit / scale**order)
-    return rows[0], rows[1]
+    basis = np.polynomial.chebyshev.chebder(np.eye(degree + 1), order)
+    value = np.polynomial.chebyshev.chebval(x[age], basis)
+    taps: Array = value @ fitting(window, degree) / scale**order
+    return taps
+
+
+@cache
+def fitting(window: int, degree: int) -> Array:
+    """The matrix from samples to the coefficients of the polynomial."""
+    x = np.linspace(1.0, -1.0, window)
+    return np.asarray(np.linalg.pinv(np.polynomial.chebyshev.chebvander(x, degree)), dtype=float)

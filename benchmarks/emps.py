@@ -1,0 +1,83 @@
+"""Every differentiator on the real EMPS log, unmatched, matched and tuned: the table of the README.
+
+`python benchmarks/emps.py emps_train.csv` prints Markdown: the mass [kg] by least squares, and the
+error of the torque predicted for the same log relative to its norm [%]. Published offline: mass
+95.1089 kg, error 4.08 %. Tuned is `scarid tune --robot emps`: by torques of held-out segments.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import numpy as np
+import pyarrow.csv
+
+from scarid_cli.algorithms import tuning
+from scarid_cli.algorithms.matching import over
+from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.robots import reading
+from scarid_cli.stages.tune import Record, chosen, tune
+
+ROBOT, PUBLISHED, H = reading.load("emps"), 95.1089, 1e-3
+TABLE1 = ("p2smd", "ed-fir", "2smd", "astd")
+
+
+def unmatched(method: Any, record: Record) -> tuning.Motion:
+    """Derivatives beside the position and the torque as they were logged."""
+    assert record.tau is not None
+    dq, ddq = over(method, record.q[0], H)
+    signals = (record.q, dq[None, :], ddq[None, :], record.tau)
+    return tuning.Motion(signals, np.ones(record.q.shape[1], dtype=bool))
+
+
+def quality(motion: tuning.Motion) -> tuple[float, float]:
+    """Mass and relative error of the torque."""
+    rows = motion.settled
+    theta = tuning.identified(ROBOT, motion, rows)
+    if theta is None:
+        return float("nan"), float("nan")
+    q, dq, ddq, tau = (np.ascontiguousarray(signal[:, rows]) for signal in motion.signals)
+    wrong = tau - ROBOT.torques(ROBOT.regressor(q, dq, ddq), theta)
+    return float(theta[0]), 100.0 * float(np.linalg.norm(wrong) / np.linalg.norm(tau))
+
+
+def shown(mass: float, error: float) -> str:
+    return f"{mass:.2f} ({100.0 * (mass / PUBLISHED - 1.0):+.1f} %) | {error:.2f}"
+
+
+def rows(record: Record) -> list[tuple[float, str]]:
+    """One line of the table for each method, with its error when tuned."""
+    assert record.tau is not None
+    lines = []
+    for name in DIFFERENTIATORS.names:
+        method = DIFFERENTIATORS.load(name)
+        start = method(**method.PRESETS["table1"]) if name in TABLE1 else method()
+        fitted = start.fitted(record.q[0], H) if hasattr(start, "fitted") else start
+        tuned = fitted
+        if method.TUNED:
+            _, settings = chosen(tune(record, [name], ROBOT, 0, lambda: None), 1)
+            tuned = method(**{key: values[0] for key, values in settings[name].items()})
+        motions = [unmatched(start, record)]
+        motions += [tuning.motion([m], record.q, record.tau, H) for m in (fitted, tuned)]
+        results = [quality(motion) for motion in motions]
+        cells = [shown(*result) for result in results]
+        label = f"`{name}`" + (" (Table 1)" if name in TABLE1 else "")
+        kind = {0: "causal", np.inf: "whole record"}.get(start.lag(H), "fixed lag")
+        cells[2] = cells[2] if method.TUNED else "| "
+        lines.append((results[2][1], f"| {label} | {kind} | {' | '.join(cells)} |"))
+    return lines
+
+
+def main() -> None:
+    table = pyarrow.csv.read_csv(sys.argv[1])
+    q, tau = (np.array([table[name].to_numpy()]) for name in ("q1", "tau1"))
+    print("| method | class | mass, unmatched [kg] | error [%] | mass, matched [kg] | error [%] "
+          "| mass, matched and tuned [kg] | error [%] |")  # fmt: skip
+    print("|---|---|---|---|---|---|---|---|")
+    for _, line in sorted(rows(Record(q, tau, H))):
+        print(line)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,176 @@
+"""Settings of a differentiator from the data, without the truth.
+
+Three judges. Likelihood: of the innovations, for the Kalman methods (D.11 of the equations).
+Smoother: the error against a Kalman smoother that has tuned itself to the same positions; it sees
+the samples after a row as well, and is several times nearer to the truth than any causal method.
+Torques: the error of torques predicted for held-out segments, with parameters identified through
+the method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from scarid_cli.algorithms.estimators.ls import Estimator
+from scarid_cli.algorithms.filters.likelihood import log_likelihood, most_likely
+from scarid_cli.algorithms.matching import over, spread
+from scarid_cli.algorithms.ranges import Range
+from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.information import NotIdentifiableError
+from scarid_cli.arrays import Array
+from scarid_cli.errors import UsageFault
+
+SETTLING = 1.0  # seconds at the start, where a method may still be on its way
+GUESSES = 16  # of a search, before the simplex
+SEGMENTS = 10  # of a record, every second one held out
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One setting of a method that was tried, and what its judge said: less is better."""
+
+    method: Any
+    loss: float
+
+
+Judge = Callable[[Any], float]
+
+
+def fit(method: Any, q: Array, h: float) -> Any:
+    """A Kalman method with the noise, the intensity and the acceleration process of the data."""
+    return most_likely(method, q, h, oscillator=True)
+
+
+def has_likelihood(method: Any) -> bool:
+    """Whether the method is one of the Kalman filter's."""
+    return {"noise", "intensity"} <= {field.name for field in fields(method)}
+
+
+def negative_log_likelihood(q: Array, h: float) -> Judge:
+    """Per sample, of the innovations."""
+    return lambda method: -log_likelihood(method, q, h) / len(q)
+
+
+def distance_to_smoother(q: Array, h: float) -> Judge:
+    """Geometric mean of the errors of velocity and acceleration, each over the smoother's size."""
+    _, *smooth = over(smoother(q, h).matched(), q, h)
+    late = min(int(SETTLING / h), len(q) // 5)
+    inner = slice(late, -late)
+    sizes = [float(np.std(x[inner])) or 1.0 for x in smooth]
+
+    def judge(method: Any) -> float:
+        with np.errstate(all="ignore"):
+            estimates = over(method, q, h)
+            errors = [
+                np.sqrt(np.mean((x - y)[inner] ** 2)) / size
+                for x, y, size in zip(estimates, smooth, sizes, strict=True)
+            ]
+        return float(np.sqrt(errors[0] * errors[1]))
+
+    return judge
+
+
+def smoother(q: Array, h: float) -> Any:
+    """The Kalman smoother, tuned to these positions."""
+    return DIFFERENTIATORS.load("rts")().fitted(q, h)
+
+
+def error_of_torques(robot: Robot, q: Array, tau: Array, h: float) -> Judge:
+    """Of held-out segments of the smoothed motion, relative to the torques' size."""
+    smooth = motion([smoother(x, h) for x in q], q, tau, h)
+    rows = q.shape[1]
+    held_out = np.arange(rows) * SEGMENTS // rows % 2 == 1
+    test = smooth.settled & held_out
+
+    def judge(method: Any) -> float:
+        with np.errstate(all="ignore"):
+            own = motion([method] * len(q), q, tau, h)
+            if not all(np.isfinite(signal).all() for signal in own.signals):
+                return np.inf
+            theta = identified(robot, own, own.settled & ~held_out)
+            if theta is None:
+                return np.inf
+            W = robot.regressor(*(np.ascontiguousarray(x[:, test]) for x in smooth.signals[:3]))
+            measured = smooth.signals[3][:, test]
+            wrong = measured - robot.torques(W, theta)
+        sizes = measured.std(axis=1)
+        return float(np.sqrt(np.mean((wrong.std(axis=1) / np.where(sizes > 0.0, sizes, 1.0)) ** 2)))
+
+    return judge
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Position, velocity, acceleration and torque (joints, rows), and which rows are settled."""
+
+    signals: tuple[Array, Array, Array, Array]
+    settled: Any
+
+
+def motion(methods: list[Any], q: Array, tau: Array, h: float) -> Motion:
+    """The matched motion of a whole record, one method per joint."""
+    parts, start, end = [], 0, 0
+    for method, x, y in zip(methods, q, tau, strict=True):
+        form = method.matched()
+        companion = form.companion
+        parts.append((*over(form, x, h), over(companion, y, h)[0] if companion else y))
+        before, after = spread(companion, h) if companion else (0, 0)
+        start, end = max(start, after), max(end, before)
+    positions, dq, ddq, torques = (np.array(rows) for rows in zip(*parts, strict=True))
+    at = np.arange(q.shape[1])
+    return Motion((positions, dq, ddq, torques), (at >= start) & (at < len(at) - end))
+
+
+def identified(robot: Robot, motion: Motion, rows: Any) -> Array | None:
+    """Estimates by least squares from some rows; None if these leave a parameter undetermined."""
+    *kinematics, tau = (np.ascontiguousarray(signal[:, rows]) for signal in motion.signals)
+    ls = Estimator()
+    state, _ = ls.step(
+        ls.init(np.zeros(len(robot.parameters))),
+        robot.regressor(*kinematics),
+        np.ascontiguousarray(tau.T),
+        trace=False,
+    )
+    try:
+        return ls.fit(state).estimates
+    except NotIdentifiableError:
+        return None
+
+
+def search(
+    method: Any, ranges: dict[str, Range], judge: Judge, h: float, seed: int
+) -> Iterator[Trial]:
+    """Every setting that is tried: the method as it is, guesses, then Nelder and Mead's simplex."""
+    from scipy.optimize import minimize
+
+    trials: dict[Any, float] = {}
+
+    def loss(x: Array) -> float:
+        settings = {name: r.setting(u, h) for (name, r), u in zip(ranges.items(), x, strict=True)}
+        try:
+            tried = replace(method, **settings)
+            if tried not in trials:
+                trials[tried] = judge(tried)
+        except UsageFault:
+            return 1e9  # settings that the rate or the record does not allow
+        value = trials[tried] + np.sum((x - np.clip(x, 0.0, 1.0)) ** 2)
+        return float(value) if np.isfinite(value) else 1e9
+
+    trials[method] = judge(method)
+    yield Trial(method, trials[method])
+    if not ranges:
+        return
+    # A scrambled lattice: as even in one dimension as in three
+    rng = np.random.default_rng(seed)
+    lattice = (np.arange(GUESSES) + 0.5) / GUESSES
+    guesses = np.column_stack([rng.permutation(lattice) for _ in ranges])
+    best = min(guesses, key=loss)
+    options = {"xatol": 2e-3, "fatol": 1e-6, "maxfev": 60 * len(ranges)}
+    corners = np.vstack([best, *(best + 0.08 * row for row in np.eye(len(ranges)))])
+    minimize(loss, best, method="Nelder-Mead", options={**options, "initial_simplex": corners})
+    yield from (Trial(tried, value) for tried, value in trials.items() if tried != method)

@@ -1,0 +1,168 @@
+"""Find settings of differentiators in a log, without the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, replace
+from math import isfinite
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.algorithms import tuning
+from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.arrays import Array
+from scarid_cli.errors import BadData
+from scarid_cli.io import schemas
+from scarid_cli.io.table import Table, matrix
+
+Settings = dict[str, list[float]]
+LIKELIHOOD, SMOOTHER, TORQUES = "likelihood", "smoother", "torques"
+
+
+@dataclass(frozen=True)
+class Tried:
+    """One row of the table of trials; no joint where it is one setting for all."""
+
+    name: str
+    joint: int | None
+    judge: str
+    trial: tuning.Trial
+    best: bool
+
+    @property
+    def settings(self) -> str:
+        return " ".join(f"{key}={value:.6g}" for key, value in values(self.trial.method).items())
+
+
+@dataclass(frozen=True)
+class Record:
+    """Positions and torques of a whole log (joints, rows), sampled every h [s]."""
+
+    q: Array
+    tau: Array | None
+    h: float
+
+    @classmethod
+    def of(cls, table: Table, joints: int, *, torques: bool) -> Record:
+        numbers = range(1, joints + 1)
+        names = [f"{s}{i}" for s in ("q", "tau")[: 1 + torques] for i in numbers]
+        rows = np.concatenate([matrix(batch, names) for batch in table.batches], axis=1)
+        tau = np.ascontiguousarray(rows[joints:]) if torques else None
+        return cls(np.ascontiguousarray(rows[:joints]), tau, table.meta.period or 0.0)
+
+
+def online() -> list[str]:
+    """The causal methods."""
+    return [n for n in DIFFERENTIATORS.names if DIFFERENTIATORS.load(n)().lag(1e-3) == 0]
+
+
+def tune(
+    record: Record, names: list[str], robot: Robot | None, seed: int, progress: Callable[[], object]
+) -> list[Tried]:
+    """Everything that was tried, method by method; the last of a kind that is `best` was chosen."""
+    rows: list[Tried] = []
+    for name in names:
+        method = DIFFERENTIATORS.load(name)()
+        found = list(_for_torques(name, method, record, robot, seed, progress)) if robot else []
+        if not robot:
+            for joint, q in enumerate(record.q, start=1):
+                found += _for_positions(name, method, joint, q, record.h, seed, progress)
+        rows += found
+    return rows
+
+
+def _for_positions(
+    name: str,
+    method: Any,
+    joint: int,
+    q: Array,
+    h: float,
+    seed: int,
+    progress: Callable[[], object],
+) -> Iterator[Tried]:
+    judge = tuning.distance_to_smoother(q, h)
+    if tuning.has_likelihood(method):
+        likelihood = tuning.negative_log_likelihood(q, h)
+        fitted = tuning.fit(method, q, h)
+        for tried in (method, fitted) if values(method)["noise"] else (fitted,):
+            yield Tried(name, joint, LIKELIHOOD, _judged(tried, likelihood), tried is fitted)
+        yield Tried(name, joint, SMOOTHER, _judged(fitted, judge), best=True)
+        return
+    trials = []
+    for trial in tuning.search(method, method.TUNED, judge, h, seed):
+        trials.append(trial)
+        progress()
+    yield from _marked(name, joint, SMOOTHER, trials)
+
+
+def _for_torques(
+    name: str, method: Any, record: Record, robot: Robot | None, seed: int,
+    progress: Callable[[], object],
+) -> Iterator[Tried]:  # fmt: skip
+    assert robot is not None
+    assert record.tau is not None
+    judge = tuning.error_of_torques(robot, record.q, record.tau, record.h)
+    if tuning.has_likelihood(method):
+        method = replace(tuning.fit(method, record.q[0], record.h), damping=0.0, frequency=0.0)
+    trials = []
+    for trial in tuning.search(method, method.TUNED, judge, record.h, seed):
+        trials.append(trial)
+        progress()
+    yield from _marked(name, None, TORQUES, trials)
+
+
+def _judged(method: Any, judge: tuning.Judge) -> tuning.Trial:
+    return tuning.Trial(method, judge(method))
+
+
+def _marked(
+    name: str, joint: int | None, judge: str, trials: list[tuning.Trial]
+) -> Iterator[Tried]:
+    best = min(trials, key=lambda trial: trial.loss if isfinite(trial.loss) else np.inf)
+    if not isfinite(best.loss):
+        raise BadData(
+            f"{name}: no settings gave a result by the judge of {judge}; expected a log that moves "
+            "every joint, and excites every parameter if a robot is given"
+        )
+    for trial in trials:
+        yield Tried(name, joint, judge, trial, trial is best)
+
+
+def values(method: Any) -> dict[str, float]:
+    """The settings of a method."""
+    return {field.name: float(getattr(method, field.name)) for field in fields(method)}
+
+
+def chosen(rows: list[Tried], joints: int) -> tuple[str, dict[str, Settings]]:
+    """The best method and, for each, the chosen settings per joint."""
+    settings: dict[str, Settings] = {}
+    losses: dict[str, float] = {}
+    for row in rows:
+        if not row.best or row.judge == LIKELIHOOD:
+            continue
+        losses[row.name] = losses.get(row.name, 0.0) + row.trial.loss
+        mine = settings.setdefault(row.name, {})
+        for key, value in values(row.trial.method).items():
+            mine.setdefault(key, []).extend([value] * (joints if row.joint is None else 1))
+    return min(losses, key=lambda name: losses[name]), settings
+
+
+def trials(table: Table, rows: list[Tried]) -> Table:
+    """The table of what was tried."""
+    schema = schemas.load("trials").arrow()
+    losses = [row.trial.loss if isfinite(row.trial.loss) else None for row in rows]
+    batch = pa.RecordBatch.from_arrays(
+        [
+            pa.array([row.name for row in rows], pa.string()),
+            pa.array([row.joint for row in rows], pa.int64()),
+            pa.array([row.settings for row in rows], pa.string()),
+            pa.array([row.judge for row in rows], pa.string()),
+            pa.array(losses, pa.float64()),
+            pa.array([int(row.best) for row in rows], pa.int64()),
+        ],
+        schema=schema,
+    )
+    return Table("tune", schema, replace(table.meta, kind="trials"), iter([batch]))

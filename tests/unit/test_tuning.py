@@ -1,0 +1,160 @@
+"""Settings from the data: as near to those from the truth as the data allow."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+from typing import Any
+
+import numpy as np
+import pytest
+from unit.support import PERIOD
+
+from scarid_cli.algorithms import tuning
+from scarid_cli.algorithms.matching import over, reference
+from scarid_cli.algorithms.ranges import Range
+from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.arrays import Array
+from scarid_cli.stages.tune import Record, chosen, online, tune
+
+RESOLUTION = 2.0 * np.pi / 2**14
+SEARCHED = [name for name in DIFFERENTIATORS.names if DIFFERENTIATORS.load(name).TUNED]
+
+
+def readings(seed: int = 0) -> tuple[Array, Array, Array]:
+    """Quintic moves as an encoder of 14 bit with some noise sees them, and their derivatives."""
+    q, v, a = reference(PERIOD)
+    noise = 0.3 * RESOLUTION * np.random.default_rng(seed).standard_normal(len(q))
+    return RESOLUTION * np.round((q + noise) / RESOLUTION), v, a
+
+
+def error(method: Any, q: Array, v: Array, a: Array) -> float:
+    """The geometric mean of both errors against the truth, each over the size of the truth."""
+    inner = slice(200, -200)
+    errors = [
+        np.std((x - y)[inner]) / np.std(y[inner])
+        for x, y in zip(over(method, q, PERIOD), (v, a), strict=True)
+    ]
+    return float(np.sqrt(errors[0] * errors[1]))
+
+
+def best(trials: list[tuning.Trial]) -> Any:
+    return min(trials, key=lambda trial: trial.loss).method
+
+
+@pytest.mark.parametrize("name", SEARCHED)
+def test_what_is_searched_are_settings_with_a_range_around_the_default(name: str) -> None:
+    method = DIFFERENTIATORS.load(name)()
+    for setting, r in method.TUNED.items():
+        low, high = (r.setting(x, PERIOD) for x in (0.0, 1.0))
+        assert low <= getattr(method, setting) <= high
+        for x in (0.0, 0.3, 1.0):
+            replace(method, **{setting: r.setting(x, PERIOD)})
+
+
+@pytest.mark.parametrize("step", [1, 2])
+def test_a_range_in_samples_gives_whole_numbers(step: int) -> None:
+    r = Range(0.05, 1.0, samples=True, step=step)
+    values = [r.setting(x, 0.01) for x in np.linspace(0.0, 1.0, 50)]
+    assert all(value % step == 1 % step for value in values)
+    assert (min(values), max(values)) == (5, 100 if step == 1 else 101)
+
+
+@pytest.mark.parametrize(
+    "name", ["p2smd", "2smd", "levant", "high-gain", "savgol-end", "filtering", "tracking"]
+)
+def test_a_smoother_judges_nearly_as_well_as_the_truth(name: str) -> None:
+    """The settings it chooses are at most 15 % worse than those that the truth would choose."""
+    q, v, a = readings()
+    method = DIFFERENTIATORS.load(name)()
+    blind = best(
+        list(tuning.search(method, method.TUNED, tuning.distance_to_smoother(q, PERIOD), PERIOD, 0))
+    )
+    informed = best(
+        list(tuning.search(method, method.TUNED, lambda m: error(m, q, v, a), PERIOD, 0))
+    )
+    assert error(blind, q, v, a) < 1.15 * error(informed, q, v, a)
+    assert error(blind, q, v, a) < error(method, q, v, a) * 1.001
+
+
+def test_the_smoother_is_nearer_to_the_truth_than_what_it_judges() -> None:
+    q, v, a = readings()
+    smooth = error(tuning.smoother(q, PERIOD), q, v, a)
+    judge = tuning.distance_to_smoother(q, PERIOD)
+    nearest = min(
+        judge(best(list(tuning.search(m(), m.TUNED, judge, PERIOD, 0))))
+        for m in (DIFFERENTIATORS.load(name) for name in ("p2smd", "high-gain", "levant"))
+    )
+    assert smooth < 0.25 * nearest
+
+
+@pytest.mark.parametrize("name", ["kalman", "kalman-lag", "rts"])
+def test_likelihood_prefers_its_fit(name: str) -> None:
+    q, _, _ = readings()
+    method = DIFFERENTIATORS.load(name)()
+    fitted = tuning.fit(method, q, PERIOD)
+    judge = tuning.negative_log_likelihood(q, PERIOD)
+    for factor in (0.5, 2.0):
+        assert judge(fitted) < judge(replace(fitted, intensity=factor * fitted.intensity))
+        assert judge(fitted) < judge(replace(fitted, noise=factor * fitted.noise))
+    sigma = RESOLUTION * np.hypot(1.0 / np.sqrt(12.0), 0.3)
+    assert fitted.noise == pytest.approx(sigma, rel=0.05)
+
+
+def test_the_same_seed_gives_the_same_trials() -> None:
+    q, _, _ = readings()
+    record = Record(q[None, :], None, PERIOD)
+    first, second, other = (
+        [(row.settings, row.trial.loss) for row in tune(record, ["p2smd"], None, seed, list)]
+        for seed in (1, 1, 2)
+    )
+    assert first == second != other
+
+
+def test_the_chosen_settings_are_the_best_of_those_tried() -> None:
+    q, _, _ = readings()
+    record = Record(np.array([q, 0.5 * q]), None, PERIOD)
+    rows = tune(record, ["high-gain", "backward"], None, 0, list)
+    name, settings = chosen(rows, 2)
+    assert name == "high-gain"
+    assert settings["backward"] == {}
+    for joint in (1, 2):
+        mine = [row for row in rows if row.name == name and row.joint == joint]
+        least = min(mine, key=lambda row: row.trial.loss)
+        assert least.best
+        assert least.trial.method.bandwidth == settings[name]["bandwidth"][joint - 1]
+
+
+def test_every_causal_method_is_tuned_by_all() -> None:
+    assert set(online()) == {
+        name for name in DIFFERENTIATORS.names if DIFFERENTIATORS.load(name)().lag(0.01) == 0
+    }
+    assert {"kalman", "p2smd", "2smd", "astd", "ed-fir"} <= set(online())
+
+
+def test_torques_judge_by_the_parameters_that_come_out() -> None:
+    """On exact torques of one axis the loss is the noise's, and a method too slow is worse."""
+    robot = load("emps")
+    q, v, a = reference(PERIOD)
+    regressor = robot.regressor(q[None, :], v[None, :], a[None, :])
+    tau = robot.torques(regressor, robot.apriori)
+    judge = tuning.error_of_torques(robot, readings()[0][None, :], tau, PERIOD)
+    gain = DIFFERENTIATORS.load("high-gain")
+    assert judge(gain(bandwidth=60.0)) < 0.15
+    assert judge(gain(bandwidth=60.0)) < judge(gain(bandwidth=5.0))
+
+
+def test_torques_that_leave_a_parameter_open_lose() -> None:
+    robot = load("scara2")
+    q = np.array([readings()[0], np.zeros(len(readings()[0]))])
+    q[1] += 1e-5 * np.random.default_rng(0).standard_normal(q.shape[1])
+    still = tuning.motion([DIFFERENTIATORS.load("central")()] * 2, np.zeros_like(q), q, PERIOD)
+    assert tuning.identified(robot, still, still.settled) is None
+
+
+def test_a_method_that_diverges_loses() -> None:
+    q, _, _ = readings()
+    judge = tuning.distance_to_smoother(q, PERIOD)
+    wild = DIFFERENTIATORS.load("p2smd")(gamma0=2000.0, gamma1=2000.0)
+    assert not judge(wild) < inf
