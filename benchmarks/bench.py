@@ -15,11 +15,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.kernels import astd, fir, information, moments, p2smd, plant, smd2, sos
+from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.kernels import fir, information, moments, p2smd, plant, sos
 
 SCARID = str(Path(sys.executable).parent / "scarid")
 ROUNDS = 11
@@ -117,12 +119,7 @@ def kernels() -> None:
     runs: dict[str, tuple[ModuleType, Callable[[ModuleType, int], object]]] = {
         "p2smd": (p2smd, lambda m, k: m.differentiate(
             q[:k], v[:k], a[:k], np.zeros(6), np.array([25, 20, 0.1, 0, 2, 1.0]), 0.005)),
-        "2smd": (smd2, lambda m, k: m.differentiate(
-            q[:k], v[:k], a[:k], np.zeros(3), np.array([10.0, 12, 70]), 0.005)),
-        "astd, one block": (astd, lambda m, k: m.differentiate(
-            q[:k], v[:k], np.array([0, 0, 5.0]), np.array([1, 50, 0.1, 0.015, 5]), 0.005)),
-        "ed-fir, one stage": (fir, lambda m, k: m.differentiate(
-            q[:k], v[:k], np.zeros(12), np.full(11, 1 / 11), 0.005)),
+        "fir of 11 taps": (fir, lambda m, k: m.filtered(q[:k], v[: k - 10], np.full(11, 1 / 11))),
         "filter, order 4": (sos, lambda m, k: m.filtered(
             q[:k], v[:k], np.zeros((2, 2)), np.full((2, 5), 0.1))),
         "ls, row of 8": (information, lambda m, k: update(m, k // 2, trace=False)),
@@ -141,6 +138,28 @@ def kernels() -> None:
         slow = interpreted(module)
         compiled = best(lambda: run(module, n), n)  # noqa: B023
         print(f"  {name:30} {compiled:9.1f} {best(lambda: run(slow, 2000), 2000):12.0f}")  # noqa: B023
+
+
+def differentiators() -> None:
+    """Time per sample and joint of every streaming method, in chunks as a stage runs it."""
+    t = np.arange(100_000) / 200
+    q = np.round((np.sin(t) + 0.3 * np.sin(7 * t)) / 1e-4) * 1e-4
+
+    def run(process: Any) -> None:
+        state = process.init(q[0], 0.005)
+        for start in range(0, len(q), 8192):
+            state, _ = process.step(state, q[start : start + 8192])
+
+    print("\nDifferentiators, ns per sample and joint at 200 Hz, and of their matched forms")
+    for name in DIFFERENTIATORS.names:
+        method = DIFFERENTIATORS.load(name)()
+        if method.lag(0.005) < np.inf:
+            forms = [
+                best(lambda form=form: run(form), len(q)) for form in (method, method.matched())
+            ]
+            print(f"  {name:30} {forms[0]:9.0f} {forms[1]:12.0f}")
+    implicit = DIFFERENTIATORS.load("p2smd")(implicit=1)
+    print(f"  {'p2smd, implicit':30} {best(lambda: run(implicit), len(q)):9.0f}")
 
 
 def stream(rows: int) -> None:
@@ -207,6 +226,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         startup(Path(folder))
         kernels()
+        differentiators()
         memory(Path(folder))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 from scarid_cli.errors import BadData
@@ -21,6 +20,8 @@ def document(best: str, settings: Settings, origin: str) -> str:
 
 def read(path: str) -> tuple[str, Settings]:
     """The best method and the settings of each."""
+    import tomllib
+
     try:
         content = tomllib.loads(Path(path).read_text("utf-8"))
         best = content.pop("method")

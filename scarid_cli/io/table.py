@@ -85,6 +85,12 @@ def doubles(values: Array) -> pa.Array:
     return pa.Array.from_buffers(pa.float64(), len(data), [None, pa.py_buffer(data)])
 
 
+def integers(values: Any) -> pa.Array:
+    """Whole numbers likewise."""
+    data = np.ascontiguousarray(values, dtype=np.int64)
+    return pa.Array.from_buffers(pa.int64(), len(data), [None, pa.py_buffer(data)])
+
+
 def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any]) -> pa.RecordBatch:
     """The batch with some columns replaced or added, in the order of the schema."""
 

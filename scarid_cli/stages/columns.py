@@ -14,7 +14,7 @@ import pyarrow as pa
 from scarid_cli.algorithms.process import Process
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault, bad_data
-from scarid_cli.io.table import Table, matrix, with_columns
+from scarid_cli.io.table import Table, integers, matrix, with_columns
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Edges:
     def marks(self, first: int, rows: int, total: float) -> pa.Array:
         """The column `settled` of so many rows from the first on, of a record of total rows."""
         at = np.arange(first, first + rows)
-        return pa.array((at >= self.start) & (at < total - self.end), pa.int64(), size=rows)
+        return integers((at >= self.start) & (at < total - self.end))
 
 
 def processed(

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scarid_cli.algorithms.matching import delays, lateness, over, reference, spread
+from scarid_cli.algorithms.delays import delays, lateness, reference
+from scarid_cli.algorithms.matching import over, spread
 from scarid_cli.algorithms.registry import DIFFERENTIATORS
 from scarid_cli.arrays import Array
 

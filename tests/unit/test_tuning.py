@@ -11,7 +11,8 @@ import pytest
 from unit.support import PERIOD
 
 from scarid_cli.algorithms import tuning
-from scarid_cli.algorithms.matching import over, reference
+from scarid_cli.algorithms.delays import reference
+from scarid_cli.algorithms.matching import over
 from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.robots.reading import load

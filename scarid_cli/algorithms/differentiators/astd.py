@@ -18,7 +18,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.matching import Measured
+from scarid_cli.algorithms.delays import Measured
 from scarid_cli.algorithms.process import Causal, Recursion
 from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_positive

@@ -44,6 +44,3 @@ class Differentiator(kalman.Settings, Causal):
 
     def matched(self) -> Differences:
         return Differences(Lowpass(self), Lowpass(replace(self, gate=inf)))
-
-    def observer(self, x: float, h: float) -> kalman.State:
-        return self.model(h).steady(x)

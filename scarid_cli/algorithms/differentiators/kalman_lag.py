@@ -58,7 +58,7 @@ class Differentiator(kalman.Settings):
         if self.lag(h) < 1:
             raise UsageFault(f"delay must be at least a period, {h:g} s, not {self.delay:g}")
         model = self.model(h)
-        weights = kalman.lag_weights(model, int(self.lag(h)))
+        weights = kalman.lag_weights(self.observer(x, h), int(self.lag(h)))
         return State(model.at_rest(x), kalman.Records.of(0, int(self.states)), weights)
 
     def step(self, state: State, x: Array) -> tuple[State, tuple[Array, ...]]:
@@ -74,5 +74,4 @@ class Differentiator(kalman.Settings):
         return tuple(np.ascontiguousarray(out.T))
 
     def matched(self) -> Differences:
-        model, torques = self.model, replace(self, gate=inf).model
-        return Differences(Lowpass(model, self.delay), Lowpass(torques, self.delay))
+        return Differences(Lowpass(self), Lowpass(replace(self, gate=inf)))

@@ -6,6 +6,7 @@ State: position, velocity, acceleration and derivatives of the acceleration, dow
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -67,18 +68,6 @@ class Model:
         P[0, 0] = self.noise[0]
         return State(first, P, np.zeros(m), np.zeros(5 + m * (m + 1)), self)
 
-    def steady(self, x: float) -> State:
-        """At rest at x, the gain settled."""
-        state = self.at_rest(0.0)
-        still = np.zeros(4096)
-        for _ in range(1000):
-            state, _ = filtered(state, still)
-            if state.settled:
-                break
-        first = np.zeros_like(state.x)
-        first[0] = x
-        return replace(state, x=first)
-
 
 @dataclass(frozen=True)
 class Settings:
@@ -100,6 +89,11 @@ class Settings:
     def require_noise(self) -> None:
         """A smoother that tunes itself takes 0 as well."""
         require_positive(self, "noise", "intensity")
+
+    def observer(self, x: float, h: float) -> State:
+        """The filter at rest at x, its gain settled."""
+        first = np.eye(int(self.states))[0] * x
+        return replace(settled(self, h), x=first)
 
     def model(self, h: float) -> Model:
         F, Q = discretised(int(self.states), self.damping, self.frequency, h)
@@ -128,6 +122,18 @@ def discretised(states: int, damping: float, frequency: float, h: float) -> tupl
     F = F * scale[None, :] / scale[:, None]
     Q = 0.5 * (Q + Q.T) * h ** (2 * states - 1) / np.outer(scale, scale)
     return np.ascontiguousarray(F), np.ascontiguousarray(Q)
+
+
+@lru_cache(maxsize=64)  # for every joint and its torque, and again for each check of the settings
+def settled(settings: Settings, h: float) -> State:
+    """The filter once its gain is at rest."""
+    state = settings.model(h).at_rest(0.0)
+    still = np.zeros(4096)
+    for _ in range(1000):
+        state, _ = filtered(state, still)
+        if state.settled:
+            break
+    return state
 
 
 def poles(orders: int, damping: float, frequency: float) -> list[complex]:
@@ -214,9 +220,9 @@ def recorded(state: State, x: Array) -> tuple[State, Records]:
     return state, records
 
 
-def lag_weights(model: Model, lag: int) -> Array:
+def lag_weights(steady: State, lag: int) -> Array:
     """What an innovation adds to the state 0, 1, ... lag rows before it, the gain settled."""
-    steady = model.steady(0.0)
+    model = steady.model
     r = np.zeros(len(model.F))
     r[0] = 1.0
     rows = []

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
 from scarid_cli.algorithms.filters.convolution import convolved
-from scarid_cli.algorithms.filters.kalman import Model, State, filtered, lag_weights
-from scarid_cli.algorithms.filters.observer import read, readout
+from scarid_cli.algorithms.filters.kalman import State, filtered, lag_weights
+from scarid_cli.algorithms.filters.observer import Observing, read, readout
 from scarid_cli.arrays import Array
+
+
+class Smoothing(Observing, Protocol):
+    """An observer whose rows wait for a lag."""
+
+    def lag(self, h: float) -> float: ...
 
 
 @dataclass(frozen=True)
@@ -37,20 +43,19 @@ class Lowpass:
     its low-pass is a sum of their low-passes.
     """
 
-    model: Callable[[float], Model]
-    delay: float
+    method: Smoothing
 
     def lag(self, h: float) -> float:
-        return round(self.delay / h)
+        return self.method.lag(h)
 
     def init(self, x: float, h: float) -> LowpassState:
         lag = int(self.lag(h))
-        observer = self.model(h).steady(x)
+        observer = self.method.observer(x, h)
         position, _, acceleration, *_ = np.eye(len(observer.x))
         variance = observer.P[0, 0] + observer.model.noise[0]
         prediction = readout(observer, h, acceleration)
         innovation = readout(observer, h, -position / variance)
-        taps = lag_weights(observer.model, lag)[::-1, 2]
+        taps = lag_weights(observer, lag)[::-1, 2]
         # Unit gain: a model with damping follows a constant acceleration not quite.
         gain = prediction[0] + innovation[0] * taps.sum()
         readouts = (prediction / gain, innovation / gain)

@@ -1,0 +1,76 @@
+"""How good a judge of settings each criterion is that knows no truth (quoted in DESIGN.md).
+
+For causal methods on quintic moves behind encoders of 13 and 16 bit: the error of the settings that
+a judge chooses, over that of the settings that the truth would choose. The judges: the distance to
+a self-tuned smoother (`scarid tune`), and the error of positions predicted some time ahead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from scarid_cli.algorithms import tuning
+from scarid_cli.algorithms.delays import reference
+from scarid_cli.algorithms.matching import over
+from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.arrays import Array
+
+H = 0.005
+METHODS = ("p2smd", "2smd", "levant", "filtering", "high-gain", "savgol-end", "tracking", "ed-fir")
+AHEAD = (0.02, 0.05, 0.1)
+INNER = slice(200, -200)
+
+
+def truth(q: Array, v: Array, a: Array) -> tuning.Judge:
+    def judge(method: Any) -> float:
+        with np.errstate(all="ignore"):
+            errors = [
+                np.std((x - y)[INNER]) / np.std(y[INNER])
+                for x, y in zip(over(method, q, H), (v, a), strict=True)
+            ]
+            return float(np.sqrt(errors[0] * errors[1]))
+
+    return judge
+
+
+def prediction(q: Array, ahead: float) -> tuning.Judge:
+    """Error of q + v T + a T^2 / 2 against the position measured T later, which no row has seen."""
+    n = round(ahead / H)
+
+    def judge(method: Any) -> float:
+        with np.errstate(all="ignore"):
+            v, a = over(method, q, H)
+            predicted = q + ahead * v + 0.5 * ahead**2 * a
+            return float(np.std((q[n:] - predicted[:-n])[INNER]))
+
+    return judge
+
+
+def main() -> None:
+    q, v, a = reference(H)
+    names = ["smoother", *(f"{1e3 * ahead:.0f} ms ahead" for ahead in AHEAD)]
+    print(f"{'':14}{''.join(f'{name:>14}' for name in names)}")
+    for bits in (13, 16):
+        step = 2.0 * np.pi / 2**bits
+        noise = 0.3 * step * np.random.default_rng(bits).standard_normal(len(q))
+        seen = step * np.round((q + noise) / step)
+        right = truth(seen, v, a)
+        judges: list[Callable[[Any], float]] = [tuning.distance_to_smoother(seen, H)]
+        judges += [prediction(seen, ahead) for ahead in AHEAD]
+        for name in METHODS:
+            method = DIFFERENTIATORS.load(name)()
+
+            def chosen(judge: tuning.Judge, method: Any = method) -> Any:
+                trials = tuning.search(method, method.TUNED, judge, H, 0)
+                return min(trials, key=lambda trial: trial.loss).method
+
+            least = right(chosen(right))
+            ratios = [right(chosen(judge)) / least for judge in judges]
+            print(f"{bits} {name:11}{''.join(f'{ratio:14.2f}' for ratio in ratios)}")
+
+
+if __name__ == "__main__":
+    main()
