@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import re
 from dataclasses import fields, is_dataclass
+from math import inf
 from typing import Any
 
 import pytest
@@ -67,6 +68,15 @@ def test_description_is_the_docstring(registry: Registry, name: str) -> None:
     described = registry.describe(name)
     assert described
     assert described.split() == (module_of(registry, name).__doc__ or "").split()
+
+
+@pytest.mark.parametrize("name", DIFFERENTIATORS.names)
+def test_a_differentiator_says_its_class_and_how_it_is_matched(name: str) -> None:
+    classes = {0: "Causal", inf: "Whole record"}
+    text = DIFFERENTIATORS.describe(name)
+    assert classes.get(DIFFERENTIATORS.load(name)().lag(0.005), "Fixed lag") in text
+    assert re.search(r"[Dd]elay", text) or name in ("central", "savgol")
+    assert "Matched" in text
 
 
 @every_choice
