@@ -73,40 +73,75 @@ clean:
 
 # --- the paper's procedure ------------------------------------------------------------------------
 #
-# METHOD.direct.*: on the identification trajectory; METHOD.cross.*: on another one.
+# METHOD.direct.*: on the identification trajectory; METHOD.cross.*: on another one; METHOD.common.*:
+# parameters of METHOD on one motion of the other log for all, zero-phase filtered.
 
-P       := build/paper
-METHODS := ed-fir 2smd astd p2smd
-RESULTS := $(foreach m,$(METHODS),$(P)/$m.parameters.parquet $(P)/$m.trace.parquet \
-             $(foreach e,direct cross,$(P)/$m.$e.metrics.parquet $(P)/$m.$e.prediction.parquet))
+P := build/paper
+
+PRINTED := ed-fir 2smd astd p2smd
+OWN     := p2smd-matched kalman 2smd-mended astd-mended
+METHODS := $(PRINTED) $(OWN)
+
+# As in the paper: filtered log, settings of Table 1, derivatives beside the torque as it is.
+OPTIONS_ed-fir := --method ed-fir --preset table1 --no-match
+OPTIONS_2smd   := --method 2smd --preset table1 --no-match
+OPTIONS_astd   := --method astd --preset table1 --no-match
+OPTIONS_p2smd  := --method p2smd --preset table1 --no-match
+# The same with gains that can follow the motion.
+OPTIONS_2smd-mended := --method 2smd --no-match
+OPTIONS_astd-mended := --method astd --no-match
+# Ours: nothing before the soft sensor.
+OPTIONS_p2smd-matched := --method p2smd --preset table1 --match
+OPTIONS_kalman        := --method kalman --match
+LOG_p2smd-matched := raw
+LOG_kalman        := raw
+log_of = $(P)/$(or $(LOG_$1),filtered).$2.measurement.parquet
 
 SEED_direct := 1
 SEED_cross  := 2
+SEED_printed-gains := 1
+GAINS_printed-gains := --kp 6.5,155 --kd 5,25
+
+MEASURED := $(P)/raw.direct.measurement.parquet $(P)/filtered.direct.measurement.parquet \
+              $(P)/raw.printed-gains.measurement.parquet
+RESULTS  := $(foreach m,$(METHODS),$(P)/$m.direct.motion.parquet $(P)/$m.parameters.parquet \
+              $(P)/$m.forgetting-0.95.parameters.parquet $(P)/$m.trace.parquet \
+              $(foreach e,direct cross,$(P)/$m.$e.metrics.parquet $(P)/$m.$e.prediction.parquet) \
+              $(P)/$m.common.metrics.parquet)
 
 paper: $(P)/report.html
 
-$(P)/report.html: $(RESULTS)
-	$(SCARID) report $^ --html $@ --markdown $(P)/report.md --title "The paper's procedure"
+$(P)/report.html: $(RESULTS) $(MEASURED) samples/paper/published.csv
+	$(SCARID) report $(RESULTS) $(MEASURED) --published samples/paper/published.csv \
+	  --html $@ --markdown $(P)/report.md --figures $(P)/figures --title "The paper's study"
 	@echo; echo "With figures: $@"
 
 $(P)/%.trajectory.parquet: $(VENV)/installed
 	@mkdir -p $(P)
 	$(SCARID) trajgen --robot scara2 --seed $(SEED_$*) -o $@
 
-$(P)/%.log.parquet: $(P)/%.trajectory.parquet
-	$(SCARID) simulate --seed $(SEED_$*) $< -o $@
+$(P)/raw.%.measurement.parquet: $(P)/%.trajectory.parquet
+	$(SCARID) simulate --seed $(SEED_$*) --truth $(GAINS_$*) $< -o $@
 
-$(P)/%.filtered.parquet: $(P)/%.log.parquet
+$(P)/filtered.%.measurement.parquet: $(P)/raw.%.measurement.parquet
 	$(SCARID) filter --natural-frequency 2 $< -o $@
 
-$(P)/%.direct.motion.parquet: $(P)/direct.filtered.parquet
-	$(SCARID) differentiate --no-match --method $* $< -o $@
+$(P)/common.motion.parquet: $(P)/raw.cross.measurement.parquet
+	$(SCARID) differentiate --method zero-phase --set cutoff=8 --match $< -o $@
 
-$(P)/%.cross.motion.parquet: $(P)/cross.filtered.parquet
-	$(SCARID) differentiate --no-match --method $* $< -o $@
+.SECONDEXPANSION:
+
+define MOTION
+$(P)/%.$1.motion.parquet: $$$$(call log_of,$$$$*,$1)
+	$(SCARID) differentiate $$(OPTIONS_$$*) $$< -o $$@
+endef
+$(foreach e,direct cross,$(eval $(call MOTION,$e)))
 
 $(P)/%.parameters.parquet $(P)/%.trace.parquet: $(P)/%.direct.motion.parquet
 	$(SCARID) identify --estimator rls --trace $(P)/$*.trace.parquet $< -o $(P)/$*.parameters.parquet
+
+$(P)/%.forgetting-0.95.parameters.parquet: $(P)/%.direct.motion.parquet
+	$(SCARID) identify --estimator rls --forgetting 0.95 $< -o $@
 
 define VALIDATE
 $(P)/%.$1.metrics.parquet $(P)/%.$1.prediction.parquet: $(P)/%.$1.motion.parquet $(P)/%.parameters.parquet
@@ -114,6 +149,9 @@ $(P)/%.$1.metrics.parquet $(P)/%.$1.prediction.parquet: $(P)/%.$1.motion.parquet
 	  --predictions $(P)/$$*.$1.prediction.parquet $$< -o $(P)/$$*.$1.metrics.parquet
 endef
 $(foreach e,direct cross,$(eval $(call VALIDATE,$e)))
+
+$(P)/%.common.metrics.parquet: $(P)/common.motion.parquet $(P)/%.parameters.parquet
+	$(SCARID) validate --parameters $(P)/$*.parameters.parquet $< -o $@
 
 # Keep every table on the way: each can be looked at with `scarid info` or `scarid convert`.
 .SECONDARY:

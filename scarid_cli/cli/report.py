@@ -14,13 +14,26 @@ from scarid_cli.cli import options
 @click.option("--html", metavar="FILE", help="Write one self-contained page, with figures.")
 @click.option("--markdown", metavar="FILE", help="Write the tables as Markdown.")
 @click.option(
+    "--published",
+    "printed",
+    metavar="FILE",
+    help="Published values to show beside ours.",
+)
+@click.option("--figures", metavar="FOLDER", help="Write each figure as an SVG file.")
+@click.option(
     "--title", default="Identification report", show_default=True, help="Of the documents."
 )
 @options.common
 def command(
-    files: tuple[str, ...], html: str | None, markdown: str | None, title: str, **rest: Any
+    files: tuple[str, ...],
+    html: str | None,
+    markdown: str | None,
+    printed: str | None,
+    figures: str | None,
+    title: str,
+    **rest: Any,
 ) -> None:
-    """Tables and figures of parameters, traces, metrics and predictions.
+    """Tables and figures of logs, motions, parameters, traces, metrics and predictions.
 
     \b
       scarid report *.parameters.parquet
@@ -33,8 +46,9 @@ def command(
 
     Prints the tables: estimates with relative standard deviations (paper's Table 2), errors of the
     running estimates (Table 3), quality of the predicted torques per experiment (Tables 4 and 5).
-    The page adds the largest relative standard deviation per method (Fig. 5), the estimates over
-    time (Fig. 6), actual and predicted torques (Figs. 7 and 8).
+    The page adds the logs beside each other (Fig. 3), velocities and accelerations (Fig. 4), the
+    largest relative standard deviation per method (Fig. 5), the estimates over time (Fig. 6),
+    actual and predicted torques (Figs. 7 and 8).
 
     A priori values are those of the robot that the metadata state; a CSV states none and takes
     the robot of another table with the same parameters.
@@ -43,10 +57,11 @@ def command(
     tables of any length in bounded memory.
     """
     import sys
+    from pathlib import Path
 
     from scarid_cli.cli.job import job
     from scarid_cli.errors import UsageFault
-    from scarid_cli.reporting import results, text
+    from scarid_cli.reporting import naming, published, results, text
     from scarid_cli.reporting.content import sections
     from scarid_cli.reporting.documents import documents
 
@@ -59,11 +74,19 @@ def command(
     # A report is no table and has no history: its inputs need no digest.
     with job({**rest, "no_history": True}) as run, documents(html, markdown) as (page, plain):
         tables = [results.reportable(run.read(path, None)) for path in paths]
-        found = sections(results.collect(tables))
-        if page:
-            from scarid_cli.reporting.page import html as rendered
+        values = published.read(run.read(printed, "published")) if printed else None
+        found = sections(results.collect(tables), values)
+        if page or figures:
+            from scarid_cli.reporting import page as rendering
 
-            page.write(rendered(title, found, tables).encode())
+            drawn = rendering.figures(found)
+            if figures:
+                folder = Path(figures)
+                folder.mkdir(parents=True, exist_ok=True)
+                for name, document in naming.figures([s.title for s in found], drawn):
+                    run.text(str(folder / name)).write(document)
+            if page:
+                page.write(rendering.html(title, found, drawn, tables).encode())
         if plain:
             plain.write(text.markdown(title, found).encode())
         if "-" not in (html, markdown):

@@ -111,6 +111,7 @@ KINDS = (
     "parameters",
     "metrics",
     "trials",
+    "published",
     "prediction",
     "motion",
     "measurement",

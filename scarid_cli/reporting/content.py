@@ -3,96 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, replace
-from math import isfinite, nan
-from typing import Any, TypeVar
+from math import ceil, isfinite, nan
+from typing import TypeVar
 
-from scarid_cli.arrays import Array
+from scarid_cli.reporting import published
+from scarid_cli.reporting.parts import NONE, Bars, Line, Panel, Panels, Section, number
 from scarid_cli.reporting.results import Metrics, Parameters, Prediction, Result, Trace
+from scarid_cli.reporting.signals import Log, Motion, logs, soft_sensors
 
-NONE = "-"
 DOUBT = 30.0  # %: a parameter with a greater relative standard deviation is doubtful
 PANELS = 8  # of a figure at most, so that it fits a page
 # Where the start of a trace, as a part of it, needs an axis this many times longer, the axis
 # leaves it out.
 STARTS = (0.1, 0.25)
 TRANSIENT = 2.5
+KEPT = 2 / 3  # of the lines of a panel, which decide its axis if the others stray
 
 R = TypeVar("R", bound=Result)
 
 
-@dataclass(frozen=True)
-class Bars:
-    """One bar per name; `colour` is the number of the label in the report."""
-
-    caption: str
-    axis: str
-    names: tuple[str, ...]
-    values: tuple[float, ...]
-    colours: tuple[int, ...]
-    doubt: float
-
-
-@dataclass(frozen=True)
-class Line:
-    """A curve (2, points) of a panel; `colour` is that of a label, None that of measurements."""
-
-    name: str
-    colour: int | None
-    points: Array
-
-
-@dataclass(frozen=True)
-class Panel:
-    """Curves over time; `level` is a horizontal line, `limits` those of the vertical axis."""
-
-    axis: str
-    lines: tuple[Line, ...]
-    level: float | None = None
-    limits: tuple[float, float] | None = None
-
-
-@dataclass(frozen=True)
-class Panels:
-    """Panels under each other in columns, with one legend; `level` names the horizontal lines."""
-
-    caption: str
-    panels: tuple[Panel, ...]
-    columns: int
-    level: str = ""
-
-
-Plot = Bars | Panels
-
-
-@dataclass(frozen=True)
-class Section:
-    """A table under a title and a note; without rows only its plots are shown.
-
-    The first `keys` columns tell what a row is, the first `texts` of them in words; the others
-    belong together in groups of `group`.
-    """
-
-    title: str
-    note: str
-    headers: tuple[str, ...] = ()
-    rows: tuple[tuple[str, ...], ...] = ()
-    texts: int = 1
-    keys: int = 1
-    group: int = 1
-    plots: tuple[Plot, ...] = ()
-
-
-def sections(results: Sequence[Result]) -> list[Section]:
-    """Everything that these results have to say."""
-    colours = {name: i for i, name in enumerate(dict.fromkeys(r.name.label for r in results))}
+def sections(results: Sequence[Result], values: published.Values | None = None) -> list[Section]:
+    """Everything that these results have to say, with published values beside them."""
+    labels = (r.name.label for r in results if not isinstance(r, Log))
+    colours = {name: i for i, name in enumerate(dict.fromkeys(labels))}
+    results = published.beside(results, values or {})
     parameters = [r for r in results if isinstance(r, Parameters)]
     traces = [r for r in results if isinstance(r, Trace)]
     torques = [r for r in results if isinstance(r, (Metrics, Prediction))]
     return [
+        *published.settings(results, values or {}),
+        *(logs(group) for group in _grouped(_of(results, Log), _experiment)),
+        *(soft_sensors(group, colours) for group in _grouped(_of(results, Motion), _experiment)),
         *(
             section
-            for group in _grouped(parameters, lambda r: (r.names, _robot_name(r)))
+            for group in _grouped(parameters, lambda r: (r.names, _robot_name(r), _experiment(r)))
             for section in (_estimates(group, colours), _fit(group))
             if section
         ),
@@ -105,6 +49,14 @@ def sections(results: Sequence[Result]) -> list[Section]:
             for group in _grouped(torques, lambda r: (r.joints, r.name.experiment))
         ),
     ]
+
+
+def _of(results: Sequence[Result], kind: type[R]) -> list[R]:
+    return [r for r in results if isinstance(r, kind)]
+
+
+def _experiment(result: Result) -> str:
+    return result.name.experiment
 
 
 def _grouped(results: Sequence[R], key: Callable[[R], Hashable]) -> list[list[R]]:
@@ -120,11 +72,8 @@ def _robot_name(result: Result) -> str | None:
 
 
 def _shown(results: Sequence[Result]) -> list[str]:
-    """How to name results beside each other: by label, where needed with the experiment."""
-    labels = [result.name.label for result in results]
-    if len(set(labels)) == len(labels):
-        return labels
-    return [f"{r.name.label} {r.name.experiment}".rstrip() for r in results]
+    """How to name results beside each other."""
+    return [result.name.shown for result in results]
 
 
 def _estimates(group: Sequence[Parameters], colours: dict[str, int]) -> Section:
@@ -132,7 +81,7 @@ def _estimates(group: Sequence[Parameters], colours: dict[str, int]) -> Section:
     keys = [first.names, first.units]
     if robot:
         keys.append(tuple(f"{value:.4g}" for value in robot.apriori))
-    columns = [column for r in group for column in (map(number, r.estimates), _all(r.deviations))]
+    columns = [_cells(r, values) for r in group for values in (r.estimates, r.deviations)]
     known = [_greatest(r.deviations) for r in group]
     bars = Bars(
         caption="Largest relative standard deviation of a parameter, per method (eq. 34). "
@@ -141,10 +90,11 @@ def _estimates(group: Sequence[Parameters], colours: dict[str, int]) -> Section:
         names=tuple(shown),
         values=tuple(known),
         colours=tuple(colours[r.name.label] for r in group),
+        pale=tuple(r.name.published for r in group),
         doubt=DOUBT,
     )
     return Section(
-        title="Parameters",
+        title=_titled("Parameters", first),
         note=f"{_of_robot(group)}Each estimate with its relative standard deviation in % (eq. 34).",
         headers=(
             *("parameter", "unit", "a priori")[: len(keys)],
@@ -165,13 +115,14 @@ def _greatest(values: Sequence[float]) -> float:
 def _fit(group: Sequence[Parameters]) -> Section | None:
     """What the metadata tell of the estimation; CSV tells nothing."""
     keys = ("condition_number", "samples", "residual_deviation")
-    if not any(key in r.extra for r in group for key in keys):
+    group = [r for r in group if any(key in r.extra for key in keys)]
+    if not group:
         return None
     robot = group[0].robot
     units = {joint.torque_unit for joint in robot.joints} if robot else set()
     unit = f" [{units.pop()}]" if len(units) == 1 else ""
     return Section(
-        title="Fit",
+        title=_titled("Fit", group[0]),
         note="Condition number of the observation matrix W; standard deviation of the residual.",
         headers=("method", "condition number", "samples", f"residual deviation{unit}"),
         rows=tuple(
@@ -189,6 +140,7 @@ def _evolution(group: Sequence[Trace], colours: dict[str, int]) -> Section:
             [
                 Line(label, colours[r.name.label], r.curves[i])
                 for label, r in zip(shown, group, strict=True)
+                if r.curves
             ],
             robot.apriori[i] if robot else None,
         )
@@ -202,12 +154,12 @@ def _evolution(group: Sequence[Trace], colours: dict[str, int]) -> Section:
         else "",
         headers=("method", *map(_with_unit, first.names, first.units)) if robot else (),
         rows=tuple(
-            (name, *map(number, r.errors)) for name, r in zip(shown, group, strict=True) if robot
+            (name, *_cells(r, r.errors)) for name, r in zip(shown, group, strict=True) if robot
         ),
         plots=tuple(
             Panels(
-                caption="Time evolution of the estimates. Where their start goes far beyond, the "
-                "axis leaves out the first 10 or 25 % of the record.",
+                caption="Time evolution of the estimates. The axis shows where most of them go "
+                "after the first 10 or 25 % of the record; lines beyond are cut off.",
                 panels=part,
                 columns=2,
                 level="a priori" if robot else "",
@@ -218,16 +170,32 @@ def _evolution(group: Sequence[Trace], colours: dict[str, int]) -> Section:
 
 
 def _panel(axis: str, lines: Sequence[Line], level: float | None) -> Panel:
-    """The vertical axis shows the convergence: not the start, where that would dwarf the rest."""
+    """The vertical axis shows the convergence: not the start, where that would dwarf the rest.
+
+    Nor a line that strays where most of the others do not.
+    """
     limits = None
     low, high = _range(lines, level, 0.0)
     for start in STARTS:
-        late = _range(lines, level, start)
+        late = _usual(lines, level, start)
         span = late[1] - late[0]
         if high - low > TRANSIENT * span > 0.0:
             low, high = late
             limits = (low - 0.1 * span, high + 0.1 * span)
     return Panel(axis, tuple(lines), level, limits)
+
+
+def _usual(lines: Sequence[Line], level: float | None, start: float) -> tuple[float, float]:
+    """The range after this part of each record, without the third of the lines that stray most."""
+    whole = _range(lines, level, start)
+    by_span = sorted(lines, key=lambda line: _span(_range([line], level, start)))
+    kept = by_span[: ceil(len(lines) * KEPT)]
+    usual = _range(kept, level, start)
+    return usual if _span(whole) > TRANSIENT * _span(usual) else whole
+
+
+def _span(limits: tuple[float, float]) -> float:
+    return limits[1] - limits[0]
 
 
 def _range(lines: Sequence[Line], level: float | None, start: float) -> tuple[float, float]:
@@ -290,7 +258,7 @@ def _metrics_row(result: Metrics, units: Sequence[str]) -> list[str]:
         for q, own, unit in zip(result.qualities, result.units, units, strict=True)
         for cell in (
             f"{q.r2:.4f}" if isfinite(q.r2) else NONE,
-            number(q.rmse) if unit else f"{number(q.rmse)} {own}",
+            _cells(result, [q.rmse])[0] + ("" if unit else f" {own}"),
             number(q.relative_error),
         )
     ]
@@ -298,7 +266,7 @@ def _metrics_row(result: Metrics, units: Sequence[str]) -> list[str]:
 
 def _samples(result: Metrics) -> str:
     """The joints of one motion have as many."""
-    return ", ".join(dict.fromkeys(number(q.samples) for q in result.qualities))
+    return ", ".join(dict.fromkeys(number(q.samples or None) for q in result.qualities))
 
 
 def _torque_panels(result: Prediction, name: str, colour: int) -> list[Panel]:
@@ -340,48 +308,10 @@ def _common(units: Sequence[str]) -> str:
     return units[0] if len(set(units)) == 1 else ""
 
 
-def _all(values: Sequence[float]) -> list[str]:
-    return [number(value) for value in values]
+def _cells(result: Result, values: Sequence[float]) -> list[str]:
+    """Published values as they were printed."""
+    return [_printed(x) if result.name.published else number(x) for x in values]
 
 
-def number(value: Any) -> str:
-    """Four significant digits, whole numbers in full; what does not exist is a dash."""
-    if isinstance(value, int) and not isinstance(value, bool):
-        return str(value)
-    if not isinstance(value, float) or not isfinite(value):
-        return NONE
-    # Adding zero turns -0.0 into 0.0; the alternative form keeps zeros but also a last point.
-    return f"{value + 0.0:#.4g}".rstrip(".")
-
-
-def split(section: Section, width: int, gap: int, *, wrapped: bool = False) -> list[Section]:
-    """The section, or, where its table is wider than this many characters, parts side by side.
-
-    Columns are `gap` characters apart; `wrapped` headers have their unit on a line of its
-    own. Each part repeats the key columns; no part is empty.
-    """
-    columns = list(zip(section.headers, *section.rows, strict=True))
-    widths = [_width(column, wrapped=wrapped) + gap for column in columns]
-    left = width - sum(widths[: section.keys])
-    parts: list[list[int]] = [[]]
-    used = 0
-    for start in range(section.keys, len(columns), section.group):
-        group = list(range(start, start + section.group))
-        size = sum(widths[i] for i in group)
-        if parts[-1] and used + size > left:
-            parts.append([])
-            used = 0
-        parts[-1] += group
-        used += size
-    return [_part(section, columns, [*range(section.keys), *part]) for part in parts]
-
-
-def _width(column: tuple[str, ...], *, wrapped: bool) -> int:
-    header, *cells = column
-    lines = header.replace(" [", "\n[").split("\n") if wrapped else [header]
-    return max(map(len, (*lines, *cells)))
-
-
-def _part(section: Section, columns: list[tuple[str, ...]], chosen: list[int]) -> Section:
-    headers, *rows = zip(*(columns[i] for i in chosen), strict=True)
-    return replace(section, headers=headers, rows=tuple(rows))
+def _printed(value: float) -> str:
+    return f"{value:g}" if isfinite(value) else NONE

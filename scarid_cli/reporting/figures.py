@@ -14,13 +14,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from scarid_cli.reporting.content import Bars, Line, Panels, Plot
+from scarid_cli.reporting.parts import Bars, Line, Panels, Plot, Section
 
 # Okabe and Ito's palette, told apart by colour-blind readers, the ones that print best first.
 # Black is for measurements.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442")
 DASHES = ("-", "-.", ":", (0, (1, 4)))  # of the second, third, ... turn through the palette
 INK = "#222222"
+BEYOND = 10.0  # times the doubt, where the axis of bars ends
 WIDTH = 6.7  # inches: the text width of an A4 page
 
 STYLE = {
@@ -52,8 +53,13 @@ OFFSET: dict[str, Any] = {"textcoords": "offset points"}
 NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
 
+def drawn(sections: Sequence[Section]) -> list[list[str]]:
+    """Every plot of every section as an SVG document."""
+    return [[draw(plot) for plot in section.plots] for section in sections]
+
+
 def draw(plot: Plot) -> str:
-    """The plot as an `<svg>` element."""
+    """The plot as an SVG document."""
     with matplotlib.rc_context(), warnings.catch_warnings():
         # Neither the user's matplotlibrc nor a script without a glyph here changes the report.
         warnings.filterwarnings("ignore", message="Glyph .* missing")
@@ -62,14 +68,18 @@ def draw(plot: Plot) -> str:
         figure = _bars(plot) if isinstance(plot, Bars) else _panels(plot)
         out = io.StringIO()
         figure.savefig(out, format="svg", metadata=NO_METADATA)
-    return _element(out.getvalue())
+    return re.sub(r'(?<= d=")[^"]*', _hundredths, out.getvalue())
 
 
-def _element(document: str) -> str:
-    """The element alone, as large as its place, with hundredths of a point for precision."""
-    element = document[document.index("<svg") :].strip()
-    element = re.sub(r' (xmlns(:xlink)?|version|width|height)="[^"]*"', "", element, count=5)
-    return re.sub(r'(?<= d=")[^"]*', lambda path: re.sub(r"(\.\d\d)\d+", r"\1", path[0]), element)
+def _hundredths(path: re.Match[str]) -> str:
+    """Coordinates with hundredths of a point for precision."""
+    return re.sub(r"(\.\d\d)\d+", r"\1", path[0])
+
+
+def element(document: str) -> str:
+    """The `<svg>` element alone, as large as its place."""
+    inner = document[document.index("<svg") :].strip()
+    return re.sub(r' (xmlns(:xlink)?|version|width|height)="[^"]*"', "", inner, count=5)
 
 
 def colour_of(index: int | None) -> str:
@@ -82,12 +92,17 @@ def _bars(plot: Bars) -> Figure:
     axes = figure.subplots()
     places = range(len(plot.names))
     values = [value if isfinite(value) else 0.0 for value in plot.values]
-    axes.barh(places, values, height=0.62, color=[colour_of(i) for i in plot.colours])
+    bars = axes.barh(places, values, height=0.62, color=[colour_of(i) for i in plot.colours])
+    for bar, pale in zip(bars, plot.pale, strict=True):
+        bar.set_alpha(0.4 if pale else 1.0)
     for place, value, end in zip(places, plot.values, values, strict=True):
-        text = f"{value:.3g} %" if isfinite(value) else "unknown"
-        axes.annotate(text, (end, place), (4, 0), **OFFSET, va="center", bbox=PAPER)
+        beyond = end > BEYOND * plot.doubt
+        text = _percent(value) + (", beyond the axis" if beyond else "")
+        at = (min(end, BEYOND * plot.doubt), place)
+        shift, side = (-4, "right") if beyond else (4, "left")
+        axes.annotate(text, at, (shift, 0), **OFFSET, ha=side, va="center", bbox=PAPER)
     axes.axvline(plot.doubt, color=INK, linestyle="--", linewidth=0.9)
-    axes.set_xlim(0.0, 1.12 * max(*values, plot.doubt))
+    axes.set_xlim(0.0, min(1.12 * max(*values, plot.doubt), BEYOND * plot.doubt))
     axes.set_ylim(len(plot.names) - 0.5, -0.5)
     axes.set_yticks(places, plot.names)
     axes.tick_params(axis="y", length=0)
@@ -99,6 +114,12 @@ def _bars(plot: Bars) -> Figure:
     return figure
 
 
+def _percent(value: float) -> str:
+    if not isfinite(value):
+        return "unknown"
+    return f"{value:.3g} %" if value < 1000.0 else f"{value:,.0f} %"
+
+
 def _panels(plot: Panels) -> Figure:
     columns = min(plot.columns, len(plot.panels))
     rows = ceil(len(plot.panels) / columns)
@@ -106,8 +127,9 @@ def _panels(plot: Panels) -> Figure:
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
     grid = figure.subplots(rows, columns, sharex=True, squeeze=False).flatten().tolist()
     for axes, panel in zip(grid, plot.panels, strict=False):
-        for line in panel.lines:
-            axes.plot(*line.points, **_style(line))
+        for k, line in enumerate(panel.lines):  # the first above the others
+            below = 0 if line.colour is None else 1 + (len(panel.lines) - k) / len(panel.lines)
+            axes.plot(*line.points, **_style(line), zorder=1.0 + below)
         if panel.level is not None:
             axes.axhline(panel.level, color=INK, linestyle="--", linewidth=0.9)
         if panel.limits:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,10 +13,18 @@ from scarid_cli.io.bytesource import STDIN
 
 @dataclass(frozen=True)
 class Name:
-    """What a table is of: `label` is the method, `experiment` may be empty."""
+    """What a table is of: `label` is the method, `experiment` may be empty.
+
+    `published`: it holds what an article printed of it.
+    """
 
     label: str
     experiment: str
+    published: bool = False
+
+    @property
+    def shown(self) -> str:
+        return f"{self.label}, published" if self.published else self.label
 
 
 def name_of(file: str, kind: str) -> Name:
@@ -51,3 +60,13 @@ def _with_path(name: Name, file: str, *, in_full: bool) -> Name:
 def printable(text: str) -> str:
     """The text without line breaks and control characters, which a terminal would obey."""
     return "".join(c if c.isprintable() else "?" for c in text)
+
+
+def figures(titles: Sequence[str], drawn: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
+    """A file name for each figure of each section: its number, the section, its place there."""
+    named: list[tuple[str, str]] = []
+    for title, documents in zip(titles, drawn, strict=True):
+        words = re.findall(r"[a-z0-9]+", title.lower())
+        for place, document in enumerate(documents, start=1):
+            named.append((f"{len(named) + 1:02}-{'-'.join(words)}-{place}.svg", document))
+    return named

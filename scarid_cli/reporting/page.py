@@ -13,19 +13,28 @@ from markupsafe import Markup
 
 from scarid_cli import __version__
 from scarid_cli.io.table import Table
-from scarid_cli.reporting.content import Section, split
 from scarid_cli.reporting.curves import POINTS
+from scarid_cli.reporting.parts import Section, split
 
 WIDTH = 108  # characters of a table that fit an A4 page
 GAP = 2
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
-def html(title: str, sections: Sequence[Section], tables: Sequence[Table]) -> str:
-    """The whole page; `tables` are told with their history at the end."""
+def figures(sections: Sequence[Section]) -> list[list[str]]:
+    """Every plot of every section as an SVG document."""
     # While it is imported, matplotlib may tell about its caches, which is nobody's concern here.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
-    from scarid_cli.reporting.figures import draw
+    from scarid_cli.reporting.figures import drawn
+
+    return drawn(sections)
+
+
+def html(
+    title: str, sections: Sequence[Section], drawn: list[list[str]], tables: Sequence[Table]
+) -> str:
+    """The whole page with its figures; `tables` are told with their history at the end."""
+    from scarid_cli.reporting.figures import element
 
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
@@ -46,11 +55,13 @@ def html(title: str, sections: Sequence[Section], tables: Sequence[Table]) -> st
                 "section": section,
                 "parts": split(section, WIDTH, GAP, wrapped=True) if section.rows else [],
                 "figures": [
-                    (plot.caption, _own(draw(plot), f"f{i}-{j}-"))
-                    for j, plot in enumerate(section.plots, start=1)
+                    (plot.caption, _own(element(document), f"f{i}-{j}-"))
+                    for j, (plot, document) in enumerate(
+                        zip(section.plots, documents, strict=True), start=1
+                    )
                 ],
             }
-            for i, section in enumerate(sections, start=1)
+            for i, (section, documents) in enumerate(zip(sections, drawn, strict=True), start=1)
         ],
     )
 

@@ -19,8 +19,9 @@ from scarid_cli.io.reader import checked, require
 from scarid_cli.io.table import Table, matrix
 from scarid_cli.reporting.curves import Curve
 from scarid_cli.reporting.naming import Name, names_of, printable
+from scarid_cli.reporting.signals import Log, Motion, log, motion
 
-REPORTED = ("parameters", "trace", "metrics", "prediction")
+REPORTED = ("parameters", "trace", "metrics", "prediction", "motion", "measurement")
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,7 @@ class Parameters:
     estimates: tuple[float, ...]
     deviations: tuple[float, ...]
     extra: dict[str, Any]
+    commands: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class Prediction:
     predicted: tuple[Array, ...]
 
 
-Result = Parameters | Trace | Metrics | Prediction
+Result = Parameters | Trace | Metrics | Prediction | Log | Motion
 
 
 def reportable(table: Table) -> Table:
@@ -85,12 +87,13 @@ def reportable(table: Table) -> Table:
         return checked(table, kind)
     if kind in (*schemas.KINDS, "via"):
         raise UsageFault(
-            f"{table.name} is a {kind} table; report takes parameters, trace, metrics and "
-            "prediction tables"
+            f"{table.name} is a {kind} table; report takes parameters, trace, metrics, prediction, "
+            "motion and measurement tables"
         )
     raise BadData(
         f"{table.name}: found the columns {printable(', '.join(table.columns))}, expected a "
-        "parameters, trace, metrics or prediction table; name the columns as docs/tables.md does"
+        "parameters, trace, metrics, prediction, motion or measurement table; name the columns as "
+        "docs/tables.md does"
     )
 
 
@@ -103,6 +106,8 @@ def collect(tables: Sequence[Table]) -> list[Result]:
         "trace": _trace,
         "metrics": _metrics,
         "prediction": _prediction,
+        "motion": motion,
+        "measurement": log,
     }
     others = [robot for robot in robots if robot]
     return [
@@ -138,6 +143,7 @@ def _parameters(
         estimates=tuple(rows["estimate"]),
         deviations=_numbers(rows, "relative_deviation"),
         extra=table.meta.extra,
+        commands=tuple(entry["command"] for entry in table.meta.history),
     )
 
 

@@ -10,7 +10,7 @@ from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 
-from scarid_cli.reporting.content import Section, split
+from scarid_cli.reporting.parts import Section, split
 
 WIDTH = 100  # characters of running text where there is no terminal
 GAP = 2  # characters between the columns of a table

@@ -279,9 +279,10 @@ def refused(result: Result, status: int, *told: str) -> None:
         assert words in result.err
 
 
-def test_a_log_is_no_result(samples: Path, scarid: Run) -> None:
-    log = samples / "scara2.csv"
-    refused(scarid("report", log), 2, str(log), "measurement", "parameters, trace, metrics and")
+def test_a_trajectory_is_no_result(tmp_path: Path, scarid: Run) -> None:
+    path = tmp_path / "reference.csv"
+    assert scarid("trajgen", "-q", "--duration", 2, "-o", path).status == 0
+    refused(scarid("report", path), 2, str(path), "trajectory", "parameters, trace, metrics, ")
 
 
 @pytest.mark.parametrize("kind", [None, "recipe"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,9 +14,10 @@ from hypothesis import strategies as st
 from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.reporting import content, figures, text
-from scarid_cli.reporting.content import Bars, Panels, Section, number, sections, split
+from scarid_cli.reporting.content import sections
 from scarid_cli.reporting.curves import POINTS, Curve
 from scarid_cli.reporting.naming import Name, name_of, names_of
+from scarid_cli.reporting.parts import Bars, Panels, Section, number, split
 from scarid_cli.reporting.results import Metrics, Parameters, Prediction, Trace
 
 SCARA = reading.load("scara2")
@@ -152,9 +154,10 @@ def test_other_parameters_go_into_another_section() -> None:
     assert found[1].plots == ()
 
 
-def test_one_method_in_two_experiments_is_named_with_them() -> None:
-    (section,) = sections([parameters("a"), parameters("a", experiment="cross")])
-    assert section.headers[2::2] == ("a direct", "a cross")
+def test_estimates_of_each_experiment_have_a_section_of_their_own() -> None:
+    found = sections([parameters("a"), parameters("a", experiment="cross")])
+    assert [section.title for section in found] == ["Parameters: direct", "Parameters: cross"]
+    assert {section.headers[-2:] for section in found} == {("a", "%")}
 
 
 def test_the_bars_are_the_largest_known_deviations() -> None:
@@ -187,6 +190,10 @@ def test_joints_of_different_units_have_the_unit_in_the_cell() -> None:
     assert [row[2:4] for row in section.rows] == [("-", "2.000 N"), ("-", "2.000 N m")]
 
 
+def element_of(plot: Any) -> str:
+    return figures.element(figures.draw(plot))
+
+
 def evolution(values: np.ndarray, *, level: bool = True) -> Panels:
     robot = SCARA if level else None
     curves = (a_line(*values),) * 8
@@ -207,7 +214,7 @@ def test_a_transient_does_not_hide_the_convergence() -> None:
 def test_a_constant_trace_and_one_without_robot_are_drawn() -> None:
     plot = evolution(np.ones(5), level=False)
     assert (plot.panels[0].limits, plot.panels[0].level, plot.level) == (None, None, "")
-    assert figures.draw(plot).startswith("<svg")
+    assert element_of(plot).startswith("<svg")
 
 
 # --- how it is shown ----------------------------------------------------------------------------
@@ -269,8 +276,8 @@ def test_a_figure_is_the_same_every_time_and_refers_to_nothing() -> None:
     plots = [p for s in sections([parameters("$a_b$"), parameters("_日本")]) for p in s.plots]
     plots.append(evolution(np.arange(30.0)))
     for plot in plots:
-        drawn = figures.draw(plot)
-        assert drawn == figures.draw(plot)
+        drawn = element_of(plot)
+        assert drawn == element_of(plot)
         assert drawn.startswith("<svg")
         assert drawn.endswith("</svg>")
         assert "http" not in drawn
@@ -290,7 +297,7 @@ def test_a_label_has_one_colour_in_the_whole_report() -> None:
     colours = dict(zip(bars.names, bars.colours, strict=True))
     assert {line.name: line.colour for line in over_time.panels[0].lines} == colours
     assert torques.panels[0].lines[1].colour == colours["b"]
-    assert figures.colour_of(colours["a"]) in figures.draw(bars)
+    assert figures.colour_of(colours["a"]) in element_of(bars)
     assert len(set(figures.PALETTE)) == len(figures.PALETTE)
 
 
@@ -300,4 +307,4 @@ def test_many_parameters_are_drawn_in_figures_of_a_page() -> None:
     plots = sections([trace])[0].plots
     assert [len(p.panels) for p in plots if isinstance(p, Panels)] == [8, 8, 3]
     assert content.PANELS == 8
-    assert figures.draw(plots[-1])
+    assert element_of(plots[-1])

@@ -1,0 +1,91 @@
+"""Published values beside ours: a table of them becomes results of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import nan
+
+from scarid_cli.algorithms.statistics.prediction import Quality
+from scarid_cli.io.table import Table
+from scarid_cli.reporting.naming import printable
+from scarid_cli.reporting.parts import NONE, Section
+from scarid_cli.reporting.results import Metrics, Parameters, Result, Trace
+
+# (method, experiment, quantity, measure) -> value
+Values = dict[tuple[str, str, str, str], float]
+
+
+def read(table: Table) -> Values:
+    """The values of a table of the kind `published`."""
+    values: Values = {}
+    for batch in table.batches:
+        rows = batch.to_pydict()
+        experiments = rows.get("experiment", [""] * batch.num_rows)
+        keys = zip(rows["method"], experiments, rows["quantity"], rows["measure"], strict=True)
+        for (method, experiment, quantity, measure), value in zip(keys, rows["value"], strict=True):
+            values[printable(method), experiment or "", quantity, measure] = value
+    return values
+
+
+def beside(results: Sequence[Result], values: Values) -> list[Result]:
+    """The results, each followed by what was published for its method and experiment."""
+    found: list[Result] = []
+    for result in results:
+        found.append(result)
+        published = _published(result, values)
+        if published:
+            found.append(published)
+    return found
+
+
+def _published(result: Result, values: Values) -> Result | None:
+    method, experiment = result.name.label, result.name.experiment
+    name = replace(result.name, published=True)
+
+    def of(quantity: str, measure: str) -> float:
+        return values.get((method, experiment, quantity, measure), nan)
+
+    if not any(key[:2] == (method, experiment) for key in values):
+        return None
+    if isinstance(result, Parameters):
+        return replace(
+            result,
+            name=name,
+            estimates=tuple(of(p, "estimate") for p in result.names),
+            deviations=tuple(of(p, "relative_deviation") for p in result.names),
+            extra={},
+        )
+    if isinstance(result, Trace):
+        errors = tuple(of(p, "rms_error") for p in result.names)
+        return replace(result, name=name, curves=(), errors=errors)
+    if isinstance(result, Metrics):
+        qualities = tuple(
+            Quality(of(f"tau{i}", "r2"), of(f"tau{i}", "rmse"), nan, 0) for i in result.joints
+        )
+        return replace(result, name=name, qualities=qualities)
+    return None
+
+
+def settings(results: Sequence[Result], values: Values) -> list[Section]:
+    """The settings that were published, beside the commands that were run."""
+    rows = []
+    for result in results:
+        if not isinstance(result, Parameters) or result.name.published or result.name.experiment:
+            continue
+        method = result.name.label
+        given = [f"{q} = {v:g}" for (m, _, q, measure), v in values.items()
+                 if (m, measure) == (method, "setting")]  # fmt: skip
+        runs = [c for c in result.commands if c.startswith("scarid differentiate")]
+        command = runs[-1].removeprefix("scarid differentiate ") if runs else NONE
+        rows.append((method, ", ".join(given) or NONE, _without_files(command)))
+    if not rows or not values:
+        return []
+    note = "Published settings, and the options of `scarid differentiate` that were used."
+    headers = ("method", "published", "here")
+    return [Section("Settings", note, headers, tuple(rows), texts=3)]
+
+
+def _without_files(command: str) -> str:
+    words = command.split()
+    return " ".join(word for word in words if "/" not in word)
