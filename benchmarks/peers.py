@@ -1,0 +1,156 @@
+"""Peers as the benchmark runs them: tuned blind, by their own means where they have any.
+
+Each function takes positions and returns velocity and acceleration. PyNumDiff has first
+derivatives only: its method is applied to its own velocity once more, or numpy's gradient is taken,
+whichever is the better for it.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from signals import H
+
+from scarid_cli.algorithms import tuning
+from scarid_cli.algorithms.ranges import Range
+from scarid_cli.arrays import Array
+
+Derivatives = tuple[Array, Array]
+Sensor = Callable[[Array], Derivatives]
+BAND = 1.0  # Hz, told to PyNumDiff as the band of the motion
+# Its searches over everything take minutes to hours each: the method's usual order, few starts.
+SPACES: dict[str, tuple[str, dict[str, Any]]] = {
+    "rtsdiff": ("kalman_smooth", {"order": 3, "forwardbackward": False,
+                                  "log_qr_ratio": [5.0, 9.0, 12.0, 16.0]}),
+    "splinediff": ("polynomial_fit", {"degree": 5}),
+    "tvrdiff": ("total_variation_regularization", {"order": 3, "huberM": 6.0,
+                                                   "gamma": [1e-1, 10.0, 1000.0]}),
+    "butterdiff": ("smooth_finite_difference", {"filter_order": 4, "num_iterations": 1}),
+    "savgoldiff": ("polynomial_fit", {"degree": 5, "window_size": [31, 91, 201],
+                                      "smoothing_win": [3, 31]}),
+    "spectraldiff": ("basis_fit", {"extension": "even", "pad_to_flat": True}),
+}  # fmt: skip
+ITERATIVE = ("rtsdiff", "splinediff", "tvrdiff")
+
+
+def present() -> dict[str, bool]:
+    """Which of the packages can be imported."""
+    found = {}
+    for name in ("pynumdiff", "AlgDiff", "derivative"):
+        try:
+            import_module(name)
+            found[name] = True
+        except ImportError:
+            found[name] = False
+    return found
+
+
+def pynumdiff(name: str, q: Array) -> tuple[Sensor, Sensor]:
+    """The method as its `optimize` sets it from these positions; twice, or with the gradient."""
+    from pynumdiff.optimize import optimize
+
+    module, space = SPACES[name]
+    method = getattr(import_module(f"pynumdiff.{module}"), name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        settings, _ = optimize(
+            method, q, H, bandlimit=BAND, search_space_updates=space, parallel=False, padding="auto"
+        )
+
+    def velocity(x: Array) -> Array:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return np.asarray(method(x, H, **settings)[1])
+
+    def twice(x: Array) -> Derivatives:
+        v = velocity(x)
+        return v, velocity(v)
+
+    def gradient(x: Array) -> Derivatives:
+        v = velocity(x)
+        return v, np.gradient(v, H)
+
+    return twice, gradient
+
+
+def derivative(name: str, settings: dict[str, float]) -> Sensor:
+    """A method of the package `derivative`, which has no tuner, applied twice."""
+    from derivative import dxdt
+
+    def run(x: Array) -> Derivatives:
+        t = np.arange(len(x)) * H
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            v = dxdt(x, t, kind=name, **settings)
+            return np.asarray(v), np.asarray(dxdt(v, t, kind=name, **settings))
+
+    return run
+
+
+DERIVATIVE: dict[str, tuple[str, dict[str, float]]] = {
+    "derivative Spline": ("spline", {"s": 1e-2, "order": 5}),
+    "derivative Kalman": ("kalman", {"alpha": 1e-3}),
+    "derivative SavGol": ("savitzky_golay", {"left": 0.2, "right": 0.2, "order": 5}),
+}
+
+
+def algdiff(window: float) -> Sensor:
+    """AlgDiff of degree 0 with alpha = beta = 4, as its examples have it; causal, not shifted."""
+    from AlgDiff import AlgebraicDifferentiator
+
+    toolbox = AlgebraicDifferentiator(
+        ts=H, alpha=4.0, beta=4.0, N=0, T=round(window / H) * H, display=False, corr=True
+    )
+    taps = [
+        np.ravel(toolbox.discretize(order, method="mid-point")[order]["mid-point"])
+        for order in (1, 2)
+    ]
+
+    def run(x: Array) -> Derivatives:
+        padded = [np.concatenate((np.full(len(t) - 1, x[0]), x)) for t in taps]
+        v, a = (np.convolve(p, t, "valid") for p, t in zip(padded, taps, strict=True))
+        return v, a
+
+    return run
+
+
+def tuned_algdiff(q: Array) -> Sensor:
+    """Its window by the judge of `scarid tune`; it has no tuner of its own."""
+    window = Range(0.03, 0.5)
+    _, *smooth = (None, *_smooth(q))
+    inner = slice(200, -200)
+
+    def loss(sensor: Sensor) -> float:
+        return float(
+            np.prod([np.std((x - y)[inner]) for x, y in zip(sensor(q), smooth, strict=True)])
+        )
+
+    sensors = [algdiff(window.setting(x, H)) for x in np.linspace(0.0, 1.0, 25)]
+    return min(sensors, key=loss)
+
+
+def _smooth(q: Array) -> Derivatives:
+    from scarid_cli.algorithms.matching import over
+
+    _, v, a = over(tuning.smoother(q, H).matched(), q, H)
+    return v, a
+
+
+def shifted(sensor: Sensor, q: Array) -> Sensor:
+    """Both derivatives advanced by the delay that they have against a smoother's."""
+    from scarid_cli.algorithms.delays import lateness
+
+    late = [round(lateness(x, y, H) / H) for x, y in zip(sensor(q), _smooth(q), strict=True)]
+    return partial(_advanced, sensor, late)
+
+
+def _advanced(sensor: Sensor, late: list[int], q: Array) -> Derivatives:
+    v, a = (
+        np.concatenate((x[n:], np.full(n, x[-1]))) for x, n in zip(sensor(q), late, strict=True)
+    )
+    return v, a
