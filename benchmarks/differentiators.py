@@ -1,12 +1,13 @@
 """Every differentiator and its peers on known signals: `make bench-differentiators`.
 
-Everything is tuned blind: by `scarid tune` on the noisy record itself, peers by their own tuner. The
-column `of truth` is the error over that of settings chosen by the truth. NRMSE is the
+Everything is tuned blind: by `scarid tune` on the noisy record itself, peers by their own tuner.
+The column `of truth` is the error over that of settings chosen by the truth. NRMSE is the
 root-mean-square error over the deviation of the true signal; score is 100 times the geometric mean
 over six motions of the root of both. Delay: of the acceleration, of the least squared error.
-Settling: until velocity errors stay under a tenth of the deviation, started in full motion. Glitch:
-largest change of the acceleration that one sample of 0.1 rad makes. Vibration: NRMSE of the
-acceleration with 10 mrad at 70 Hz. Rest: root-mean-square acceleration in ten seconds of standstill.
+Settling: until velocity errors stay under a tenth of the deviation, started in full motion.
+Glitch: largest change of the acceleration that one sample of 0.1 rad makes. Vibration: NRMSE of
+the acceleration with 10 mrad at 70 Hz. Rest: root-mean-square acceleration in ten seconds of
+standstill.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import argparse
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 from math import inf, nan
 from pathlib import Path
 from typing import Any
@@ -147,50 +149,66 @@ def ours(motions: list[Run], bits: int) -> list[Row]:
     return rows
 
 
-def others(motions: list[Run], bits: int) -> list[Row]:
-    """Peers: each PyNumDiff method is set by its `optimize` on the first motion of each kind."""
+Maker = Callable[[int], list[peers.Sensor]]
+
+
+def makers(seen_by: list[Array]) -> list[tuple[str, str, Maker]]:
+    """Name, class and tuning of each peer; from the positions of a motion, by its number.
+
+    Each PyNumDiff method is set by its `optimize` on the first motion of each kind.
+    """
     found = peers.present()
-    first = [seen(motions[k].q, bits, k) for k in range(len(motions))]
-    makers: list[tuple[str, str, Callable[[int], list[peers.Sensor]]]] = []
+    made: list[tuple[str, str, Maker]] = []
     if found["AlgDiff"]:
-        makers.append(("AlgDiff", CLASSES[0], lambda k: [peers.tuned_algdiff(first[k])]))
-        makers.append(("AlgDiff, shifted", CLASSES[1],
-                       lambda k: [peers.shifted(peers.tuned_algdiff(first[k]), first[k])]))  # fmt: skip
+        made.append(("AlgDiff", CLASSES[0], lambda k: [peers.tuned_algdiff(seen_by[k])]))
+        made.append(("AlgDiff, shifted", CLASSES[1], lambda k: [_shifted(seen_by[k])]))
     if found["derivative"]:
         for name, (kind, settings) in peers.DERIVATIVE.items():
-            makers.append((name, CLASSES[2],
-                           lambda k, kind=kind, s=settings: [peers.derivative(kind, s)]))  # fmt: skip
+            sensor = peers.derivative(kind, settings)
+            made.append((name, CLASSES[2], lambda _, sensor=sensor: [sensor]))
     if found["pynumdiff"]:
-        cache: dict[tuple[str, int], list[peers.Sensor]] = {}
 
-        def optimised(k: int, name: str) -> list[peers.Sensor]:
-            key = (name, k // 2)
-            if key not in cache:
-                cache[key] = list(peers.pynumdiff(name, first[2 * (k // 2)]))
-            return cache[key]
+        @cache
+        def optimised(name: str, kind: int) -> list[peers.Sensor]:
+            return list(peers.pynumdiff(name, seen_by[2 * kind]))
 
-        for name in peers.SPACES:
-            makers.append((f"pynumdiff {name}", CLASSES[2], lambda k, n=name: optimised(k, n)))
+        made += [
+            (f"pynumdiff {name}", CLASSES[2], lambda k, name=name: optimised(name, k // 2))
+            for name in peers.SPACES
+        ]
+    return made
+
+
+def _shifted(q: Array) -> peers.Sensor:
+    return peers.shifted(peers.tuned_algdiff(q), q)
+
+
+def others(motions: list[Run], bits: int) -> list[Row]:
+    """The peers."""
     rows = []
-    for name, kind, make in makers:
-        candidates: list[Row] = []
+    for name, kind, make in makers([seen(run.q, bits, k) for k, run in enumerate(motions)]):
         try:
-            for seed, run in enumerate(motions):
-                sensors = make(seed)
-                candidates = candidates or [Row(name, kind, bits, ours=False) for _ in sensors]
-                for row, sensor in zip(candidates, sensors, strict=True):
-                    q = seen(run.q, bits, seed)
-                    start = time.perf_counter()
-                    v, a = sensor(q)
-                    row.cost = (time.perf_counter() - start) / len(q) * 1e9
-                    judged = errors(v, a, run)
-                    row.v.append(judged[0])
-                    row.a.append(judged[1])
-        except Exception as error:
+            candidates = tried(name, kind, make, motions, bits)
+        except Exception as error:  # a peer that fails is told, and the run goes on
             print(f"  {name}: {type(error).__name__}: {error}"[:100])
             continue
         rows.append(min(candidates, key=lambda row: geometric(row.a)))
         print(f"  {bits} bit  {name:22} {rows[-1].score:7.2f}", flush=True)
+    return rows
+
+
+def tried(name: str, kind: str, make: Maker, motions: list[Run], bits: int) -> list[Row]:
+    """One row for each way to run a peer."""
+    rows: list[Row] = []
+    for seed, run in enumerate(motions):
+        sensors = make(seed)
+        rows = rows or [Row(name, kind, bits, ours=False) for _ in sensors]
+        for row, sensor in zip(rows, sensors, strict=True):
+            measure(row, sensor, run, bits, seed)
+            q = seen(run.q, bits, seed)
+            start = time.perf_counter()
+            sensor(q)
+            row.cost = (time.perf_counter() - start) / len(q) * 1e9
     return rows
 
 
@@ -233,8 +251,9 @@ def claims(rows: list[Row]) -> None:
         for name in peers.ITERATIVE:
             for row in rows:
                 if (row.name, row.bits) == (f"pynumdiff {name}", bits):
-                    print(f"  rts, {bits} bit, over pynumdiff {name}: {row.cost / mine.cost:.0f} "
-                          f"times as fast a sample, score {mine.score:.2f} against {row.score:.2f}")  # fmt: skip
+                    faster = row.cost / mine.cost
+                    print(f"  rts, {bits} bit, over pynumdiff {name}: {faster:.0f} times as fast, "
+                          f"score {mine.score:.2f} against {row.score:.2f}")  # fmt: skip
 
 
 def draw(rows: list[Row], folder: Path) -> None:

@@ -122,7 +122,7 @@ def algdiff(window: float) -> Sensor:
 def tuned_algdiff(q: Array) -> Sensor:
     """Its window by the judge of `scarid tune`; it has no tuner of its own."""
     window = Range(0.03, 0.5)
-    _, *smooth = (None, *_smooth(q))
+    smooth = _smooth(q)
     inner = slice(200, -200)
 
     def loss(sensor: Sensor) -> float:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from scarid_cli.algorithms.estimators.ls import Estimator
-from scarid_cli.algorithms.filters.likelihood import log_likelihood, most_likely
+from scarid_cli.algorithms.filters.likelihood import best_model, log_likelihood
 from scarid_cli.algorithms.matching import over, spread
 from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.registry import DIFFERENTIATORS
@@ -43,7 +43,7 @@ Judge = Callable[[Any], float]
 
 def fit(method: Any, q: Array, h: float) -> Any:
     """A Kalman method with the noise, the intensity and the acceleration process of the data."""
-    return most_likely(method, q, h, oscillator=True)
+    return best_model(method, q, h)
 
 
 def has_likelihood(method: Any) -> bool:

@@ -106,7 +106,7 @@ def _for_torques(
     assert record.tau is not None
     judge = tuning.error_of_torques(robot, record.q, record.tau, record.h)
     if tuning.has_likelihood(method):
-        method = replace(tuning.fit(method, record.q[0], record.h), damping=0.0, frequency=0.0)
+        method = tuning.fit(method, record.q[0], record.h)
     trials = []
     for trial in tuning.search(method, method.TUNED, judge, record.h, seed):
         trials.append(trial)

@@ -12,6 +12,7 @@ from scarid_cli.arrays import Array
 
 S = TypeVar("S", bound=Settings)
 
+ENOUGH = 20_000  # rows
 DIFFERENCES = 6  # of positions: the motion is gone from them, the noise is not
 
 
@@ -30,16 +31,33 @@ def log_likelihood(settings: Settings, x: Array, h: float) -> float:
     return state.likelihood
 
 
-def most_likely(settings: S, x: Array, h: float, *, oscillator: bool = False) -> S:
+def best_model(settings: S, x: Array, h: float) -> S:
+    """The settings with the states, the noise, the intensity and the acceleration process of x.
+
+    Of the chains of 3 to 5 states and the damped ones, the most likely, less one for each setting
+    it needs more (Akaike). From the first rows of a long record.
+    """
+    x = np.ascontiguousarray(x[:ENOUGH])
+    found: list[tuple[float, S]] = []
+    for states in (3, 4, 5):
+        plain = replace(settings, states=states, damping=0.0, frequency=0.0)
+        chain = most_likely(plain, x, h)
+        found.append((log_likelihood(chain, x, h), chain))
+        if states > 3:
+            damped = most_likely(chain, x, h, damped=True)
+            found.append((log_likelihood(damped, x, h) - 2.0, damped))
+    return max(found, key=lambda pair: pair[0])[1]
+
+
+def most_likely(settings: S, x: Array, h: float, *, damped: bool = False) -> S:
     """The settings with the noise and the intensity that make x most likely.
 
-    With `oscillator` also the damping and the frequency of the acceleration process. A grid, then
-    the simplex of Nelder and Mead on the logarithms.
+    With `damped` also the damping and the frequency of the acceleration process, from settings
+    that are the most likely without. A grid, then the simplex of Nelder and Mead on logarithms.
     """
     from scipy.optimize import minimize
 
     x = np.ascontiguousarray(x)
-    sigma = noise_of(x)
 
     def at(point: Array) -> S:
         names = ("noise", "intensity", "damping", "frequency")[: len(point)]
@@ -51,14 +69,14 @@ def most_likely(settings: S, x: Array, h: float, *, oscillator: bool = False) ->
         value = -log_likelihood(at(point), x, h)
         return value if np.isfinite(value) else np.inf
 
-    # The intensity that goes with a bandwidth [rad/s] at this noise
-    bandwidths = np.geomspace(2.0, 1.5 / h, 25)
-    grid = 2 * settings.states * np.log(bandwidths) + np.log(sigma**2 * h)
-    starts = (np.array([np.log(sigma), intensity]) for intensity in grid)
+    if damped:
+        start = np.log([settings.noise, settings.intensity, 1.0, 2.0])
+    else:
+        sigma = noise_of(x)
+        # The intensity that goes with a bandwidth [rad/s] at this noise
+        bandwidths = np.geomspace(2.0, 1.5 / h, 25)
+        grid = 2 * settings.states * np.log(bandwidths) + np.log(sigma**2 * h)
+        starts = (np.array([np.log(sigma), intensity]) for intensity in grid)
+        start = min(starts, key=loss)
     options = {"xatol": 1e-3, "fatol": 1e-3, "maxfev": 600}
-    chain = minimize(loss, min(starts, key=loss), method="Nelder-Mead", options=options)
-    if not oscillator:
-        return at(chain.x)
-    start = np.concatenate((chain.x, np.log([1.0, 2.0])))
-    damped = minimize(loss, start, method="Nelder-Mead", options=options)
-    return at(damped.x) if damped.fun < chain.fun - 2.0 else at(chain.x)
+    return at(minimize(loss, start, method="Nelder-Mead", options=options).x)
