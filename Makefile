@@ -1,4 +1,5 @@
 # make paper   the paper's identification procedure, from excitation to build/paper/report.html
+# make paper-montecarlo SEEDS=50   the same over many seeds: medians, quartiles, rankings
 # make test    the whole test suite
 # make lint    ruff and mypy
 # make bench   start-up, time per sample, memory
@@ -17,7 +18,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper test lint bench bench-differentiators crossvalidate emps docs samples clean
+.PHONY: all paper paper-montecarlo repetition test lint bench bench-differentiators crossvalidate emps docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -152,6 +153,28 @@ $(foreach e,direct cross,$(eval $(call VALIDATE,$e)))
 
 $(P)/%.common.metrics.parquet: $(P)/common.motion.parquet $(P)/%.parameters.parquet
 	$(SCARID) validate --parameters $(P)/$*.parameters.parquet $< -o $@
+
+# --- the same over many seeds -----------------------------------------------------------------------
+
+SEEDS := 50
+M     := build/montecarlo
+OF    := parameters trace direct.metrics cross.metrics common.metrics
+
+paper-montecarlo: $(M)/report.html
+
+$(M)/report.html: $(foreach s,$(shell seq $(SEEDS)),$(M)/$s/done) samples/paper/published.csv
+	ulimit -n 16384; $(SCARID) report --repeated --published samples/paper/published.csv \
+	  $(foreach s,$(shell seq $(SEEDS)),$(foreach m,$(METHODS),$(OF:%=$(M)/$s/$m.%.parquet))) \
+	  --html $@ --markdown $(M)/report.md --title "The paper's study over $(SEEDS) seeds"
+
+# Seeds 2 s + 1 and 2 s + 2: as of `make crossvalidate`, and apart from those of `make paper`.
+$(M)/%/done: $(VENV)/installed
+	@mkdir -p $(@D)
+	$(MAKE) --silent P=$(@D) SEED_direct=$$((2 * $* + 1)) SEED_cross=$$((2 * $* + 2)) repetition
+	@rm -f $(@D)/*.motion.parquet $(@D)/*.measurement.parquet $(@D)/*.prediction.parquet
+	@touch $@
+
+repetition: $(foreach m,$(METHODS),$(OF:%=$(P)/$m.%.parquet))
 
 # Keep every table on the way: each can be looked at with `scarid info` or `scarid convert`.
 .SECONDARY:

@@ -94,7 +94,7 @@ def derivative(name: str, settings: dict[str, float]) -> Sensor:
 
 DERIVATIVE: dict[str, tuple[str, dict[str, float]]] = {
     "derivative Spline": ("spline", {"s": 1e-2, "order": 5}),
-    "derivative Kalman": ("kalman", {"alpha": 1e-3}),
+    "derivative Kalman": ("kalman", {"alpha": 1e-3}),  # cubic in the rows
     "derivative SavGol": ("savitzky_golay", {"left": 0.2, "right": 0.2, "order": 5}),
 }
 

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from scarid_cli.cli import options
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from scarid_cli.cli.job import Job
 
 
 @click.command(name="report")
@@ -19,6 +24,11 @@ from scarid_cli.cli import options
     metavar="FILE",
     help="Published values to show beside ours.",
 )
+@click.option(
+    "--repeated",
+    is_flag=True,
+    help="Files of one name in several folders are repetitions: medians and quartiles.",
+)
 @click.option("--figures", metavar="FOLDER", help="Write each figure as an SVG file.")
 @click.option(
     "--title", default="Identification report", show_default=True, help="Of the documents."
@@ -29,6 +39,7 @@ def command(
     html: str | None,
     markdown: str | None,
     printed: str | None,
+    repeated: bool,
     figures: str | None,
     title: str,
     **rest: Any,
@@ -39,6 +50,7 @@ def command(
       scarid report *.parameters.parquet
       scarid report *.parquet --html report.html --markdown report.md
       scarid identify motion.parquet | scarid report
+      scarid report --repeated runs/*/p2smd.cross.metrics.parquet
 
     A file is named METHOD.EXPERIMENT.KIND.EXTENSION: p2smd.direct.metrics.parquet holds the metrics
     of method p2smd in experiment direct. EXPERIMENT and KIND may be left out. Methods stand in the
@@ -61,7 +73,8 @@ def command(
 
     from scarid_cli.cli.job import job
     from scarid_cli.errors import UsageFault
-    from scarid_cli.reporting import naming, published, results, text
+    from scarid_cli.reporting import published, results, text
+    from scarid_cli.reporting import repeated as repetitions
     from scarid_cli.reporting.content import sections
     from scarid_cli.reporting.documents import documents
 
@@ -75,16 +88,15 @@ def command(
     with job({**rest, "no_history": True}) as run, documents(html, markdown) as (page, plain):
         tables = [results.reportable(run.read(path, None)) for path in paths]
         values = published.read(run.read(printed, "published")) if printed else None
-        found = sections(results.collect(tables), values)
+        collected = results.collect(tables, repeated=repeated)
+        told = repetitions.sections if repeated else sections
+        found = told(collected, values)
         if page or figures:
             from scarid_cli.reporting import page as rendering
 
             drawn = rendering.figures(found)
             if figures:
-                folder = Path(figures)
-                folder.mkdir(parents=True, exist_ok=True)
-                for name, document in naming.figures([s.title for s in found], drawn):
-                    run.text(str(folder / name)).write(document)
+                save(run, Path(figures), [section.title for section in found], drawn)
             if page:
                 page.write(rendering.html(title, found, drawn, tables).encode())
         if plain:
@@ -94,3 +106,12 @@ def command(
             sys.stdout.flush()
         if not html and any(not section.rows for section in found):
             run.say("some tables have figures only; see them with --html FILE")
+
+
+def save(run: Job, folder: Path, titles: list[str], drawn: list[list[str]]) -> None:
+    """Each figure as a file."""
+    from scarid_cli.reporting import naming
+
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, document in naming.figures(titles, drawn):
+        run.text(str(folder / name)).write(document)

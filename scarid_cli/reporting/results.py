@@ -18,7 +18,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.reader import checked, require
 from scarid_cli.io.table import Table, matrix
 from scarid_cli.reporting.curves import Curve
-from scarid_cli.reporting.naming import Name, names_of, printable
+from scarid_cli.reporting.naming import Name, name_of, names_of, printable
 from scarid_cli.reporting.signals import Log, Motion, log, motion
 
 REPORTED = ("parameters", "trace", "metrics", "prediction", "motion", "measurement")
@@ -97,10 +97,12 @@ def reportable(table: Table) -> Table:
     )
 
 
-def collect(tables: Sequence[Table]) -> list[Result]:
-    """Read tables that are `reportable`."""
+def collect(tables: Sequence[Table], *, repeated: bool = False) -> list[Result]:
+    """Read tables that are `reportable`; repeated: files of one name are repetitions."""
     robots = [_stated_robot(table) for table in tables]
-    names = names_of([t.name for t in tables], [t.meta.kind or "" for t in tables])
+    files, kinds = [t.name for t in tables], [t.meta.kind or "" for t in tables]
+    alone = [name_of(file, kind) for file, kind in zip(files, kinds, strict=True)]
+    names = alone if repeated else names_of(files, kinds)
     read: dict[str, Callable[[Table, Name, Robot | None, Sequence[Robot]], Result]] = {
         "parameters": _parameters,
         "trace": _trace,

@@ -106,3 +106,29 @@ def test_published_values_stand_beside_ours_as_they_were_printed(
     for cell in ("p2smd, published", "3.34", "0.9604", "0.9215", "0.2797", "gamma0 = 25"):
         assert cell in result.out
     assert "01-soft-sensors-direct-1.svg" in result.out
+
+
+def test_repetitions_become_medians_quartiles_and_rankings(
+    shell: Callable[..., Result], samples: Path
+) -> None:
+    """Three runs that differ in one setting; the ranking of two methods against the paper's."""
+    script = "".join(
+        f"mkdir -p {k};"
+        f" scarid differentiate --method p2smd --set gamma1={gain} --no-match {samples}/scara2.csv"
+        f" -o {k}/motion.parquet;"
+        f" scarid identify -q {k}/motion.parquet -o {k}/p2smd.parameters.parquet;"
+        f" for m in p2smd 2smd; do scarid validate --parameters {k}/p2smd.parameters.parquet"
+        f" {k}/motion.parquet -o {k}/$m.direct.metrics.parquet; done;"
+        for k, gain in enumerate((18, 20, 25))
+    )
+    result = shell(
+        f"{script} scarid report --repeated */*.parameters.parquet;"
+        f" scarid report --repeated --published {FILE} */*.metrics.parquet;"
+        " for k in 0 1 2; do scarid validate --parameters $k/p2smd.parameters.parquet"
+        " $k/motion.parquet | sed -n 2p | cut -d, -f2; done"
+    )
+    assert result.status == 0, result.err
+    assert "Median and quartiles of 3 experiments." in result.out
+    middle = sorted(map(float, result.out.split()[-3:]))[1]
+    assert f"{middle:#.4g}" in result.out
+    assert "p2smd < 2smd" in result.out
