@@ -1,10 +1,10 @@
 """Savitzky-Golay at the end of its window: the polynomial that fits the last samples best.
 
 Causal. Savitzky and Golay, Anal. Chem. 36 (1964) 1627; scipy.signal.savgol_coeffs with pos at the
-newest sample. No delay on motions of the degree; on others some 20 ms at the default. Matched
-(--match, exact): position and torque pass the low-pass whose difference the derivative of the
-degree is, and the derivatives are its differences. Rule: the longest window over which the
-motion is nearly a polynomial of the degree; noise goes down with its length to the power 2.5.
+newest sample. No delay on motions of the degree; on quintic moves of 0.8 to 2 s 31 ms at the
+default, 200 Hz. Matched (--match, exact): position and torque pass the low-pass whose difference
+the derivative of the degree is, and the derivatives are its differences. Rule: the longest window
+over which the motion is nearly a polynomial; noise falls with its length to the power 2.5.
 window = 45: samples.
 degree = 3: of the polynomial, 2 or more and below the window.
 """
