@@ -2,9 +2,9 @@
 
 Causal. Int. J. Robust Nonlinear Control 24, 993; discretised exactly. Delay: none at constant jerk
 (4 states); of the acceleration on quintic moves of 0.8 to 2 s 35 ms at the default, 10 ms at
-60 rad/s. Matched (--match, exact): position and torque pass the low-pass between position and highest
-derivative, which does not overshoot. Rule: bandwidth by the delay; more states, less delay and
-more noise.
+60 rad/s. Matched (--match, exact): position and torque pass the low-pass between position and
+highest derivative, which does not overshoot. Rule: bandwidth by the delay; more states, less delay
+and more noise.
 bandwidth = 30 [rad/s]: of the poles.
 states = 4: 3 to 5.
 """
