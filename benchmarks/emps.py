@@ -55,7 +55,7 @@ def rows(record: Record) -> list[tuple[float, str]]:
         start = method(**method.PRESETS["table1"]) if name in TABLE1 else method()
         fitted = start.fitted(record.q[0], H) if hasattr(start, "fitted") else start
         tuned = fitted
-        if method.TUNED:
+        if method.TUNED or tuning.has_likelihood(fitted):
             _, settings = chosen(tune(record, [name], ROBOT, 0, lambda: None), 1)
             tuned = method(**{key: values[0] for key, values in settings[name].items()})
         motions = [unmatched(start, record)]
@@ -64,7 +64,7 @@ def rows(record: Record) -> list[tuple[float, str]]:
         cells = [shown(*result) for result in results]
         label = f"`{name}`" + (" (Table 1)" if name in TABLE1 else "")
         kind = {0: "causal", np.inf: "whole record"}.get(start.lag(H), "fixed lag")
-        cells[2] = cells[2] if method.TUNED else "| "
+        cells[2] = cells[2] if tuned is not fitted else "| "
         lines.append((results[2][1], f"| {label} | {kind} | {' | '.join(cells)} |"))
     return lines
 

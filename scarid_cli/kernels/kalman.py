@@ -3,7 +3,7 @@
 from math import log
 
 SETTLED = 1e-11
-PATIENCE = 5.0
+PATIENCE = 3.0
 MEMORY = 0.02
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms import tuning
+from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
@@ -105,10 +106,13 @@ def _for_torques(
     assert robot is not None
     assert record.tau is not None
     judge = tuning.error_of_torques(robot, record.q, record.tau, record.h)
+    ranges = method.TUNED
     if tuning.has_likelihood(method):
+        # What is likely follows the vibration of the joint too; what identifies best may be slower.
         method = tuning.fit(method, record.q[0], record.h)
+        ranges = {"intensity": Range(1e-12 * method.intensity, 1e2 * method.intensity)}
     trials = []
-    for trial in tuning.search(method, method.TUNED, judge, record.h, seed):
+    for trial in tuning.search(method, ranges, judge, record.h, seed):
         trials.append(trial)
         progress()
     yield from _marked(name, None, TORQUES, trials)

@@ -51,7 +51,7 @@ class Differentiator(Causal):
         """At rest at x, with the gain that puts all poles to exp(-bandwidth h)."""
         m = int(self.states)
         F, Q = kalman.discretised(m, 0.0, 0.0, h)
-        model = kalman.Model(F, Q, np.array([1.0, inf]))
+        model = kalman.Model(F, Q, np.array([1.0, inf]), np.ones(m))
         state = model.at_rest(x)
         settled = state.work
         settled[1] = 1.0

@@ -12,15 +12,14 @@ noise = 5e-5: standard deviation of the position, at least resolution / 3.5.
 intensity = 10000: spectral density of the white noise, [rad2/s7] for 4 states.
 states = 4: 3 to 5.
 damping = frequency = 0: of the acceleration process [1/s], [rad/s].
-gate = 5: standard deviations from which on an innovation is a glitch and left out (5 in a row at
-most).
+gate = 20: standard deviations from which on an innovation is a glitch and left out (3 in a row
+at most).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import inf
-from typing import ClassVar
 
 import numpy as np
 
@@ -28,7 +27,6 @@ from scarid_cli.algorithms.filters import kalman
 from scarid_cli.algorithms.filters.observer import Lowpass
 from scarid_cli.algorithms.matching import Differences
 from scarid_cli.algorithms.process import Causal
-from scarid_cli.algorithms.ranges import Range
 from scarid_cli.arrays import Array
 
 
@@ -36,8 +34,6 @@ from scarid_cli.arrays import Array
 class Differentiator(kalman.Settings, Causal):
     def init(self, x: float, h: float) -> kalman.State:
         return self.model(h).at_rest(x)
-
-    TUNED: ClassVar = {"intensity": Range(1e-2, 1e8)}
 
     def step(self, state: kalman.State, x: Array) -> tuple[kalman.State, tuple[Array, ...]]:
         state, rows = kalman.filtered(state, x)

@@ -10,8 +10,8 @@ noise = 5e-5: standard deviation of the position, at least resolution / 3.5.
 intensity = 10000: spectral density of the white noise, [rad2/s7] for 4 states.
 states = 4: 3 to 5.
 damping = frequency = 0: of the acceleration process [1/s], [rad/s].
-gate = 5: standard deviations from which on an innovation is a glitch and left out (5 in a row at
-most).
+gate = 20: standard deviations from which on an innovation is a glitch and left out (3 in a row
+at most).
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Differentiator(kalman.Settings):
     delay: float = 0.1
 
     PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
-    TUNED: ClassVar = {"intensity": Range(1e-2, 1e8)}
+    TUNED: ClassVar[dict[str, Range]] = {}
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -8,8 +8,8 @@ noise = 0: standard deviation of the position; 0: all settings but the gate by m
 intensity = 0: spectral density of the white noise, [rad2/s7] for 4 states; 0: likewise.
 states = 4: 3 to 5.
 damping = frequency = 0: of the acceleration process [1/s], [rad/s].
-gate = 5: standard deviations from which on an innovation is a glitch and left out (5 in a row at
-most).
+gate = 20: standard deviations from which on an innovation is a glitch and left out (3 in a row
+at most).
 """
 
 from __future__ import annotations

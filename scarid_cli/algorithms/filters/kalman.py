@@ -19,7 +19,9 @@ from scarid_cli.algorithms.settings import (
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import kalman
 
-START = 1e3  # variance of each derivative before the first sample [SI units]
+# Before the first sample: the variance of each derivative [SI units], and how many deviations of
+# differences of the noise it is at most. Beyond, a smoother would lose all digits.
+START, WIDE = 1e3, 1e4
 
 
 @dataclass(frozen=True)
@@ -52,21 +54,20 @@ class Model:
     """x(k+1) = F x(k) + w, cov w = Q; the first state is measured.
 
     noise: the variance of the measurement, and the squared number of standard deviations that
-    make an innovation a glitch.
+    make an innovation a glitch. start: variances of the states before the first measurement.
     """
 
     F: Array
     Q: Array
     noise: Array
+    start: Array
 
     def at_rest(self, x: float) -> State:
         """The state before the first measurement x of a motion of which nothing else is known."""
         m = len(self.F)
         first = np.zeros(m)
         first[0] = x
-        P = np.diag(np.full(m, START))
-        P[0, 0] = self.noise[0]
-        return State(first, P, np.zeros(m), np.zeros(5 + m * (m + 1)), self)
+        return State(first, np.diag(self.start), np.zeros(m), np.zeros(5 + m * (m + 1)), self)
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ class Settings:
     states: int = 4
     damping: float = 0.0
     frequency: float = 0.0
-    gate: float = 5.0
+    gate: float = 20.0
 
     def __post_init__(self) -> None:
         self.require_noise()
@@ -97,7 +98,11 @@ class Settings:
 
     def model(self, h: float) -> Model:
         F, Q = discretised(int(self.states), self.damping, self.frequency, h)
-        return Model(F, self.intensity * Q, np.array([self.noise**2, self.gate**2]))
+        variance = self.noise**2
+        orders = np.arange(1, int(self.states))
+        start = np.minimum(START, variance * (WIDE / h**orders) ** 2)
+        noise = np.array([variance, self.gate**2])
+        return Model(F, self.intensity * Q, noise, np.concatenate(([variance], start)))
 
 
 def discretised(states: int, damping: float, frequency: float, h: float) -> tuple[Array, Array]:
