@@ -73,11 +73,11 @@ def test_output_lags_by_what_the_method_declares(make: Any) -> None:
 @given(position=st.floats(-1e3, 1e3))
 @settings(max_examples=20, deadline=None)
 def test_standing_still_starts_without_a_jump(make: Any, position: float) -> None:
-    # What the differences of a rounded position may be
+    # What differences of a position may be that a filter rounds in each of some dozen steps
     v, a = derivatives(make(), np.full(ROWS, position))
     bit = np.spacing(max(abs(position), 1.0))
-    np.testing.assert_allclose(v, 0.0, atol=10.0 * bit / PERIOD)
-    np.testing.assert_allclose(a, 0.0, atol=10.0 * bit / PERIOD**2)
+    np.testing.assert_allclose(v, 0.0, atol=50.0 * bit / PERIOD)
+    np.testing.assert_allclose(a, 0.0, atol=50.0 * bit / PERIOD**2)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,13 @@ from scipy.stats import multivariate_normal
 from unit.support import PERIOD, encoder_readings
 
 from scarid_cli.algorithms.filters import kalman
-from scarid_cli.algorithms.filters.likelihood import log_likelihood, most_likely, noise_of
+from scarid_cli.algorithms.filters.likelihood import (
+    best_model,
+    best_smoothing,
+    log_likelihood,
+    most_likely,
+    noise_of,
+)
 from scarid_cli.algorithms.matching import over
 from scarid_cli.algorithms.registry import DIFFERENTIATORS
 from scarid_cli.arrays import Array
@@ -204,6 +211,46 @@ def test_the_noise_of_a_smooth_signal_is_that_of_its_differences() -> None:
     rng = np.random.default_rng(0)
     q = np.sin(3.0 * H * np.arange(4000)) + 1e-3 * rng.standard_normal(4000)
     assert noise_of(q) == pytest.approx(1e-3, rel=0.05)
+
+
+@pytest.mark.usefixtures("narrow")
+def test_the_held_out_error_is_that_of_leaving_each_sample_out() -> None:
+    """In the middle of the record, by conditioning on all others, row by row."""
+    settings = {**MODELS["white snap"], "intensity": 1e7}
+    q = encoder_readings(SHORT) + 2e-4 * np.random.default_rng(0).standard_normal(SHORT)
+    _, seen = joint(SHORT, settings, 4e-8)
+    errors = []
+    for k in range(SHORT // 4, 3 * SHORT // 4):
+        others = np.delete(np.arange(SHORT), k)
+        weights = np.linalg.solve(seen[np.ix_(others, others)], seen[others, k])
+        errors.append(q[k] - q[0] - weights @ (q[others] - q[0]))
+    model = method("rts", settings)
+    plain = q - over(model.matched(), q, H)[0]
+    pulse = np.zeros(1001)
+    pulse[500] = 1.0
+    weight = over(model.matched(), pulse, H)[0][500]
+    middle = plain[SHORT // 4 : 3 * SHORT // 4] / (1.0 - weight)
+    np.testing.assert_allclose(middle, errors, atol=0.02 * np.std(errors))
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_smooth_motion_is_smoothed_more_than_the_likelihood_would(seed: int) -> None:
+    """A sum of sines: cross-validation goes most of the way to the settings of the truth."""
+    t = H * np.arange(4000)
+    w, phase = np.array([1.0, 2.3, 3.1]), np.array([0.0, 1.0, 2.0])
+    q = np.sin(np.outer(t, w) + phase).sum(axis=1)
+    a = -(np.sin(np.outer(t, w) + phase) * w**2).sum(axis=1)
+    seen = q + 2e-4 * np.random.default_rng(seed).standard_normal(4000)
+    likely = best_model(DIFFERENTIATORS.load("rts")(), seen, H)
+    chosen = best_smoothing(likely, seen, H)
+
+    def error(sensor: Any) -> float:
+        return float(np.std((over(sensor, seen, H)[1] - a)[400:-400]))
+
+    decades = np.arange(-6.0, 1.5, 0.25)
+    least = min(error(replace(likely, intensity=likely.intensity * 10.0**d)) for d in decades)
+    assert error(chosen) < 0.8 * error(likely)
+    assert error(chosen) - least < 0.5 * (error(likely) - least)
 
 
 # Glitches

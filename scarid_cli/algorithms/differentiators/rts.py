@@ -1,10 +1,10 @@
 """Kalman smoother over the whole record (Rauch, Tung, Striebel 1965), tuned by the data.
 
-Whole record, in linear time; noise, intensity and model by maximum likelihood of the innovations
-unless given, so that nothing has to be known. D.12 of the equations; backwards as in Durbin and
-Koopman, section 4.4. No delay. Matched (--match): position and torque are smoothed alike; exact to
-second order in the period. Rule: none.
-noise = 0: standard deviation of the position; 0: all settings but the gate by maximum likelihood.
+Whole record, in linear time. Noise and model by maximum likelihood of the innovations, intensity by
+generalised cross-validation (held-out positions), unless given: nothing has to be known. D.12 of
+the equations; backwards as in Durbin and Koopman, section 4.4. No delay. Matched (--match):
+position and torque are smoothed alike; exact to second order in the period. Rule: none.
+noise = 0: standard deviation of the position; 0: all settings but the gate from the data.
 intensity = 0: spectral density of the white noise, [rad2/s7] for 4 states; 0: likewise.
 states = 4: 3 to 5.
 damping = frequency = 0: of the acceleration process [1/s], [rad/s].
@@ -20,7 +20,7 @@ from math import inf
 import numpy as np
 
 from scarid_cli.algorithms.filters import kalman
-from scarid_cli.algorithms.filters.likelihood import best_model
+from scarid_cli.algorithms.filters.likelihood import best_model, best_smoothing
 from scarid_cli.algorithms.process import Whole
 from scarid_cli.algorithms.settings import require_not_negative
 from scarid_cli.arrays import Array
@@ -47,8 +47,10 @@ class Differentiator(Smoother):
         return Smoother.over(self.fitted(x, h), x, h)[1:]
 
     def fitted(self, x: Array, h: float) -> Differentiator:
-        """With the model, noise and intensity that make these positions most likely."""
-        return self if self.noise and self.intensity else best_model(self, x, h)
+        """With the noise and the model of these positions, and the intensity to smooth them."""
+        if self.noise and self.intensity:
+            return self
+        return best_smoothing(best_model(self, x, h), x, h)
 
     def matched(self) -> Matched:
         return Matched(**vars(self))

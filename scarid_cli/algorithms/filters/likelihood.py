@@ -7,12 +7,13 @@ from typing import TypeVar
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.kalman import Settings, filtered
+from scarid_cli.algorithms.filters.kalman import Model, Settings, filtered, recorded, smoothed
 from scarid_cli.arrays import Array
 
 S = TypeVar("S", bound=Settings)
 
 ENOUGH = 20_000  # rows
+REACH = 4001  # rows that a pulse may act on
 DIFFERENCES = 6  # of positions: the motion is gone from them, the noise is not
 
 
@@ -80,3 +81,47 @@ def most_likely(settings: S, x: Array, h: float, *, damped: bool = False) -> S:
         start = min(starts, key=loss)
     options = {"xatol": 1e-3, "fatol": 1e-3, "maxfev": 600}
     return at(minimize(loss, start, method="Nelder-Mead", options=options).x)
+
+
+def best_smoothing(settings: S, x: Array, h: float) -> S:
+    """The settings with the intensity whose smoother predicts held-out positions best.
+
+    The likelihood looks one sample ahead; a smoother sees the motion on both sides, and on a smooth
+    one does better with less. A grid of half decades, then the parabola through its least points.
+    """
+    x = np.ascontiguousarray(x[:ENOUGH])
+    grid = np.log(settings.intensity) + np.log(10.0) * np.arange(-6.0, 1.5, 0.5)
+
+    def at(log_intensity: float) -> S:
+        return replace(settings, intensity=float(np.exp(log_intensity)))
+
+    tiny = np.finfo(float).tiny  # of a record at rest
+    errors = np.log([held_out_error(at(point), x, h) + tiny for point in grid])
+    least = int(np.argmin(errors))
+    if not 0 < least < len(grid) - 1:
+        return at(grid[least])
+    left, here, right = errors[least - 1 : least + 2]
+    shift = 0.5 * (left - right) / (left - 2.0 * here + right)
+    return at(grid[least] + shift * (grid[1] - grid[0]))
+
+
+def held_out_error(settings: Settings, x: Array, h: float) -> float:
+    """Mean square error of positions predicted from all others: generalised cross-validation.
+
+    The residual of a linear smoother over one less the weight of the sample itself; glitches
+    count as much as the gate lets them.
+    """
+    model = settings.model(h)
+    residual = x - position(model, x)
+    pulse = np.zeros(REACH)
+    pulse[REACH // 2] = settings.noise  # below every gate
+    weight = position(model, pulse)[REACH // 2] / settings.noise
+    squares = np.minimum(residual**2, (settings.gate * settings.noise) ** 2)
+    edge = len(x) // 20
+    return float(np.mean(squares[edge : len(x) - edge]) / (1.0 - weight) ** 2)
+
+
+def position(model: Model, x: Array) -> Array:
+    """The smoothed position."""
+    state, records = recorded(model.at_rest(float(x[0])), x)
+    return smoothed(records, state)[:, 0]
