@@ -44,6 +44,7 @@ def sections(results: Sequence[Result], values: published.Values | None = None) 
             _evolution(group, colours)
             for group in _grouped(traces, lambda r: (r.names, _robot_name(r), r.name.experiment))
         ),
+        *_experiments(_of(results, Metrics)),
         *(
             _torques(group, colours)
             for group in _grouped(torques, lambda r: (r.joints, r.name.experiment))
@@ -206,6 +207,45 @@ def _range(lines: Sequence[Line], level: float | None, start: float) -> tuple[fl
         late = x[t >= t[0] + start * (t[-1] - t[0])]
         values += [float(late.min()), float(late.max())]
     return min(values), max(values)
+
+
+def _experiments(results: Sequence[Metrics]) -> list[Section]:
+    """All experiments side by side, where there are several with the same joints."""
+    first = results[0] if results else None
+    experiments = list(dict.fromkeys(_experiment(r) for r in results))
+    if not first or len(experiments) < 2 or any(r.joints != first.joints for r in results):
+        return []
+    units = [_common([r.units[i] for r in results]) for i in range(len(first.joints))]
+    by_name = {(r.name.shown, _experiment(r)): r for r in results}
+    measures = (0, 1)  # of the three of `_metrics_row`: R2, error
+    headers = [
+        f"{experiment} {_metrics_headers(first.joints, units)[3 * i + measure]}"
+        for measure in measures
+        for experiment in experiments
+        for i in range(len(first.joints))
+    ]
+    rows = [
+        (
+            shown,
+            *(
+                _metrics_row(r, units)[3 * i + measure] if r else NONE
+                for measure in measures
+                for r in (by_name.get((shown, experiment)) for experiment in experiments)
+                for i in range(len(first.joints))
+            ),
+        )
+        for shown in dict.fromkeys(_shown(results))
+    ]
+    return [
+        Section(
+            title="Torque prediction",
+            note=f"{_of_robot(results)}Coefficient of determination R2 (eq. 36) and "
+            "root-mean-square error (eq. 35) of each experiment.",
+            headers=("method", *headers),
+            rows=tuple(rows),
+            group=len(experiments) * len(first.joints),
+        )
+    ]
 
 
 def _torques(group: Sequence[Metrics | Prediction], colours: dict[str, int]) -> Section:

@@ -175,8 +175,13 @@ def test_metrics_and_predictions_of_an_experiment_share_a_section() -> None:
         Metrics(Name("a", "direct"), None, (1,), ("N m",), (quality,)),
         Metrics(Name("a", "cross"), None, (1,), ("N m",), (quality,)),
     ]
-    cross, direct = sections(results)
+    both, cross, direct = sections(results)
     assert (cross.title, direct.title) == ("Torque prediction: cross", "Torque prediction: direct")
+    assert both.headers == (
+        *("method", "direct tau1 R2", "cross tau1 R2"),
+        *("direct tau1 RMSE [N m]", "cross tau1 RMSE [N m]"),
+    )
+    assert both.rows == (("a", "0.9124", "0.9124", "1.235", "1.235"),)
     assert cross.headers == ("method", "samples", "tau1 R2", "tau1 RMSE [N m]", "tau1 error [%]")
     assert cross.rows == direct.rows == (("a", "400", "0.9124", "1.235", "21.00"),)
     assert (len(cross.plots), len(direct.plots)) == (1, 0)
