@@ -113,8 +113,9 @@ def kernels() -> None:
     def update(module: ModuleType, k: int, *, trace: bool) -> None:
         triangle = np.column_stack([0.1 * np.eye(8), np.zeros(8)])
         out = np.empty((k if trace else 0, 8))
-        forgetting = 0.999 if trace else 1.0
-        module.update(W[:k], y[:k], triangle, np.empty(9), np.zeros(2), out, forgetting, 0.0)
+        keep = np.full(8, np.sqrt(0.999) if trace else 1.0)
+        work, sums, scales = np.empty(9), np.zeros(3), np.ones((k, 2))
+        module.update(W[:k], y[:k], scales, triangle, work, sums, out, keep, 1e-5)
 
     runs: dict[str, tuple[ModuleType, Callable[[ModuleType, int], object]]] = {
         "p2smd": (p2smd, lambda m, k: m.differentiate(

@@ -16,6 +16,7 @@ from defaults import PERIOD, RATIO, ROBOT, experiment
 
 from scarid_cli.algorithms.matching import over
 from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.regression import plain
 from scarid_cli.algorithms.tuning import Motion, motion
 from scarid_cli.arrays import Array
 
@@ -60,7 +61,7 @@ def identified(motion: Motion) -> Array:
     *kinematics, tau = settled(motion)
     rls = ESTIMATORS.load("rls")()
     W = ROBOT.regressor(*kinematics)
-    state, _ = rls.step(rls.init(np.zeros(8)), W, np.ascontiguousarray(tau.T), trace=False)
+    state, _ = rls.step(rls.init(np.zeros(8)), plain(W, np.ascontiguousarray(tau.T)))
     estimates: Array = rls.fit(state).estimates
     return estimates
 

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from math import inf
 from typing import Any
 
 from scarid_cli.errors import UsageFault
+
+# Metadata of a field that is no setting: the stage fills it in.
+GIVEN = {"given": True}
+
+
+def names_of(method: Any) -> list[str]:
+    """The settings of an algorithm, of its class or of one with values."""
+    return [f.name for f in fields(method) if "given" not in f.metadata]
 
 
 def require_positive(settings: Any, *names: str) -> None:

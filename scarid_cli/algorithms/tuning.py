@@ -20,6 +20,7 @@ from scarid_cli.algorithms.filters.likelihood import best_model, log_likelihood
 from scarid_cli.algorithms.matching import over, spread
 from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.regression import plain
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.information import NotIdentifiableError
 from scarid_cli.arrays import Array
@@ -130,12 +131,9 @@ def identified(robot: Robot, motion: Motion, rows: Any) -> Array | None:
     """Estimates by least squares from some rows; None if these leave a parameter undetermined."""
     *kinematics, tau = (np.ascontiguousarray(signal[:, rows]) for signal in motion.signals)
     ls = Estimator()
-    state, _ = ls.step(
-        ls.init(np.zeros(len(robot.parameters))),
-        robot.regressor(*kinematics),
-        np.ascontiguousarray(tau.T),
-        trace=False,
-    )
+    start = ls.init(np.zeros(len(robot.parameters)))
+    regression = plain(robot.regressor(*kinematics), np.ascontiguousarray(tau.T))
+    state, _ = ls.step(start, regression)
     try:
         return ls.fit(state).estimates
     except NotIdentifiableError:

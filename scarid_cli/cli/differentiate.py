@@ -8,21 +8,10 @@ import click
 
 from scarid_cli.algorithms.registry import DIFFERENTIATORS
 from scarid_cli.cli import options
+from scarid_cli.cli.described import describing
 
 
-class MethodsCommand(click.Command):
-    """A command whose help ends with the description of every method."""
-
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
-        with formatter.section("Methods and their settings"):
-            for name in DIFFERENTIATORS.names:
-                formatter.write(f"{' ' * formatter.current_indent}{name}\n")
-                for line in DIFFERENTIATORS.describe(name).splitlines():
-                    formatter.write(f"{' ' * (formatter.current_indent + 2)}{line}".rstrip() + "\n")
-                formatter.write_paragraph()
-
-
-@click.command(name="differentiate", cls=MethodsCommand)
+@click.command(name="differentiate", cls=describing(DIFFERENTIATORS, "Methods and their settings"))
 @options.table_input
 @click.option(
     "--method",

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from scarid_cli.algorithms.registry import ESTIMATORS
+from scarid_cli.algorithms.settings import names_of
 from scarid_cli.cli import options
+from scarid_cli.cli.described import describing
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.robots.description import Robot
 
 
-@click.command(name="identify")
+@click.command(name="identify", cls=describing(ESTIMATORS, "Estimators and their settings"))
 @options.table_input
 @options.robot
 @click.option(
@@ -18,78 +23,205 @@ from scarid_cli.cli import options
     type=click.Choice(ESTIMATORS.names),
     default="rls",
     show_default=True,
-    help="ls: least squares; rls: recursive least squares.",
+    help="How; see below.",
 )
-@click.option("--forgetting", type=float, help="Forgetting factor of rls per sample.  [default: 1]")
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="A setting of the estimator; repeatable.",
+)
+@click.option(
+    "--forgetting",
+    metavar="FACTOR[,NAME=FACTOR...]",
+    help="Forgetting factor of rls per sample; after it, those of single parameters.  [default: 1]",
+)
 @click.option("--p0", type=float, help="Initial covariance of rls, P0 = p0 I.  [default: 100]")
 @click.option(
     "--initial",
     metavar="FILE",
-    help="Initial parameters of rls: a parameter table, or `apriori`.  [default: zeros]",
+    help="Initial parameters of rls or ekf: a parameter table, or `apriori`.  [default: zeros]",
+)
+@options.treatment
+@click.option(
+    "--align",
+    is_flag=True,
+    help="Fit the time by which the torques lead the motion as well. Holds the whole log.",
 )
 @click.option(
-    "--unit-variance",
+    "--essential",
     is_flag=True,
-    help="Standard errors for a residual variance of 1 (eq. 32-33) instead of the measured one.",
+    help="Drop the worst known parameter while its relative deviation is 30 times the best one's.",
 )
-@click.option("--trace", metavar="FILE", help="Write the estimates after every sample (rls).")
+@click.option(
+    "--variance",
+    type=click.Choice(("residual", "unit", "sample")),
+    default="residual",
+    show_default=True,
+    help="Of the residual, for standard_error: with r - c degrees of freedom, 1 as printed in eq. "
+    "32-33, or with r - 1.",
+)
+@click.option("--trace", metavar="FILE", help="Write the estimates after every sample (rls, ekf).")
+@click.option("--from", "resumed", metavar="STATE", help="Go on from where --save left off.")
+@click.option("--save", metavar="STATE", help="Save where the estimation is (.npz).")
 @options.table_output
 @options.common
 def command(
     file: str,
     robot: str | None,
     estimator: str,
-    forgetting: float | None,
-    p0: float | None,
     initial: str | None,
-    unit_variance: bool,
+    variance: str,
     trace: str | None,
+    resumed: str | None,
+    save: str | None,
     **rest: Any,
 ) -> None:
-    """Estimate a robot's dynamic parameters from a motion.
+    """Estimate a robot's dynamic parameters from a motion, and say whether to believe them.
 
     \b
       scarid identify motion.csv
-      scarid identify --estimator ls --robot emps motion.parquet
-      scarid identify --forgetting 0.999 --trace trace.parquet motion.csv
+      scarid identify --estimator wls --drop-slow 0.1 --align motion.csv
+      scarid identify --estimator ls --robot emps --skip 49 --decimate 10 motion.parquet
+      scarid identify --forgetting 0.999,Fv1=0.99 --trace trace.parquet motion.csv
+      scarid identify --save state.npz monday.csv; scarid identify --from state.npz tuesday.csv
 
-    Solves tau = W(q, dq, ddq) theta (paper eq. 25) for the robot's regressor W. rls is recursive
-    least squares (section 2.3) in square-root form; ls is least squares by streaming orthogonal
-    factorisation. Each estimate comes with its standard error s (diag (W'W)^-1)^1/2, where s^2 is
-    the variance of the residual, and its relative standard deviation (eq. 34). Residuals of a
-    sampled robot are autocorrelated: take these as lower bounds.
+    Solves tau = W(q, dq, ddq) theta (paper eq. 25) for the robot's regressor W. Each estimate comes
+    with the standard error of white residuals, s (diag (W'W)^-1)^1/2 (eq. 32-34), and with one that
+    autocorrelated residuals cannot shrink, from leaving out blocks of half a second; low and high
+    are its 95 % interval. The last line on standard error is the verdict: good, doubtful or not
+    identifiable, and why.
     """
     import numpy as np
 
     from scarid_cli.cli.job import job
+    from scarid_cli.cli.treatment import treated
     from scarid_cli.errors import UsageFault
     from scarid_cli.stages import identify as stage
     from scarid_cli.stages.validate import estimates
 
-    given = {"forgetting": forgetting, "p0": p0}
-    settings = {name: value for name, value in given.items() if value is not None}
     method = ESTIMATORS.load(estimator)
-    if not method.RECURSIVE and (settings or initial or trace):
-        raise UsageFault(
-            f"--forgetting, --p0, --initial and --trace belong to rls, not to {estimator}"
-        )
-    solver = method(**settings)
+    if trace and not method.RECURSIVE:
+        raise UsageFault(f"--trace: {estimator} has no estimates after every sample")
     with job(rest) as run:
         out = run.output(rest["output"], rest["format"])
         side = run.output(trace) if trace else None
+        place = run.text(save) if save else None
         table, arm = run.read_for(file, "motion", robot, torques=True)
+        arm, treatment = treated(rest, arm)
+        if (save or resumed or trace) and (treatment.holds or method.HOLDS):
+            raise UsageFault(
+                "--save, --from and --trace go row by row; not with --decimate, --align, "
+                f"or --estimator {estimator}"
+                * method.HOLDS
+                or "--save, --from and --trace go row by row; not with --decimate or --align"
+            )
+        solver = _solver(method, estimator, rest, arm)
         if initial == "apriori":
             start = arm.apriori
         elif initial:
-            start = estimates(run.read(initial, "parameters"), arm)
+            _, start = estimates(run.read(initial, "parameters"), arm)
         else:
             start = np.zeros(len(arm.parameters))
+        told = {
+            "robot": arm.name,
+            "estimator": estimator,
+            "period": table.meta.period,
+            "settings": _told(solver),
+            "slow": list(treatment.slow),
+            "smooth_sign": rest["smooth_sign"],
+        }
+        progress = None
+        if resumed:
+            from scarid_cli.stages.continuation import restored
+
+            progress = restored(resumed, told)
+        places: list[Any] = []
         result = stage.identify(
-            run.recorded(table), arm, solver, start, unit_variance=unit_variance, trace=side
+            run.recorded(table),
+            arm,
+            solver,
+            start,
+            treatment=treatment,
+            variance=variance,
+            trace=side,
+            progress=progress,
+            keep=places.append,
         )
         run.write(result, out)
-        extra = result.meta.extra
-        run.say(
-            f"{arm.name}, {extra['samples']} samples, condition number of W "
-            f"{extra['condition_number']:.4g}"
-        )
+        if place:
+            from scarid_cli.stages.continuation import saved
+
+            place.write(saved(places[0], told))
+        _say(run, arm.name, estimator, result.meta.extra)
+
+
+def _solver(method: Any, name: str, rest: dict[str, Any], robot: Robot) -> Any:
+    """The estimator with its settings."""
+    from scarid_cli.errors import UsageFault
+
+    known = names_of(method)
+    given: dict[str, Any] = {}
+    for text in rest["settings"]:
+        key, sign, value = text.partition("=")
+        if not sign:
+            raise UsageFault(f"--set {text}: write NAME=VALUE")
+        try:
+            given[key] = float(value)
+        except ValueError:
+            raise UsageFault(f"--set {text}: {value!r} is not a number") from None
+    if rest["p0"] is not None:
+        given["p0"] = rest["p0"]
+    if rest["forgetting"] is not None:
+        given["forgetting"] = _factors(rest["forgetting"], robot.names)
+    for key in given:
+        if key not in known:
+            choice = ", ".join(known) or "none"
+            raise UsageFault(f"{name} has no setting {key!r}; it has {choice}")
+    return method(**given)
+
+
+def _factors(text: str, names: list[str]) -> float | tuple[float, ...]:
+    """`0.999,Fv1=0.99`: one factor for all, then those of single parameters."""
+    from scarid_cli.errors import UsageFault
+
+    first, *single = text.split(",")
+    try:
+        factors = dict.fromkeys(names, float(first))
+        for part in single:
+            name, _, value = part.partition("=")
+            if name not in factors:
+                raise UsageFault(
+                    f"--forgetting {text}: no parameter {name!r}; there are {', '.join(names)}"
+                )
+            factors[name] = float(value)
+    except ValueError:
+        raise UsageFault(
+            f"--forgetting {text}: write a number, then NAME=NUMBER for single parameters"
+        ) from None
+    return tuple(factors.values()) if single else float(first)
+
+
+def _told(solver: Any) -> dict[str, Any]:
+    """The settings of an estimator that must not change when it goes on."""
+    import json
+
+    known = {name: getattr(solver, name) for name in names_of(solver)}
+    settings: dict[str, Any] = json.loads(json.dumps(known))
+    return settings
+
+
+def _say(run: Any, robot: str, estimator: str, extra: dict[str, Any]) -> None:
+    """One line of facts, then the verdict."""
+    line = f"{robot}, {estimator}, {extra['samples']} samples"
+    if "delay" in extra:
+        delay, error = 1e3 * extra["delay"], 1e3 * extra["delay_error"]
+        line += f", torques lead by {delay:.3g} ms (+- {error:.2g})"
+    if "dropped" in extra:
+        names = ", ".join(extra["dropped"])
+        line += f", dropped {names} (residual {100 * extra['dropped_cost']:.2g} % greater)"
+    if "durbin_wu_hausman" in extra:
+        line += f", Durbin-Wu-Hausman p {extra['durbin_wu_hausman']['p_value']:.2g}"
+    run.say(line)
+    run.say(f"{extra['verdict']}: {'; '.join(extra['reasons'])}")

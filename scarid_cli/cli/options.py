@@ -75,3 +75,27 @@ class Numbers(click.ParamType[tuple[float, ...]]):
 
 
 NUMBERS = Numbers()
+
+
+def treatment(function: F) -> F:
+    """What is done to the rows of the regression, for identify and validate alike."""
+    return _all(
+        click.option(
+            "--skip", type=click.IntRange(min=0), default=0, metavar="ROWS",
+            help="Leave out so many rows at the start.",
+        ),
+        click.option(
+            "--decimate", type=NUMBERS, metavar="N[,N...]",
+            help="Low-pass every column of W and the torques alike, and keep every N-th row; "
+            "several times if several are given. Holds the whole log.",
+        ),
+        click.option(
+            "--drop-slow", type=NUMBERS, metavar="V[,V...]",
+            help="Leave out the rows of a joint slower than this [rad/s or m/s], one value or one "
+            "a joint: there dry friction is not sign(dq).",
+        ),
+        click.option(
+            "--smooth-sign", type=float, metavar="V",
+            help="Let dry friction change over this velocity, tanh(dq / V), instead of at once.",
+        ),
+    )(function)  # fmt: skip

@@ -15,6 +15,7 @@ from scarid_cli.cli import options
     "--parameters", required=True, metavar="FILE", help="The parameter table of `scarid identify`."
 )
 @options.robot
+@options.treatment
 @click.option("--predictions", metavar="FILE", help="Write measured and predicted torques.")
 @options.table_output
 @options.common
@@ -29,9 +30,12 @@ def command(
 
     Per joint: R2 (paper eq. 36), root-mean-square error (eq. 35), relative error 100 |tau -
     tau_hat| / |tau| in percent, number of samples. On the motion that the parameters were
-    identified from this is direct validation; on another motion, cross validation.
+    identified from this is direct validation; on another motion, cross validation. Rows are
+    treated as by identify: give it the same options.
     """
     from scarid_cli.cli.job import job
+    from scarid_cli.cli.treatment import treated
+    from scarid_cli.errors import UsageFault
     from scarid_cli.stages import validate as stage
 
     with job(rest) as run:
@@ -39,5 +43,11 @@ def command(
         side = run.output(predictions) if predictions else None
         known = run.read(parameters, "parameters")
         table, arm = run.read_for(file, "motion", robot or known.meta.robot, torques=True)
-        theta = stage.estimates(known, arm)
-        run.write(stage.validate(run.recorded(table), arm, theta, predictions=side), out)
+        arm, treatment = treated(rest, arm)
+        if treatment.holds and predictions:
+            raise UsageFault("--predictions are of every row; not with --decimate")
+        arm, theta = stage.estimates(known, arm)
+        result = stage.validate(
+            run.recorded(table), arm, theta, treatment=treatment, predictions=side
+        )
+        run.write(result, out)

@@ -105,11 +105,18 @@ def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any]) 
 
 def settled(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
     """Only the rows that a soft sensor has marked as settled; all where there is no such mark."""
+    return (batch for _, batch in settled_runs(batches))
+
+
+def settled_runs(batches: Iterator[pa.RecordBatch]) -> Iterator[tuple[int, pa.RecordBatch]]:
+    """The same, with the number of the first row of each part in the table."""
+    first = 0
     for batch in batches:
         if "settled" not in batch.schema.names:
-            yield batch
-            continue
-        marks = batch.column("settled").to_numpy(zero_copy_only=False) != 0
-        ends = np.flatnonzero(np.diff(marks, prepend=False, append=False))
-        for start, end in ends.reshape(-1, 2):
-            yield batch.slice(int(start), int(end - start))
+            yield first, batch
+        else:
+            marks = batch.column("settled").to_numpy(zero_copy_only=False) != 0
+            ends = np.flatnonzero(np.diff(marks, prepend=False, append=False))
+            for start, end in ends.reshape(-1, 2):
+                yield first + int(start), batch.slice(int(start), int(end - start))
+        first += batch.num_rows

@@ -149,14 +149,14 @@ class Output:
 
 
 class Document:
-    """A text beside the tables."""
+    """A text or other bytes beside the tables."""
 
     def __init__(self, path: str) -> None:
         self.path = path
         self.target = Target(path)
 
-    def write(self, text: str) -> None:
-        self.target.write(text.encode())
+    def write(self, content: str | bytes) -> None:
+        self.target.write(content if isinstance(content, bytes) else content.encode())
 
     def finish(self) -> None:
         """There is nothing to add."""

@@ -5,18 +5,32 @@ cdef extern from "math.h" nogil:
 
 @cython.locals(
     p=cython.Py_ssize_t, samples=cython.Py_ssize_t, joints=cython.Py_ssize_t,
-    k=cython.Py_ssize_t, n=cython.Py_ssize_t, i=cython.Py_ssize_t, j=cython.Py_ssize_t,
-    keep=double, squares=double, weight=double, traced=cython.bint,
+    k=cython.Py_ssize_t, n=cython.Py_ssize_t, j=cython.Py_ssize_t,
+    traced=cython.bint, forgets=cython.bint,
 )
 cpdef update(
-    const double[:, :, ::1] W, const double[:, ::1] y, double[:, ::1] triangle,
-    double[::1] row, double[::1] sums, double[:, ::1] estimates, double forgetting,
-    double floor,
+    const double[:, :, ::1] W, const double[:, ::1] y, const double[:, ::1] scales,
+    double[:, ::1] triangle, double[::1] row, double[::1] sums, double[:, ::1] estimates,
+    const double[::1] keep, double floor,
 )
 
-@cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t)
+@cython.locals(j=cython.Py_ssize_t, scale=double)
+cdef void take(
+    const double[:, :, ::1] W, const double[:, ::1] y, const double[:, ::1] scales,
+    double[:, ::1] triangle, double[::1] row, double[::1] sums,
+    Py_ssize_t k, Py_ssize_t n, Py_ssize_t p,
+) noexcept nogil
+
+@cython.locals(i=cython.Py_ssize_t, count=cython.Py_ssize_t)
+cdef bint differs(const double[::1] keep, double value, Py_ssize_t p) noexcept nogil
+
+@cython.locals(
+    i=cython.Py_ssize_t, j=cython.Py_ssize_t, z=double, back=double, theta=double,
+    several=cython.bint,
+)
 cdef void forget(
-    double[:, ::1] triangle, double keep, double floor, Py_ssize_t p,
+    double[:, ::1] triangle, double[::1] row, const double[::1] keep, double floor,
+    Py_ssize_t turn, Py_ssize_t p,
 ) noexcept nogil
 
 @cython.locals(
@@ -26,6 +40,4 @@ cdef void forget(
 cdef void rotate(double[:, ::1] triangle, double[::1] row, Py_ssize_t p) noexcept nogil
 
 @cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, t=double)
-cdef void solve(
-    double[:, ::1] triangle, double[:, ::1] estimates, Py_ssize_t k, Py_ssize_t p,
-) noexcept nogil
+cdef void solve(double[:, ::1] triangle, double[::1] row, Py_ssize_t p) noexcept nogil

@@ -9,53 +9,86 @@ plain least squares; P0^(-1/2) and a forgetting factor make it recursive least s
 from math import sqrt
 
 
-def update(W, y, triangle, row, sums, estimates, forgetting, floor):
+def update(W, y, scales, triangle, row, sums, estimates, keep, floor):
     """Take the rows of W and y in, sample by sample; write theta after each to estimates.
 
-    W (samples, joints, parameters), y (samples, joints), triangle (parameters, parameters + 1)
-    holding R and z, row (parameters + 1): work space, sums: the sum of squares not explained and
-    the number of rows, both forgetting, estimates (samples or 0, parameters). All but W and y are
-    changed in place. forgetting: per sample. floor: see `forget`.
+    W (samples, joints, parameters), y (samples, joints), scales (samples, joints): what each row is
+    multiplied by, 0 leaves it out; triangle (parameters, parameters + 1) holding R and z, row
+    (parameters + 1): work space; sums: the sum of squares not explained, the number of rows, both
+    forgetting, and the samples so far; estimates (samples or 0, parameters). All but W, y, scales
+    and keep are changed in place. keep (parameters): square roots of the forgetting factors per
+    sample; the residual forgets like the first of them. floor: see `forget`.
     """
     p = triangle.shape[0]
     samples = W.shape[0]
     joints = W.shape[1]
-    if W.shape[2] != p or triangle.shape[1] != p + 1 or estimates.shape[1] != p:
+    if W.shape[2] != p or triangle.shape[1] != p + 1 or estimates.shape[1] != p or len(keep) != p:
         raise ValueError("information: numbers of parameters differ")
-    if y.shape[0] != samples or y.shape[1] != joints or len(row) != p + 1 or len(sums) != 2:
+    if y.shape[0] != samples or y.shape[1] != joints or len(row) != p + 1 or len(sums) != 3:
         raise ValueError("information: numbers of samples or joints differ")
+    if scales.shape[0] != samples or scales.shape[1] != joints:
+        raise ValueError("information: numbers of scales differ")
     traced = estimates.shape[0] > 0
     if traced and estimates.shape[0] != samples:
         raise ValueError("information: numbers of samples and estimates differ")
-    keep = sqrt(forgetting)
-    squares, weight = float(sums[0]), float(sums[1])
+    forgets = differs(keep, 1.0, p)
     for k in range(samples):
-        if forgetting != 1.0:
-            squares *= forgetting
-            weight *= forgetting
-            forget(triangle, keep, floor, p)
+        if forgets:
+            sums[0] = float(sums[0]) * float(keep[0]) * float(keep[0])
+            sums[1] = float(sums[1]) * float(keep[0]) * float(keep[0])
+            forget(triangle, row, keep, floor, int(float(sums[2])) % p, p)
         for n in range(joints):
-            for j in range(p):
-                row[j] = float(W[k, n, j])
-            row[p] = float(y[k, n])
-            rotate(triangle, row, p)
-            squares += float(row[p]) * float(row[p])
-            weight += 1.0
+            take(W, y, scales, triangle, row, sums, k, n, p)
+        sums[2] = float(sums[2]) + 1.0
         if traced:
-            solve(triangle, estimates, k, p)
-    sums[0], sums[1] = squares, weight
+            solve(triangle, row, p)
+            for j in range(p):
+                estimates[k, j] = float(row[j])
 
 
-def forget(triangle, keep, floor, p):
-    """Let each row of the triangle, an equation for theta, count a little less.
+def take(W, y, scales, triangle, row, sums, k, n, p):
+    """The row of joint n at sample k, times its scale."""
+    scale = float(scales[k, n])
+    if scale == 0.0:
+        return
+    for j in range(p):
+        row[j] = scale * float(W[k, n, j])
+    row[p] = scale * float(y[k, n])
+    rotate(triangle, row, p)
+    sums[0] = float(sums[0]) + float(row[p]) * float(row[p])
+    sums[1] = float(sums[1]) + 1.0
 
-    A row whose diagonal would fall below the floor is kept as it is: without excitation the
-    estimates stay where they are and the covariance stays bounded.
-    """
+
+def differs(keep, value, p):
+    """Whether a factor is another than this."""
+    count = 0
     for i in range(p):
-        if abs(float(triangle[i, i])) * keep >= floor:
-            for j in range(i, p + 1):
-                triangle[i, j] = float(triangle[i, j]) * keep
+        count += float(keep[i]) != value
+    return count > 0
+
+
+def forget(triangle, row, keep, floor, turn, p):
+    """Let the information of each parameter count a little less; the estimates stay.
+
+    A little information, worth floor^2 in the long run, is given back to one parameter in turn, at
+    its present estimate: without excitation the covariance stays below about floor^-2, in every
+    direction.
+    """
+    solve(triangle, row, p)
+    several = differs(keep, float(keep[0]), p)
+    for i in range(p):
+        z = 0.0
+        for j in range(i, p):
+            triangle[i, j] = float(triangle[i, j]) * float(keep[j])
+            z += float(triangle[i, j]) * float(row[j])
+        triangle[i, p] = z if several else float(triangle[i, p]) * float(keep[0])
+    back = floor * sqrt(p * (1.0 - float(keep[turn]) * float(keep[turn])))
+    theta = float(row[turn])
+    for i in range(p):
+        row[i] = 0.0
+    row[turn] = back
+    row[p] = back * theta
+    rotate(triangle, row, p)
 
 
 def rotate(triangle, row, p):
@@ -78,10 +111,10 @@ def rotate(triangle, row, p):
             row[i] = c * u - s * t
 
 
-def solve(triangle, estimates, k, p):
-    """Back substitution: R theta = z, into row k of estimates."""
+def solve(triangle, row, p):
+    """Back substitution: R theta = z, into the row."""
     for i in range(p - 1, -1, -1):
         t = float(triangle[i, p])
         for j in range(i + 1, p):
-            t -= float(triangle[i, j]) * float(estimates[k, j])
-        estimates[k, i] = t / float(triangle[i, i])
+            t -= float(triangle[i, j]) * float(row[j])
+        row[i] = t / float(triangle[i, i])

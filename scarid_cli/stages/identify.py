@@ -1,49 +1,57 @@
-"""Estimate a robot's parameters from a motion."""
+"""Estimate a robot's parameters from a motion, and say whether to believe them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression import Rows, with_delay
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.information import Fit, Information, NotIdentifiableError
+from scarid_cli.algorithms.statistics.belief import Belief, believe
+from scarid_cli.algorithms.statistics.essential import Essential, essential
+from scarid_cli.algorithms.statistics.information import (
+    RESIDUAL,
+    Fit,
+    NotIdentifiableError,
+    weakest,
+)
+from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
+from scarid_cli.algorithms.witness import ALL, Witness
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Metadata, Table, doubles, matrix, number, settled
+from scarid_cli.io.table import Metadata, Table, doubles, number
 from scarid_cli.stages import Sink
+from scarid_cli.stages.rows import Treatment, treated
+
+ALIGNMENTS = 3  # times that the delay is fitted, each from the estimates before
 
 
 class Estimator(Protocol):
     """The interface of every estimator (see `algorithms/estimators/__init__.py`)."""
 
     RECURSIVE: ClassVar[bool]
+    HOLDS: ClassVar[bool]
 
-    def init(self, initial: Array) -> Information: ...
-    def step(
-        self, state: Information, W: Array, y: Array, *, trace: bool
-    ) -> tuple[Information, Array]: ...
-    def fit(self, state: Information) -> Fit: ...
+    def init(self, initial: Array) -> Any: ...
+    def step(self, state: Any, rows: Rows, *, trace: bool = False) -> tuple[Any, Array]: ...
+    def fit(self, state: Any) -> Fit: ...
 
 
 @dataclass(frozen=True)
-class Columns:
-    """The columns of a motion that a robot's regression needs."""
+class Progress:
+    """Where an estimation is: it can be saved, and go on with another log.
 
-    robot: Robot
+    `witness` are rows for the statistics, `seen` the samples so far, left out ones included.
+    """
 
-    @property
-    def names(self) -> list[str]:
-        joints = range(1, len(self.robot.joints) + 1)
-        return [f"{signal}{i}" for signal in ("q", "dq", "ddq", "tau") for i in joints]
-
-    def regression(self, batch: pa.RecordBatch) -> tuple[Array, Array]:
-        """W (samples, joints, parameters) and the torques (joints, samples)."""
-        q, dq, ddq, tau = np.split(matrix(batch, self.names), 4)
-        return self.robot.regressor(q, dq, ddq), tau
+    state: Any
+    witness: Witness
+    seen: int = 0
 
 
 def identify(
@@ -52,73 +60,175 @@ def identify(
     estimator: Estimator,
     initial: Array,
     *,
-    unit_variance: bool = False,
+    treatment: Treatment | None = None,
+    variance: str = RESIDUAL,
     trace: Sink | None = None,
+    progress: Progress | None = None,
+    keep: Callable[[Progress], None] | None = None,
 ) -> Table:
     """The parameters, once every row of the motion has been taken in.
 
-    `trace` receives the estimates after every sample (Fig. 6).
+    `trace` receives the estimates after every sample (Fig. 6). `progress` is where an earlier
+    estimation left off, `keep` receives where this one does.
     """
-    columns = Columns(robot)
-    state = estimator.init(initial)
-    samples = 0
-    schema = _trace_schema(robot)
+    treatment = treatment or Treatment()
+    period = table.meta.period or 0.0
+    if hasattr(estimator, "for_robot"):
+        estimator = estimator.for_robot(robot, period)
     if trace:
+        schema = _trace_schema(robot)
         meta = replace(table.meta, kind="trace", robot=robot.name)
         trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    for batch in settled(table.batches):
-        W, tau = columns.regression(batch)
-        state, estimates = estimator.step(
-            state, W, np.ascontiguousarray(tau.T), trace=trace is not None
-        )
-        samples += batch.num_rows
-        if trace:
+    witness = Witness(numbers=ALL) if treatment.holds or estimator.HOLDS else Witness()
+    progress = progress or Progress(estimator.init(initial), witness)
+    for batch, rows in treated(table, robot, treatment, progress.seen):
+        progress, estimates = _stepped(estimator, progress, rows, trace=trace is not None)
+        if trace and batch is not None:
             arrays = [batch.column("t"), *(doubles(e) for e in estimates.T)]
             trace.write(pa.RecordBatch.from_arrays(arrays, schema=schema))
-    fit = _fit(estimator, state, robot, table.name)
+    try:
+        found = _found(estimator, initial, progress, treatment, period)
+    except NotIdentifiableError as error:
+        raise BadData(
+            f"{table.name}: not identifiable: the motion leaves "
+            f"{combination(error.direction[: len(robot.names)], robot.names)} undetermined; "
+            "use a log that excites every joint"
+        ) from None
     meta = replace(table.meta, kind="parameters", robot=robot.name)
-    return _parameters(fit, robot, meta, samples, unit_variance=unit_variance)
+    if keep:
+        keep(progress)
+    return _parameters(found, robot, meta, variance=variance)
+
+
+def _stepped(
+    estimator: Estimator, progress: Progress, rows: Rows, *, trace: bool
+) -> tuple[Progress, Array]:
+    state, estimates = estimator.step(progress.state, rows, trace=trace)
+    seen = int(rows.at[-1]) + 1 if rows.samples else progress.seen
+    return Progress(state, progress.witness.add(rows), seen), estimates
+
+
+@dataclass(frozen=True)
+class Found:
+    """What came out: the fit, its statistics, and the delay [s] with its error if it was fitted."""
+
+    fit: Fit
+    belief: Belief | None
+    reduced: Essential
+    samples: int
+    delay: tuple[float, float] | None
+
+
+def _found(
+    estimator: Estimator,
+    initial: Array,
+    progress: Progress,
+    treatment: Treatment,
+    period: float,
+) -> Found:
+    period *= float(np.prod(treatment.decimate)) if treatment.decimate else 1.0
+    rows = progress.witness.rows()
+    fit = estimator.fit(progress.state)
+    own = len(fit.estimates)
+    if treatment.align:
+        fit, rows = _aligned(estimator, initial, rows, fit, period)
+    rows = fit.rows or rows
+    belief = believe(rows, fit, period, progress.witness.total, own) if fit.robust else None
+    delay = None
+    if treatment.align and belief:
+        delay = (float(fit.estimates[own]), float(belief.errors[own]))
+        fit, belief = _without_nuisance(fit, belief, own)
+    reduced = Essential(fit, (), 0.0)
+    if treatment.essential:
+        reduced = essential(fit, float((rows.scales > 0.0).sum()))
+    return Found(fit, belief, reduced, progress.witness.total, delay)
+
+
+def _aligned(
+    estimator: Estimator, initial: Array, rows: Rows, fit: Fit, period: float
+) -> tuple[Fit, Rows]:
+    """The fit with the delay of the torques as one more parameter."""
+    start = np.append(initial, 0.0)
+    wide = rows
+    for _ in range(ALIGNMENTS):
+        wide = with_delay(rows, fit.estimates, period)
+        fit = estimator.fit(estimator.step(estimator.init(start), wide)[0])
+    return fit, wide
+
+
+def _without_nuisance(fit: Fit, belief: Belief, own: int) -> tuple[Fit, Belief]:
+    return (
+        replace(
+            fit, estimates=fit.estimates[:own], unit_covariance=fit.unit_covariance[:own, :own]
+        ),
+        replace(belief, errors=belief.errors[:own]),
+    )
 
 
 def _trace_schema(robot: Robot) -> pa.Schema:
     return pa.schema([number("t", "s"), *(number(p.name, p.unit) for p in robot.parameters)])
 
 
-def _fit(estimator: Estimator, state: Information, robot: Robot, name: str) -> Fit:
-    try:
-        return estimator.fit(state)
-    except NotIdentifiableError as error:
-        weights = np.abs(error.direction)
-        blind = [n for n, w in zip(robot.names, weights, strict=True) if w > 0.1 * weights.max()]
-        raise BadData(
-            f"{name}: not identifiable: the motion leaves {' and '.join(blind)} undetermined; "
-            "use a log that excites every joint"
-        ) from None
-
-
-def _parameters(
-    fit: Fit, robot: Robot, meta: Metadata, samples: int, *, unit_variance: bool
-) -> Table:
-    errors = fit.standard_errors(unit_variance=unit_variance)
-    with np.errstate(divide="ignore"):
+def _parameters(found: Found, robot: Robot, meta: Metadata, *, variance: str) -> Table:
+    fit, belief = found.reduced.fit, found.belief
+    names = [*robot.names, *(name for name, _ in fit.added)]
+    units = [*(p.unit for p in robot.parameters), *(unit for _, unit in fit.added)]
+    errors = fit.standard_errors(variance=variance)
+    robust = belief.errors.copy() if belief else np.full(len(names), np.nan)
+    robust[list(found.reduced.dropped)] = np.nan
+    half = robust * (belief.quantile if belief else np.nan)
+    with np.errstate(divide="ignore", invalid="ignore"):
         relative = 100.0 * errors / np.abs(fit.estimates)
     schema = schemas.load("parameters").arrow()
     batch = pa.RecordBatch.from_arrays(
         [
-            pa.array(robot.names, pa.string()),
-            pa.array([parameter.unit for parameter in robot.parameters], pa.string()),
+            pa.array(names, pa.string()),
+            pa.array(units, pa.string()),
             doubles(fit.estimates),
             known(errors),
             known(relative),
+            known(robust),
+            known(fit.estimates - half),
+            known(fit.estimates + half),
         ],
         schema=schema,
     )
-    extra: dict[str, Any] = {
-        "condition_number": fit.condition,
-        "residual_deviation": None if np.isnan(fit.variance) else float(np.sqrt(fit.variance)),
-        "samples": samples,
-    }
+    extra = _told(found, robot, names, robust if belief else errors)
     return Table("identify", schema, replace(meta, extra=extra), iter([batch]))
+
+
+def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[str, Any]:
+    """What the metadata say of the estimation, the verdict among it."""
+    fit, belief = found.fit, found.belief
+    scaled, direction = weakest(fit.unit_covariance)
+    evidence = Evidence(
+        names=[n for i, n in enumerate(names) if i not in found.reduced.dropped],
+        estimates=np.delete(found.reduced.fit.estimates, found.reduced.dropped),
+        errors=np.delete(errors, found.reduced.dropped),
+        condition=fit.condition,
+        scaled_condition=scaled,
+        weak=combination(direction, names),
+        belief=belief,
+    )
+    judged = verdict(evidence, robot)
+    extra: dict[str, Any] = {
+        "condition_number": fit.condition if np.isfinite(fit.condition) else None,
+        "scaled_condition_number": scaled,
+        "residual_deviation": None if np.isnan(fit.variance) else float(np.sqrt(fit.variance)),
+        "samples": found.samples,
+        "verdict": judged.grade,
+        "reasons": list(judged.reasons),
+        **fit.extra,
+    }
+    if belief:
+        extra["joints"] = [asdict(joint) for joint in belief.joints]
+        extra["lag_share"] = belief.lag_share
+    if found.delay:
+        extra["delay"], extra["delay_error"] = found.delay
+    if found.reduced.dropped:
+        extra["dropped"] = [names[i] for i in found.reduced.dropped]
+        extra["dropped_cost"] = found.reduced.cost
+    return extra
 
 
 def known(values: Array) -> pa.Array:

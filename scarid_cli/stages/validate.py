@@ -12,16 +12,26 @@ from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, emp
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, doubles, number, settled
+from scarid_cli.io.table import Table, doubles, number
 from scarid_cli.stages import Sink
-from scarid_cli.stages.identify import Columns, known
+from scarid_cli.stages.identify import known
+from scarid_cli.stages.rows import Treatment, treated
 
 
-def estimates(table: Table, robot: Robot) -> Array:
-    """The values of a parameter table, which must be those of this robot."""
+def estimates(table: Table, robot: Robot) -> tuple[Robot, Array]:
+    """The values of a parameter table, which must be those of this robot.
+
+    With them the robot as it was identified: dry friction may have got a part that fades with
+    speed (`separable`).
+    """
     batches = list(table.batches)
     names = [name for batch in batches for name in batch.column("parameter").to_pylist()]
-    if names != robot.names:
+    values = np.concatenate([batch.column("estimate").to_numpy() for batch in batches])
+    found = dict(zip(names, values.tolist(), strict=True))
+    joints = range(1, len(robot.joints) + 1)
+    velocities = {i: found[f"vs{i}"] for i in joints if f"vs{i}" in found}
+    wanted = [*robot.names, *(f"{kind}{i}" for kind in ("Fst", "vs") for i in velocities)]
+    if names != wanted:
         raise bad_data(
             table.name,
             f"the parameters {', '.join(names)}",
@@ -29,25 +39,35 @@ def estimates(table: Table, robot: Robot) -> Array:
             remedy="choose the robot they were identified for with --robot",
             column="parameter",
         )
-    return np.concatenate([batch.column("estimate").to_numpy() for batch in batches])
+    return robot.with_stribeck(velocities), values[: len(values) - len(velocities)]
 
 
-def validate(table: Table, robot: Robot, theta: Array, *, predictions: Sink | None = None) -> Table:
+def validate(
+    table: Table,
+    robot: Robot,
+    theta: Array,
+    *,
+    treatment: Treatment | None = None,
+    predictions: Sink | None = None,
+) -> Table:
     """The metrics of the torques that theta predicts for a motion, one row per joint.
 
     `predictions` receives the measured and predicted torques of every sample (Fig. 7-8).
     """
-    columns = Columns(robot)
     sums = [empty() for _ in robot.joints]
     schema = _prediction_schema(robot)
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    for batch in settled(table.batches):
-        W, tau = columns.regression(batch)
-        predicted = robot.torques(W, theta)
-        sums = [accumulate(s, x, y) for s, x, y in zip(sums, tau, predicted, strict=True)]
-        if predictions:
+    for batch, rows in treated(table, robot, treatment or Treatment()):
+        predicted = robot.torques(rows.W, theta)
+        tau = np.ascontiguousarray(rows.y.T)
+        counts = [np.flatnonzero(s) for s in rows.scales.T]
+        sums = [
+            accumulate(s, x[at], y[at])
+            for s, x, y, at in zip(sums, tau, predicted, counts, strict=True)
+        ]
+        if predictions and batch is not None:
             arrays = [batch.column("t"), *(doubles(x) for x in (*tau, *predicted))]
             predictions.write(pa.RecordBatch.from_arrays(arrays, schema=schema))
     return _metrics(table, robot, [Quality.of(s) for s in sums])

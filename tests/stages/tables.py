@@ -64,6 +64,8 @@ def motion(rows: int = 400, seed: int = 0) -> dict[str, np.ndarray]:
         columns[f"dq{i}"] = rate * np.cos(rate * t) + 0.01 * noise[1]
         columns[f"ddq{i}"] = -(rate**2) * np.sin(rate * t) + 0.1 * noise[2]
         columns[f"tau{i}"] = noise[3]
+        columns[f"q{i}_ref"] = np.sin(rate * t)
+        columns[f"dq{i}_ref"] = rate * np.cos(rate * t)
     return columns
 
 

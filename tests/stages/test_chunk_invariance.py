@@ -35,7 +35,7 @@ def matching(name: str) -> Stage:
 
 
 def identified(name: str) -> Stage:
-    return lambda source: identify(source, SCARA, ESTIMATORS.load(name)(), np.zeros(8))
+    return lambda source: identify(source, SCARA, ESTIMATORS.load(name)(), SCARA.apriori)
 
 
 def simulated(source: Table) -> Table:

@@ -6,13 +6,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.linalg
+import scipy.optimize
+import statsmodels.api as sm
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from unit.support import cuts
 
-from scarid_cli.algorithms.estimators import ls, rls
+from scarid_cli.algorithms.estimators import irls, ls, ml, rls, tls, wls
 from scarid_cli.algorithms.registry import ESTIMATORS
-from scarid_cli.algorithms.statistics.information import Fit, Information, NotIdentifiableError
+from scarid_cli.algorithms.regression import plain
+from scarid_cli.algorithms.statistics.information import Fit, NotIdentifiableError
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
@@ -29,7 +33,7 @@ def data(samples: int, joints: int = 2, noise: float = 0.1, seed: int = 0) -> tu
 
 def fitted(estimator: Any, W: Array, y: Array, prior: Array | None = None) -> Fit:
     start = np.zeros(W.shape[2]) if prior is None else prior
-    state, _ = estimator.step(estimator.init(start), W, y, trace=False)
+    state, _ = estimator.step(estimator.init(start), plain(W, y), trace=False)
     return estimator.fit(state)
 
 
@@ -54,7 +58,7 @@ def test_ls_agrees_with_lstsq(samples: int, joints: int) -> None:
     assert fit.variance == pytest.approx(residual @ residual / freedom, rel=1e-11)
     errors = np.sqrt(fit.variance * np.diag(np.linalg.inv(flat.T @ flat)))
     np.testing.assert_allclose(fit.standard_errors(), errors, rtol=1e-9)
-    unit = fit.standard_errors(unit_variance=True)
+    unit = fit.standard_errors("unit")
     np.testing.assert_allclose(unit, errors / np.sqrt(fit.variance), rtol=1e-9)
 
 
@@ -100,7 +104,7 @@ def test_rls_is_the_recursion_of_the_textbook(joints: int, forgetting: float) ->
     W, y = data(300, joints)
     prior = np.array([1.0, 0.0, -1.0, 2.0])
     estimator = rls.Estimator(forgetting, p0=100.0)
-    state, trace = estimator.step(estimator.init(prior), W, y, trace=True)
+    state, trace = estimator.step(estimator.init(prior), plain(W, y), trace=True)
     expected, covariance = textbook(W, y, forgetting, prior, p0=100.0)
     fit = estimator.fit(state)
     # The textbook's form loses P0 times some eps; the first samples are the worst.
@@ -124,11 +128,11 @@ def test_rls_keeps_its_initial_parameters_without_excitation(forgetting: float) 
     prior = np.array([1.0, -2.0, 3.0, 0.0])
     estimator = rls.Estimator(forgetting, p0=4.0)
     W, y = np.zeros((50, 2, P)), np.zeros((50, 2))
-    state, trace = estimator.step(estimator.init(prior), W, y, trace=True)
+    state, trace = estimator.step(estimator.init(prior), plain(W, y), trace=True)
     np.testing.assert_allclose(trace, np.tile(prior, (50, 1)), rtol=1e-14)
-    # Forgetting is forgetting all the same.
+    # Forgetting is forgetting all the same, but for the little that is given back.
     covariance = estimator.fit(state).unit_covariance
-    np.testing.assert_allclose(covariance, 4.0 / forgetting**50 * np.eye(P), rtol=1e-12)
+    np.testing.assert_allclose(covariance, 4.0 / forgetting**50 * np.eye(P), rtol=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -139,16 +143,16 @@ def test_rls_keeps_its_initial_parameters_without_excitation(forgetting: float) 
 def test_rls_forgets_no_more_than_it_has_to(row: list[float]) -> None:
     """Without excitation, or with excitation in one direction alone, for a long time.
 
-    Where 0.95^50000 is nothing at all, the estimates stay finite and explain the torque, and no
-    row of the triangle has faded below 1e-4 P0^(-1/2).
+    Where 0.95^50000 is nothing at all, the estimates stay finite and explain the torque, and the
+    covariance stays bounded in every direction.
     """
     samples, estimator, truth = 50_000, rls.Estimator(forgetting=0.95, p0=100.0), [3.0, 2.0]
     W = np.tile(row, (samples, 1, 1))
-    state, trace = estimator.step(estimator.init(np.zeros(2)), W, W @ truth, trace=True)
+    state, trace = estimator.step(estimator.init(np.zeros(2)), plain(W, W @ truth), trace=True)
     fit = estimator.fit(state)
     assert np.isfinite(trace).all()
     np.testing.assert_allclose(W[-1] @ fit.estimates, W[-1] @ truth, rtol=1e-6)
-    assert np.abs(np.diag(state.triangle)).min() >= 0.999e-4 / np.sqrt(estimator.p0)
+    assert np.linalg.eigvalsh(fit.unit_covariance).max() <= 2.0 * estimator.p0 / rls.FADED**2
 
 
 def test_rls_follows_a_parameter_that_changes_if_it_forgets() -> None:
@@ -166,7 +170,7 @@ def test_rls_covariance_stays_positive_definite() -> None:
     W, y = data(100_000, joints=1)
     W[1000:, :, 3] *= 1e-3
     estimator = rls.Estimator(forgetting=0.95)
-    state, _ = estimator.step(estimator.init(np.zeros(P)), W, y, trace=False)
+    state, _ = estimator.step(estimator.init(np.zeros(P)), plain(W, y), trace=False)
     covariance = estimator.fit(state).unit_covariance
     np.testing.assert_array_equal(covariance, covariance.T)
     assert np.all(np.linalg.eigvalsh(covariance) > 0.0)
@@ -188,19 +192,24 @@ def test_setting_without_sense_is_refused(settings: dict[str, float], complaint:
         rls.Estimator(**settings)
 
 
-# Both
+# All of them that know no robot
 
 ROWS = 40
+PLAIN = [name for name in ESTIMATORS.names if not hasattr(ESTIMATORS.load(name), "for_robot")]
 
 every_estimator = pytest.mark.parametrize(
     "estimator",
-    [ESTIMATORS.load(name)() for name in ESTIMATORS.names] + [rls.Estimator(forgetting=0.97)],
-    ids=repr,
+    [
+        *(ESTIMATORS.load(name)() for name in PLAIN),
+        rls.Estimator(forgetting=0.97),
+        rls.Estimator(forgetting=(0.97, 1.0, 0.9, 0.99)),
+    ],
+    ids=lambda estimator: f"{type(estimator).__module__.rpartition('.')[2]} {estimator}",
 )
 
 
-def contents(state: Information) -> list[Any]:
-    return [state.triangle.tolist(), state.residual, state.weight]
+def bits(fit: Fit) -> list[Any]:
+    return [fit.estimates.tolist(), fit.unit_covariance.tolist(), fit.variance]
 
 
 @every_estimator
@@ -209,21 +218,22 @@ def contents(state: Information) -> list[Any]:
 def test_chunks_do_not_change_a_bit(estimator: Any, chunks: list[slice], *, trace: bool) -> None:
     W, y = data(ROWS)
     trace = trace and estimator.RECURSIVE
-    whole, expected = estimator.step(estimator.init(THETA), W, y, trace=trace)
+    whole, expected = estimator.step(estimator.init(THETA), plain(W, y), trace=trace)
     state, traces = estimator.init(THETA), []
     for chunk in chunks:
-        state, part = estimator.step(state, W[chunk], y[chunk], trace=trace)
+        state, part = estimator.step(state, plain(W[chunk], y[chunk]), trace=trace)
         traces.append(part)
-    assert contents(state) == contents(whole)
+    assert bits(estimator.fit(state)) == bits(estimator.fit(whole))
     np.testing.assert_array_equal(np.concatenate(traces), expected)
 
 
 @every_estimator
 def test_step_leaves_its_state_alone(estimator: Any) -> None:
     W, y = data(ROWS)
-    state = estimator.init(THETA)
-    first, second = (estimator.step(state, W, y, trace=False)[0] for _ in range(2))
-    assert contents(first) == contents(second)
+    state, _ = estimator.step(estimator.init(THETA), plain(W, y))
+    more = (estimator.step(state, plain(W, 2.0 * y))[0] for _ in range(2))
+    first, second = (estimator.fit(found) for found in more)
+    assert bits(first) == bits(second)
 
 
 @every_estimator
@@ -231,6 +241,133 @@ def test_estimates_come_near_the_truth(estimator: Any) -> None:
     W, y = data(5000)
     fit = fitted(estimator, W, y)
     assert np.all(np.abs(fit.estimates - THETA) < 5.0 * fit.standard_errors())
+
+
+@every_estimator
+def test_rows_that_are_left_out_have_no_say(estimator: Any) -> None:
+    W, y = data(ROWS)
+    spoilt = y.copy()
+    spoilt[::4] = 1e3
+    rows = plain(W, spoilt)
+    rows.scales[::4] = 0.0
+    found = estimator.fit(estimator.step(estimator.init(THETA), rows)[0])
+    if getattr(estimator, "factors", (1.0,)) != (1.0,):
+        # Forgetting counts samples, whether they are left out or not.
+        assert np.all(np.abs(found.estimates - THETA) < 1.0)
+        return
+    kept = np.arange(ROWS) % 4 != 0
+    state, _ = estimator.step(estimator.init(THETA), plain(W[kept], y[kept]))
+    np.testing.assert_allclose(found.estimates, estimator.fit(state).estimates, rtol=1e-9)
+
+
+# Each against something independent
+
+
+def uneven(samples: int = 400, seed: int = 3) -> tuple[Array, Array]:
+    """Two joints whose torques differ in size and in noise, and are correlated."""
+    W, _ = data(samples, seed=seed)
+    rng = np.random.default_rng(seed + 1)
+    noise = rng.standard_normal((samples, 2)) @ np.array([[2.0, 0.04], [0.0, 0.05]])
+    return W, W @ THETA + noise
+
+
+def test_wls_is_weighted_least_squares_of_statsmodels() -> None:
+    """With the residual variances of each joint's own fit, which it takes for its weights."""
+    W, y = uneven()
+    variances = [sm.OLS(y[:, j], W[:, j]).fit().mse_resid for j in range(2)]
+    weights = np.tile(1.0 / np.array(variances), len(W))
+    expected = sm.WLS(y.ravel(), W.reshape(-1, P), weights=weights).fit()
+    fit = fitted(wls.Estimator(), W, y)
+    np.testing.assert_allclose(fit.estimates, expected.params, rtol=1e-10)
+    np.testing.assert_allclose(fit.standard_errors(), expected.bse, rtol=1e-9)
+
+
+def test_irls_is_the_robust_regression_of_statsmodels() -> None:
+    """Huber's weights with the median absolute deviation, one joint, a tenth of it outliers."""
+    W, y = data(400, joints=1)
+    y[::10] += 5.0
+    fit = fitted(irls.Estimator(), W, y)
+    norm = sm.robust.norms.HuberT(t=1.345)
+    expected = sm.RLM(y[:, 0], W[:, 0], M=norm).fit(maxiter=200, tol=1e-12, conv="coefs")
+    np.testing.assert_allclose(fit.estimates, expected.params, rtol=1e-7)
+    plain_error = np.abs(fitted(ls.Estimator(), W, y).estimates - THETA).max()
+    assert np.abs(fit.estimates - THETA).max() < 0.5 * plain_error
+
+
+def test_tls_is_the_smallest_singular_vector_of_scipy() -> None:
+    W, y = data(300)
+    both = np.column_stack((W.reshape(-1, P), y.ravel()))
+    norms = np.linalg.norm(both, axis=0)
+    last = scipy.linalg.svd(both / norms)[2][-1]
+    expected = -last[:P] / last[P] * norms[P] / norms[:P]
+    np.testing.assert_allclose(fitted(tls.Estimator(), W, y).estimates, expected, rtol=1e-10)
+
+
+def test_tls_is_not_attenuated_by_noise_in_the_regressor() -> None:
+    rng = np.random.default_rng(1)
+    W, _ = data(20_000, joints=1)
+    norms = np.sqrt((W**2).mean(axis=(0, 1)))
+    y = W @ THETA
+    spoilt = W + 0.3 * norms * rng.standard_normal(W.shape)
+    y = y + 0.3 * np.sqrt(np.mean(y**2)) * rng.standard_normal(y.shape)
+    fit = fitted(tls.Estimator(), spoilt, y)
+    assert np.all(np.abs(fit.estimates - THETA) < 5.0 * fit.standard_errors())
+    attenuated = fitted(ls.Estimator(), spoilt, y).estimates
+    np.testing.assert_allclose(attenuated, THETA / 1.09, rtol=0.0, atol=0.3)
+
+
+def test_ml_maximises_the_likelihood() -> None:
+    """Found by scipy's optimiser over the parameters and the covariance's square root."""
+    W, y = uneven(150)
+
+    def loss(x: Array) -> float:
+        residual = y - W @ x[:P]
+        root = np.array([[np.exp(x[P]), 0.0], [x[P + 1], np.exp(x[P + 2])]])
+        white = np.linalg.solve(root, residual.T)
+        return float(0.5 * np.sum(white**2) + len(y) * (x[P] + x[P + 2]))
+
+    start = np.concatenate((THETA, np.zeros(3)))
+    found = scipy.optimize.minimize(loss, start, method="BFGS", options={"gtol": 1e-6})
+    fit = fitted(ml.Estimator(), W, y)
+    np.testing.assert_allclose(fit.estimates, found.x[:P], rtol=1e-5)
+    root = np.array([[np.exp(found.x[P]), 0.0], [found.x[P + 1], np.exp(found.x[P + 2])]])
+    np.testing.assert_allclose(fit.extra["noise_covariance"], root @ root.T, rtol=1e-4)
+
+
+def test_rls_forgets_each_parameter_at_its_own_rate() -> None:
+    """By definition: the information P^-1, times the roots of the factors on both sides."""
+    W, y = data(200)
+    factors = np.array([0.9, 1.0, 0.97, 0.99])
+    information, moment = np.eye(P) / 100.0, np.zeros(P)
+    root = np.sqrt(factors)
+    for rows, torques in zip(W, y, strict=True):
+        theta = np.linalg.solve(information, moment)
+        information = root[:, None] * information * root
+        moment = information @ theta
+        information += rows.T @ rows
+        moment += rows.T @ torques
+    fit = fitted(rls.Estimator(tuple(factors.tolist())), W, y)
+    np.testing.assert_allclose(fit.estimates, np.linalg.solve(information, moment), rtol=1e-9)
+    covariance = np.linalg.inv(information)
+    np.testing.assert_allclose(fit.unit_covariance, covariance, rtol=1e-8, atol=1e-12)
+
+
+def test_rls_without_excitation_stays_bounded_for_ten_million_updates() -> None:
+    """Half of them exciting, then none: finite, symmetric, bounded, and the estimates stay."""
+    W, y = data(20_000)
+    estimator = rls.Estimator(forgetting=0.95)
+    state = estimator.init(np.zeros(P))
+    moving, still = plain(W, y), plain(np.zeros_like(W), np.zeros_like(y))
+    for _ in range(250):
+        state, _ = estimator.step(state, moving)
+    before = estimator.fit(state).estimates
+    for _ in range(250):
+        state, _ = estimator.step(state, still)
+    fit = estimator.fit(state)
+    np.testing.assert_allclose(fit.estimates, before, rtol=1e-9)
+    np.testing.assert_array_equal(fit.unit_covariance, fit.unit_covariance.T)
+    sizes = np.linalg.eigvalsh(fit.unit_covariance)
+    assert 0.0 < sizes.min() <= sizes.max() <= 2.0 * estimator.p0 / rls.FADED**2
 
 
 # Identifiability
@@ -301,7 +438,7 @@ def test_badly_conditioned_statistics_agree_with_the_singular_values() -> None:
     A, b = W.reshape(-1, P), y.ravel()
     _, singular, V = np.linalg.svd(A, full_matrices=False)
     estimator = ls.Estimator()
-    fit = estimator.fit(estimator.step(estimator.init(np.zeros(P)), W, y, trace=False)[0])
+    fit = estimator.fit(estimator.step(estimator.init(np.zeros(P)), plain(W, y), trace=False)[0])
     # (W'W)^-1 = V S^-2 V': its error is twice that of the smallest singular value, 1e7 eps.
     covariance = (V.T / singular**2) @ V
     np.testing.assert_allclose(fit.unit_covariance, covariance, atol=1e-7 * covariance.max())
@@ -318,7 +455,7 @@ def test_forgetting_weights_the_residual_and_the_rows_alike() -> None:
     A, b = W.reshape(-1, P) * root[:, None], y.ravel() * root
     theta, squares, *_ = np.linalg.lstsq(A, b, rcond=None)
     estimator = rls.Estimator(forgetting=0.98, p0=1e12)
-    fit = estimator.fit(estimator.step(estimator.init(np.zeros(P)), W, y, trace=False)[0])
+    fit = estimator.fit(estimator.step(estimator.init(np.zeros(P)), plain(W, y), trace=False)[0])
     np.testing.assert_allclose(fit.estimates, theta, rtol=1e-9)
     assert fit.variance == pytest.approx(squares[0] / (np.sum(root**2) - P), rel=1e-9)
 
@@ -327,5 +464,5 @@ def test_long_standstill_leaves_the_estimates_alone() -> None:
     """Five minutes at 200 Hz: what is forgotten must not become 0/0."""
     W, y = np.zeros((60_000, 1, P)), np.zeros((60_000, 1))
     estimator = rls.Estimator(forgetting=0.95)
-    _, trace = estimator.step(estimator.init(THETA), W, y, trace=True)
+    _, trace = estimator.step(estimator.init(THETA), plain(W, y), trace=True)
     np.testing.assert_allclose(trace[-1], THETA, rtol=1e-12)

@@ -128,15 +128,20 @@ def sos(rng: np.random.Generator) -> Arguments:
 
 
 def information(
-    rng: np.random.Generator, forgetting: float = 1.0, *, trace: bool = False
+    rng: np.random.Generator,
+    forgetting: float | tuple[float, ...] = 1.0,
+    *,
+    trace: bool = False,
 ) -> Arguments:
     samples, joints, p = 60, 2, 5
     W = rng.standard_normal((samples, joints, p))
     W[rng.random(W.shape) < 0.3] = 0.0  # a regressor is full of them
     y = rng.standard_normal((samples, joints))
+    scales = rng.integers(0, 3, (samples, joints)) / 2.0
     triangle = np.column_stack((0.1 * np.eye(p), rng.standard_normal(p)))
     estimates = np.empty((samples if trace else 0, p))
-    return [W, y, triangle, np.empty(p + 1), rng.random(2), estimates, forgetting, 0.05]
+    keep = np.sqrt(np.resize(forgetting, p))
+    return [W, y, scales, triangle, np.empty(p + 1), rng.random(3), estimates, keep, 0.05]
 
 
 def moments(rng: np.random.Generator) -> Arguments:
@@ -189,6 +194,11 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
         "information",
         "update",
         lambda rng: information(rng, 0.97, trace=True),
+    ),
+    "information, several factors": (
+        "information",
+        "update",
+        lambda rng: information(rng, (0.9, 1.0, 0.97, 0.99, 0.5), trace=True),
     ),
     "moments": ("moments", "accumulate", moments),
     "plant": ("plant", "run", plant),

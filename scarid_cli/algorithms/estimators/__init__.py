@@ -3,8 +3,10 @@
 A module defines `Estimator`, a frozen dataclass of settings, with
 
 - `init(prior)`: the state before the first row, given initial parameters;
-- `step(state, W, y, trace)`: the state after the rows of the regressor W (samples, joints,
-  parameters) and the torques y (samples, joints), and the estimates after each sample if wanted;
+- `step(state, rows, trace)`: the state after these rows, and the estimates after each sample if
+  wanted;
 - `fit(state)`: the estimates and what is known of their errors;
-- `RECURSIVE`: whether there is an estimate after every sample.
+- `RECURSIVE`: whether there is an estimate after every sample;
+- `HOLDS`: whether the state is all rows so far;
+- `for_robot(robot, h)`, where an estimator needs to know the robot and the sampling period.
 """

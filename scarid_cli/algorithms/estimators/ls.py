@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from scarid_cli.algorithms.regression import Rows
 from scarid_cli.algorithms.statistics.information import Fit, Information, absorb, empty, solve
 from scarid_cli.arrays import Array
 
@@ -15,6 +16,7 @@ from scarid_cli.arrays import Array
 @dataclass(frozen=True)
 class Estimator:
     RECURSIVE: ClassVar[bool] = False
+    HOLDS: ClassVar[bool] = False
 
     def init(self, prior: Array) -> Information:
         """Of the initial parameters only their number counts."""
@@ -23,12 +25,11 @@ class Estimator:
     def step(
         self,
         state: Information,
-        W: Array,
-        y: Array,
+        rows: Rows,
         *,
-        trace: bool,  # noqa: ARG002
+        trace: bool = False,  # noqa: ARG002
     ) -> tuple[Information, Array]:
-        return absorb(state, W, y)
+        return absorb(state, rows.W, rows.y, rows.scales)
 
     def fit(self, state: Information) -> Fit:
         return solve(state)

@@ -1,47 +1,68 @@
-"""Recursive least squares with a constant forgetting factor (paper section 2.3).
+"""Recursive least squares with forgetting (paper section 2.3, and section 5 for several factors).
 
-In square-root information form: the covariance stays symmetric positive definite, and finite
+In square-root information form: the covariance stays symmetric positive definite, and bounded
 where forgetting meets no excitation.
-forgetting = 1: forgetting factor per sample, in (0, 1].
+forgetting = 1: forgetting factor per sample, in (0, 1]; one, or one per parameter.
 p0 = 100: initial covariance, P0 = p0 I.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
+from scarid_cli.algorithms.regression import Rows
 from scarid_cli.algorithms.settings import require_positive
 from scarid_cli.algorithms.statistics.information import Fit, Information, absorb, prior, solve
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
 # What forgetting leaves of the square root of the initial information.
-FADED = 1e-4
+FADED = 1e-5
 
 
 @dataclass(frozen=True)
 class Estimator:
-    forgetting: float = 1.0
+    forgetting: float | tuple[float, ...] = 1.0
     p0: float = 100.0
 
     RECURSIVE: ClassVar[bool] = True
+    HOLDS: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        require_positive(self, "forgetting", "p0")
-        if self.forgetting > 1.0:
-            raise UsageFault(f"forgetting must not exceed 1, not {self.forgetting:g}")
+        require_positive(self, "p0")
+        for factor in self.factors:
+            if not factor > 0.0:
+                raise UsageFault(f"forgetting must be positive, not {factor:g}")
+            if not factor <= 1.0:
+                raise UsageFault(f"forgetting must not exceed 1, not {factor:g}")
+
+    @property
+    def factors(self) -> tuple[float, ...]:
+        return self.forgetting if isinstance(self.forgetting, tuple) else (self.forgetting,)
 
     def init(self, initial: Array) -> Information:
+        if len(self.factors) not in (1, len(initial)):
+            raise UsageFault(
+                f"forgetting: {len(self.factors)} factors for {len(initial)} parameters"
+            )
         return prior(initial, self.p0)
 
     def step(
-        self, state: Information, W: Array, y: Array, *, trace: bool
+        self, state: Information, rows: Rows, *, trace: bool = False
     ) -> tuple[Information, Array]:
-        floor = FADED / np.sqrt(self.p0)
-        return absorb(state, W, y, forgetting=self.forgetting, floor=floor, trace=trace)
+        return absorb(
+            state,
+            rows.W,
+            rows.y,
+            rows.scales,
+            forgetting=np.resize(self.factors, state.parameters),
+            floor=FADED / np.sqrt(self.p0),
+            trace=trace,
+        )
 
     def fit(self, state: Information) -> Fit:
-        return solve(state)
+        # The errors of an estimate that forgets are not those of the whole record.
+        return replace(solve(state), robust=min(self.factors) == 1.0)

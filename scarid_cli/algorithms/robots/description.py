@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
@@ -37,13 +37,17 @@ class Joint:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One base parameter: its term of the regressor, the joint (from 1) of a friction term."""
+    """One base parameter: its term of the regressor, the joint (from 1) of a friction term.
+
+    `velocity` [rad/s or m/s] shapes dry friction: see terms.py.
+    """
 
     name: str
     term: str
     unit: str
     apriori: float
     joint: int = 0
+    velocity: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -80,12 +84,27 @@ class Robot:
         found = (p.apriori for p in self.parameters if (p.term, p.joint) == (term, joint))
         return next(found, 0.0)
 
+    def smoothed(self, velocity: float) -> Robot:
+        """The robot whose dry friction changes over this velocity [rad/s or m/s], not at once."""
+        parameters = (
+            replace(p, velocity=velocity) if p.term == "coulomb" else p for p in self.parameters
+        )
+        return replace(self, parameters=tuple(parameters))
+
+    def with_stribeck(self, velocities: dict[int, float]) -> Robot:
+        """The robot with more dry friction at low speed, on joints (from 1) by their velocity."""
+        added = (
+            Parameter(f"Fst{i}", "stribeck", self.joints[i - 1].torque_unit, 0.0, i, velocity)
+            for i, velocity in velocities.items()
+        )
+        return replace(self, parameters=(*self.parameters, *added))
+
     def regressor(self, q: Array, dq: Array, ddq: Array) -> Array:
         """W (samples, joints, parameters) from motions (joints, samples); sources in terms.py."""
         joints, samples = q.shape
         W = np.zeros((samples, joints, len(self.parameters)))
         for index, parameter in enumerate(self.parameters):
-            column = TERMS[parameter.term](q, dq, ddq, parameter.joint - 1)
+            column = TERMS[parameter.term](q, dq, ddq, parameter.joint - 1, parameter.velocity)
             for joint, values in column.items():
                 W[:, joint, index] = values
         return W

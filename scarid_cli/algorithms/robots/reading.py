@@ -62,7 +62,7 @@ def _joint(entry: dict[str, Any]) -> Joint:
 
 
 def _parameter(entry: dict[str, Any], joints: int) -> Parameter:
-    known = ("name", "term", "unit", "apriori", "joint")
+    known = ("name", "term", "unit", "apriori", "joint", "velocity")
     for key in entry:
         if key not in known:
             raise ValueError(f"{key} is not of a parameter; it has {', '.join(known)}")
@@ -72,9 +72,12 @@ def _parameter(entry: dict[str, Any], joints: int) -> Parameter:
         unit=_text("unit", entry["unit"]),
         apriori=_number("apriori", entry["apriori"]),
         joint=_whole("joint", entry.get("joint", 0)),
+        velocity=_number("velocity", entry.get("velocity", 0.0)),
     )
     if parameter.term not in TERMS:
         raise ValueError(f"{parameter.name} has term {parameter.term!r}; choose {', '.join(TERMS)}")
+    if parameter.velocity < 0.0 or (parameter.term == "stribeck" and not parameter.velocity):
+        raise ValueError(f"{parameter.name} needs a positive velocity")
     planar = parameter.term in PLANAR_TERMS
     if planar and joints < PLANAR_JOINTS:
         raise ValueError(

@@ -2,7 +2,7 @@
 
 Each term maps positions, velocities and accelerations, arrays (joints, samples), to the torque
 per unit of its parameter: a dict from joint (from 0) to samples. Joints that are left out feel
-nothing.
+nothing. The last argument is a velocity [rad/s or m/s] that shapes dry friction; 0: none.
 """
 
 from __future__ import annotations
@@ -14,41 +14,67 @@ import numpy as np
 from scarid_cli.arrays import Array
 
 Column = dict[int, Array]
-Term = Callable[[Array, Array, Array, int], Column]
+Term = Callable[[Array, Array, Array, int, float], Column]
 
 
-def viscous(_q: Array, dq: Array, _ddq: Array, joint: int) -> Column:
+def viscous(_q: Array, dq: Array, _ddq: Array, joint: int, _velocity: float) -> Column:
     """Viscous friction (eq. 2) [N m s/rad or N s/m]."""
     return {joint: dq[joint]}
 
 
-def coulomb(_q: Array, dq: Array, _ddq: Array, joint: int) -> Column:
-    """Dry friction (eq. 2) [N m or N]."""
-    return {joint: np.sign(dq[joint])}
+def coulomb(_q: Array, dq: Array, _ddq: Array, joint: int, velocity: float) -> Column:
+    """Dry friction (eq. 2) [N m or N]; with a velocity, tanh(dq / velocity) for the sign."""
+    return {joint: np.tanh(dq[joint] / velocity) if velocity > 0.0 else np.sign(dq[joint])}
 
 
-def offset(_q: Array, dq: Array, _ddq: Array, joint: int) -> Column:
+def stribeck(_q: Array, dq: Array, _ddq: Array, joint: int, velocity: float) -> Column:
+    """What dry friction has more at low speed, sign(dq) exp(-(dq / velocity)^2) [N m or N]."""
+    ratio = dq[joint] / velocity
+    return {joint: np.sign(dq[joint]) * np.exp(-ratio * ratio)}
+
+
+def viscous_forward(_q: Array, dq: Array, _ddq: Array, joint: int, _velocity: float) -> Column:
+    """Viscous friction of positive velocities alone [N m s/rad or N s/m]."""
+    return {joint: np.maximum(dq[joint], 0.0)}
+
+
+def viscous_backward(_q: Array, dq: Array, _ddq: Array, joint: int, _velocity: float) -> Column:
+    """Viscous friction of negative velocities alone [N m s/rad or N s/m]."""
+    return {joint: np.minimum(dq[joint], 0.0)}
+
+
+def coulomb_forward(_q: Array, dq: Array, _ddq: Array, joint: int, _velocity: float) -> Column:
+    """Dry friction of positive velocities alone [N m or N]."""
+    return {joint: (dq[joint] > 0.0).astype(np.float64)}
+
+
+def coulomb_backward(_q: Array, dq: Array, _ddq: Array, joint: int, _velocity: float) -> Column:
+    """Dry friction of negative velocities alone [N m or N]."""
+    return {joint: -(dq[joint] < 0.0).astype(np.float64)}
+
+
+def offset(_q: Array, dq: Array, _ddq: Array, joint: int, _velocity: float) -> Column:
     """Constant torque or force [N m or N]."""
     return {joint: np.ones_like(dq[joint])}
 
 
-def mass(_q: Array, _dq: Array, ddq: Array, joint: int) -> Column:
+def mass(_q: Array, _dq: Array, ddq: Array, joint: int, _velocity: float) -> Column:
     """Mass or inertia of an axis that moves alone [kg or kg m2]."""
     return {joint: ddq[joint]}
 
 
-def zz1r(_q: Array, _dq: Array, ddq: Array, _joint: int) -> Column:
+def zz1r(_q: Array, _dq: Array, ddq: Array, _joint: int, _velocity: float) -> Column:
     """ZZ1 + M2 L1^2 of the planar arm [kg m2] (eq. 26)."""
     return {0: ddq[0]}
 
 
-def zz2(_q: Array, _dq: Array, ddq: Array, _joint: int) -> Column:
+def zz2(_q: Array, _dq: Array, ddq: Array, _joint: int, _velocity: float) -> Column:
     """Moment of inertia of the second link [kg m2] (eq. 26)."""
     both = ddq[0] + ddq[1]
     return {0: both, 1: both}
 
 
-def l1mx2(q: Array, dq: Array, ddq: Array, _joint: int) -> Column:
+def l1mx2(q: Array, dq: Array, ddq: Array, _joint: int, _velocity: float) -> Column:
     """First moment of link 2 along its x axis times L1 [kg m2] (eq. 26, row for joint 2 mended)."""
     c, s = np.cos(q[1]), np.sin(q[1])
     return {
@@ -57,7 +83,7 @@ def l1mx2(q: Array, dq: Array, ddq: Array, _joint: int) -> Column:
     }
 
 
-def l1my2(q: Array, dq: Array, ddq: Array, _joint: int) -> Column:
+def l1my2(q: Array, dq: Array, ddq: Array, _joint: int, _velocity: float) -> Column:
     """First moment of link 2 along its y axis times L1 [kg m2] (eq. 26, row for joint 2 mended)."""
     c, s = np.cos(q[1]), np.sin(q[1])
     return {
@@ -73,6 +99,11 @@ PLANAR_JOINTS = 2
 TERMS: dict[str, Term] = {
     "viscous": viscous,
     "coulomb": coulomb,
+    "stribeck": stribeck,
+    "viscous-forward": viscous_forward,
+    "viscous-backward": viscous_backward,
+    "coulomb-forward": coulomb_forward,
+    "coulomb-backward": coulomb_backward,
     "offset": offset,
     "mass": mass,
     "ZZ1R": zz1r,

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.regression import Rows
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import information
+
+# Of the residual: r - c degrees of freedom, 1 as printed in eq. 32-33, r - 1 degrees of freedom.
+RESIDUAL, UNIT, SAMPLE = "residual", "unit", "sample"
+VARIANCES = (RESIDUAL, UNIT, SAMPLE)
 
 
 class NotIdentifiableError(ValueError):
@@ -22,12 +29,14 @@ class NotIdentifiableError(ValueError):
 class Information:
     """What the rows so far say: |R theta - z|^2 + residual, with R and z in one triangle.
 
-    `weight` is the number of rows, each weighted by what forgetting left of it.
+    `weight` is the number of rows, each weighted by what forgetting left of it, `count` that of the
+    samples.
     """
 
     triangle: Array
     residual: float = 0.0
     weight: float = 0.0
+    count: float = 0.0
 
     @property
     def parameters(self) -> int:
@@ -38,19 +47,33 @@ class Information:
 class Fit:
     """Estimates, their covariance for a residual variance of 1 (eq. 33), and the residual.
 
-    `variance` is that of the residual, s^2 = |rho|^2 / (r - c); nan without redundancy.
-    `condition` is the condition number of the observation matrix.
+    `variance` is that of the residual, s^2 = |rho|^2 / (r - c); nan without redundancy;
+    `sample_variance` is |rho|^2 / (r - 1).
+    `condition` is the condition number of the observation matrix. `whitening` (joints, joints) is
+    what the rows of a sample were multiplied by; `huber` the residual [whitened] from which a
+    row counts less. `rows` are those in which the fit is linear, if not those it was given;
+    `instruments` (samples, joints, parameters) take the place of W in the scores.
+    `robust` is whether the estimates are where the scores vanish, so that these tell their errors.
+    `added` names and units of parameters beyond the robot's, `extra` what else there is to say.
     """
 
     estimates: Array
     unit_covariance: Array
     variance: float
     condition: float
+    sample_variance: float = float("nan")
+    whitening: Array | None = None
+    huber: float = float("inf")
+    rows: Rows | None = None
+    instruments: Array | None = None
+    robust: bool = True
+    added: tuple[tuple[str, str], ...] = ()
+    extra: dict[str, Any] = field(default_factory=dict)
 
-    def standard_errors(self, *, unit_variance: bool = False) -> Array:
-        """Square roots of the diagonal of the covariance; with unit variance, eq. 32-33."""
-        variance = 1.0 if unit_variance else self.variance
-        errors: Array = np.sqrt(variance * np.diag(self.unit_covariance))
+    def standard_errors(self, variance: str = RESIDUAL) -> Array:
+        """Square roots of the diagonal of the covariance, for one of VARIANCES."""
+        size = {UNIT: 1.0, RESIDUAL: self.variance, SAMPLE: self.sample_variance}[variance]
+        errors: Array = np.sqrt(size * np.diag(self.unit_covariance))
         return errors
 
 
@@ -69,22 +92,48 @@ def absorb(
     state: Information,
     W: Array,
     y: Array,
+    scales: Array | None = None,
     *,
-    forgetting: float = 1.0,
+    forgetting: Array | None = None,
     floor: float = 0.0,
     trace: bool = False,
 ) -> tuple[Information, Array]:
-    """Take rows in; with `trace`, also the estimates after each sample.
+    """Take rows in, each times its scale; with `trace`, also the estimates after each sample.
 
-    `floor` is the least that forgetting leaves on the diagonal of the triangle.
+    `forgetting` (parameters): factors per sample; `floor`: square root of the information that
+    forgetting leaves of each parameter in the long run.
     """
     samples, _, parameters = W.shape
     triangle = state.triangle.copy()
-    sums = np.array([state.residual, state.weight])
+    sums = np.array([state.residual, state.weight, state.count])
     estimates = np.empty((samples if trace else 0, parameters))
-    work = np.empty(parameters + 1)
-    information.update(W, y, triangle, work, sums, estimates, forgetting, floor)
-    return Information(triangle, float(sums[0]), float(sums[1])), estimates
+    information.update(
+        W,
+        y,
+        np.ones(y.shape) if scales is None else scales,
+        triangle,
+        np.empty(parameters + 1),
+        sums,
+        estimates,
+        np.ones(parameters) if forgetting is None else np.sqrt(forgetting),
+        floor,
+    )
+    return Information(triangle, *map(float, sums)), estimates
+
+
+def merged(parts: Sequence[Information], scales: Sequence[float]) -> Information:
+    """What several sources say together, each times its scale."""
+    total = empty(parts[0].parameters)
+    for part, scale in zip(parts, scales, strict=True):
+        W, y = part.triangle[:, None, :-1], part.triangle[:, None, -1]
+        both, _ = absorb(total, np.ascontiguousarray(W), y.copy(), np.full(y.shape, scale))
+        total = Information(
+            both.triangle,
+            both.residual + scale**2 * part.residual,
+            total.weight + part.weight,
+            total.count + part.count,
+        )
+    return total
 
 
 def solve(state: Information) -> Fit:
@@ -99,8 +148,29 @@ def solve(state: Information) -> Fit:
         estimates=np.asarray(np.linalg.solve(R, z), dtype=np.float64),
         unit_covariance=inverse @ inverse.T,
         variance=state.residual / freedom if freedom > 0 else float("nan"),
+        sample_variance=state.residual / (state.weight - 1.0) if freedom > 0 else float("nan"),
         condition=float(singular[0] / singular[-1]),
     )
+
+
+def residual_deviation(state: Information) -> float:
+    """Of a part of the rows, by the parameters that fit it best; 0 if they fit it exactly."""
+    R = state.triangle[:, :-1]
+    length = np.sqrt((R * R).sum(axis=0))
+    rank = np.linalg.matrix_rank(R / np.where(length > 0.0, length, 1.0))
+    return float(np.sqrt(state.residual / max(state.weight - rank, 1.0)))
+
+
+def weakest(covariance: Array) -> tuple[float, Array]:
+    """The condition number of W with columns of unit length, and the direction it knows least of.
+
+    From the covariance of the estimates, so that units do not matter.
+    """
+    gram = np.linalg.inv(covariance)
+    length = np.sqrt(np.diag(gram))
+    values, directions = np.linalg.eigh(gram / np.outer(length, length))
+    free = directions[:, 0] / length
+    return float(np.sqrt(values[-1] / max(values[0], 1e-300))), free / np.linalg.norm(free)
 
 
 def _check_rank(R: Array, rows: float) -> None:

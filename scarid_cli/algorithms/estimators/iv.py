@@ -1,0 +1,163 @@
+"""Instrumental variables from the simulated model, IDIM-IV (Janot, Vandanjon and Gautier 2014).
+
+The instruments are the regressor of a noise-free simulation of the robot in its loop, with the
+estimates before: noise of the measured motion cannot bias what it has no part in. The log must
+have its reference (q1_ref, ...) and the robot description its controller. Joints are weighted by
+their residuals. Comes with the Durbin-Wu-Hausman test against weighted least squares. Holds all
+rows. No settings.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+import numpy as np
+
+from scarid_cli.algorithms.estimators import wls
+from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError
+from scarid_cli.algorithms.regression import Rows, joined, runs
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.settings import GIVEN
+from scarid_cli.algorithms.statistics.belief import shifts
+from scarid_cli.algorithms.statistics.information import Fit, NotIdentifiableError
+from scarid_cli.algorithms.trajectories.hermite import refine
+from scarid_cli.arrays import Array
+from scarid_cli.errors import UsageFault
+
+ITERATIONS = 10
+CONTROL_RATE = 1000.0  # Hz
+SETTLING = 0.5  # s: until a simulation that starts at rest follows its reference
+
+
+@dataclass(frozen=True)
+class Estimator:
+    robot: Robot | None = field(default=None, metadata=GIVEN)
+    h: float = field(default=0.0, metadata=GIVEN)
+
+    RECURSIVE: ClassVar[bool] = False
+    HOLDS: ClassVar[bool] = True
+
+    def for_robot(self, robot: Robot, h: float) -> Estimator:
+        if robot.control is None:
+            raise UsageFault(f"iv: robot {robot.name} has no controller to simulate it with")
+        return replace(self, robot=robot, h=h)
+
+    def init(self, prior: Array) -> list[Rows]:  # noqa: ARG002
+        return []
+
+    def step(
+        self,
+        state: list[Rows],
+        rows: Rows,
+        *,
+        trace: bool = False,  # noqa: ARG002
+    ) -> tuple[list[Rows], Array]:
+        if rows.reference is None:
+            raise UsageFault("iv needs the reference that the robot followed: columns q1_ref, ...")
+        return [*state, rows], np.empty((0, rows.W.shape[2]))
+
+    def fit(self, state: list[Rows]) -> Fit:
+        rows = joined(state)
+        start = wls.Estimator()
+        plain = start.fit(start.step(start.init(np.zeros(rows.W.shape[2])), rows)[0])
+        theta = plain.estimates
+        for _ in range(ITERATIONS):
+            instruments = self._simulated(rows, theta)
+            fit = _solved(rows, instruments, plain)
+            moved = np.abs(fit.estimates - theta)
+            theta = fit.estimates
+            if np.all(moved < 1e-3 * fit.standard_errors()):
+                break
+        statistic, chance = hausman(rows, plain, fit, self.h)
+        return replace(
+            fit, extra={"durbin_wu_hausman": {"statistic": statistic, "p_value": chance}}
+        )
+
+    def _simulated(self, rows: Rows, theta: Array) -> Array:
+        """The regressor along the simulated motion, zero until it has settled."""
+        assert self.robot is not None
+        assert rows.reference is not None
+        instruments = np.zeros_like(rows.W)
+        settling = round(SETTLING / self.h)
+        for run in runs(rows.at):
+            reference = rows.reference[:, :, run]
+            if reference.shape[2] > 2 * settling:
+                motion = _followed(self.robot, theta, reference, self.h)
+                instruments[run] = self.robot.regressor(*motion)
+                instruments[run][:settling] = 0.0
+        return instruments
+
+
+def _followed(robot: Robot, theta: Array, reference: Array, h: float) -> list[Array]:
+    """Position, velocity and acceleration of the robot with these parameters in its loop."""
+    control = robot.control
+    assert control is not None
+    joints = len(robot.joints)
+    ratio = max(1, round(h * CONTROL_RATE))
+    parameters = zip(robot.parameters, theta.tolist(), strict=True)
+    own = replace(robot, parameters=tuple(replace(p, apriori=x) for p, x in parameters))
+    loop = ClosedLoop(
+        robot=own,
+        kp=np.array(control.kp),
+        kd=np.array(control.kd),
+        ki=np.array(control.ki),
+        velocity_cutoff=control.velocity_cutoff,
+        encoder_resolution=np.zeros(joints),
+        position_noise=np.zeros(joints),
+        torque_noise=np.zeros(joints),
+        seed=0,
+        control_rate=ratio / h,
+    )
+    q, dq = reference
+    fine, speed, _ = refine(q, dq, np.gradient(dq, h, axis=1), h, ratio)
+    try:
+        log = loop.step(loop.init(fine[:, 0]), fine, speed)[1]
+    except DivergedError:
+        raise UsageFault(
+            "iv: the simulated robot diverges with the estimates of least squares; use wls"
+        ) from None
+    signals = (log.q_true, log.dq_true, log.ddq_true)
+    # The last sample is where no reference goes on from.
+    return [np.ascontiguousarray(np.pad(x[:, ::ratio], ((0, 0), (0, 1)), "edge")) for x in signals]
+
+
+def _solved(rows: Rows, instruments: Array, plain: Fit) -> Fit:
+    assert plain.whitening is not None
+    scales = (rows.scales * np.diag(plain.whitening))[:, :, None]
+    p = rows.W.shape[2]
+    W, Z = ((x * scales).reshape(-1, p) for x in (rows.W, instruments))
+    y = (rows.y[:, :, None] * scales).ravel()
+    gram = Z.T @ W
+    size = np.sqrt(np.abs(np.diag(gram)))
+    if not np.all(size > 0.0) or np.linalg.cond(gram / np.outer(size, size)) > 1e12:
+        raise NotIdentifiableError(np.where(size > 0.0, 0.0, 1.0) + (size > 0.0).all())
+    theta = np.asarray(np.linalg.solve(gram, Z.T @ y), dtype=np.float64)
+    residual = y - W @ theta
+    inverse = np.linalg.inv(gram)
+    return replace(
+        plain,
+        estimates=theta,
+        unit_covariance=inverse @ (Z.T @ Z) @ inverse.T,
+        variance=float(residual @ residual) / max(int((scales > 0.0).sum()) - p, 1),
+        rows=rows,
+        instruments=instruments,
+    )
+
+
+def hausman(rows: Rows, plain: Fit, fit: Fit, h: float) -> tuple[float, float]:
+    """Whether two fits differ by more than chance: the statistic, and the chance of a greater one.
+
+    Durbin, Wu and Hausman's, with the covariance of the difference from blocks left out of both, so
+    that autocorrelated residuals do not make it cry wolf; F by Hotelling's T^2.
+    """
+    from scipy.special import fdtrc
+
+    difference = fit.estimates - plain.estimates
+    scatter = shifts(rows, fit, h) - shifts(rows, plain, h)
+    blocks, p = scatter.shape
+    covariance = (blocks - 1) / blocks * scatter.T @ scatter
+    if blocks <= p or not np.isfinite(covariance).all():
+        return float("nan"), float("nan")
+    distance = float(difference @ np.linalg.pinv(covariance) @ difference)
+    return distance, float(fdtrc(p, blocks - p, distance * (blocks - p) / (p * (blocks - 1))))

@@ -1,0 +1,163 @@
+"""Separable least squares with Stribeck friction (Golub and Pereyra 1973; paper's ref. 46).
+
+Dry friction gets a part that fades with speed, Fst sign(dq) exp(-(dq / vs)^2), on each joint that
+has dry friction. The velocities vs are searched, everything else is linear and solved for each of
+them. Joints are weighted by their residuals. Holds all rows. No settings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+import numpy as np
+
+from scarid_cli.algorithms.regression import Rows, joined
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.terms import stribeck
+from scarid_cli.algorithms.settings import GIVEN
+from scarid_cli.algorithms.statistics.information import Fit, absorb, empty, solve
+from scarid_cli.arrays import Array
+from scarid_cli.errors import UsageFault
+
+GUESSES = 15  # of each velocity, before the simplex
+RANGE = (0.01, 1.0)  # of the velocities, in parts of the root-mean-square velocity
+
+
+@dataclass(frozen=True)
+class Estimator:
+    robot: Robot | None = field(default=None, metadata=GIVEN)
+
+    RECURSIVE: ClassVar[bool] = False
+    HOLDS: ClassVar[bool] = True
+
+    def for_robot(self, robot: Robot, h: float) -> Estimator:  # noqa: ARG002
+        if not any(p.term == "coulomb" for p in robot.parameters):
+            raise UsageFault(f"separable: robot {robot.name} has no joint with dry friction")
+        return replace(self, robot=robot)
+
+    def init(self, prior: Array) -> list[Rows]:  # noqa: ARG002
+        return []
+
+    def step(
+        self,
+        state: list[Rows],
+        rows: Rows,
+        *,
+        trace: bool = False,  # noqa: ARG002
+    ) -> tuple[list[Rows], Array]:
+        return [*state, rows], np.empty((0, rows.W.shape[2]))
+
+    def fit(self, state: list[Rows]) -> Fit:
+        assert self.robot is not None
+        rows = joined(state)
+        joints = [p.joint for p in self.robot.parameters if p.term == "coulomb"]
+        inverse = _inverse_deviations(rows)
+        velocities = _searched(rows, joints, inverse)
+        linear = _with_columns(rows, [_column(rows, j, v) for j, v in velocities.items()])
+        theta = _solved(linear, inverse).estimates
+        # Linear in the velocities as well at the solution: errors and residuals are then as usual.
+        peaks = theta[-len(joints) :]
+        slopes = [
+            (j, peak * slope)
+            for (j, v), peak in zip(velocities.items(), peaks, strict=True)
+            for slope in [_slope(rows, j, v)]
+        ]
+        found = np.array(list(velocities.values()))
+        y = linear.y.copy()
+        for (j, slope), v in zip(slopes, found, strict=True):
+            y[:, j - 1] += slope * v
+        whole = replace(_with_columns(linear, slopes), y=y)
+        units = [self.robot.joints[j - 1] for j in joints]
+        return replace(
+            _solved(whole, inverse),
+            estimates=np.concatenate((theta, found)),
+            whitening=np.diag(inverse),
+            rows=whole,
+            added=(
+                *((f"Fst{j}", u.torque_unit) for j, u in zip(joints, units, strict=True)),
+                *((f"vs{j}", f"{u.unit}/s") for j, u in zip(joints, units, strict=True)),
+            ),
+        )
+
+
+def _column(rows: Rows, joint: int, velocity: float) -> tuple[int, Array]:
+    q, dq, ddq, _ = rows.motion
+    return joint, stribeck(q, dq, ddq, joint - 1, velocity)[joint - 1]
+
+
+def _slope(rows: Rows, joint: int, velocity: float) -> Array:
+    """Of the column, by the velocity."""
+    dq = rows.motion[1][joint - 1]
+    slope: Array = _column(rows, joint, velocity)[1] * 2.0 * dq * dq / velocity**3
+    return slope
+
+
+def _with_columns(rows: Rows, columns: list[tuple[int, Array]]) -> Rows:
+    """The rows with columns that concern one joint (from 1) each."""
+    added = np.zeros((*rows.y.shape, len(columns)))
+    for k, (joint, values) in enumerate(columns):
+        added[:, joint - 1, k] = values
+    return replace(rows, W=np.ascontiguousarray(np.concatenate((rows.W, added), axis=2)))
+
+
+def _solved(rows: Rows, inverse: Array) -> Fit:
+    state, _ = absorb(
+        empty(rows.W.shape[2]), rows.W, rows.y, np.ascontiguousarray(rows.scales * inverse)
+    )
+    return solve(state)
+
+
+def _inverse_deviations(rows: Rows) -> Array:
+    """Of the residual of each joint without the new friction."""
+    state, _ = absorb(empty(rows.W.shape[2]), rows.W, rows.y, rows.scales)
+    residual = (rows.y - rows.W @ solve(state).estimates) * rows.scales
+    rms = np.sqrt((residual**2).sum(axis=0) / np.maximum((rows.scales > 0.0).sum(axis=0), 1))
+    inverse: Array = 1.0 / np.maximum(rms, 1e-6 * rms.max())
+    return inverse
+
+
+def _searched(rows: Rows, joints: list[int], inverse: Array) -> dict[int, float]:
+    """Velocities that leave the least residual: each by itself first, then all together."""
+    from scipy.optimize import minimize
+
+    cost = _cost(rows, joints, inverse)
+    sizes = [float(np.sqrt(np.mean(rows.motion[1][j - 1] ** 2))) or 1.0 for j in joints]
+    grids = [np.log(np.geomspace(*RANGE, GUESSES) * size) for size in sizes]
+    best = np.array([grid[GUESSES // 2] for grid in grids])
+    for k, grid in enumerate(grids):
+        tries = np.tile(best, (GUESSES, 1))
+        tries[:, k] = grid
+        best = tries[int(np.argmin([cost(x) for x in tries]))]
+    options = {"xatol": 1e-6, "fatol": 1e-12, "maxiter": 400}
+    found = minimize(cost, best, method="Nelder-Mead", options=options)
+    limits = np.log(np.outer(sizes, (RANGE[0] / 10.0, RANGE[1] * 10.0)))
+    x = np.clip(found.x, limits[:, 0], limits[:, 1])
+    return dict(zip(joints, np.exp(x).tolist(), strict=True))
+
+
+def _cost(rows: Rows, joints: list[int], inverse: Array) -> Callable[[Array], float]:
+    """The sum of squares that is left, over that of the torques; of the logarithms of vs."""
+    scales = rows.scales * inverse
+    p = rows.W.shape[2]
+    W = (rows.W * scales[:, :, None]).reshape(-1, p)
+    y = (rows.y * scales).ravel()
+    gram, with_y, squares = W.T @ W, W.T @ y, float(y @ y)
+
+    def cost(x: Array) -> float:
+        size = p + len(joints)
+        A, b = np.zeros((size, size)), np.zeros(size)
+        A[:p, :p], b[:p] = gram, with_y
+        for k, (joint, log_velocity) in enumerate(zip(joints, x, strict=True), start=p):
+            _, column = _column(rows, joint, float(np.exp(log_velocity)))
+            column = column * scales[:, joint - 1]
+            A[:p, k] = A[k, :p] = (rows.W[:, joint - 1] * scales[:, joint - 1, None]).T @ column
+            A[k, k] = column @ column
+            b[k] = column @ (rows.y[:, joint - 1] * scales[:, joint - 1])
+        size_of = np.sqrt(np.diag(A))
+        size_of[size_of == 0.0] = 1.0
+        solution = np.linalg.lstsq(A / np.outer(size_of, size_of), b / size_of, rcond=1e-12)[0]
+        return float(1.0 - solution @ (b / size_of) / squares)
+
+    return cost

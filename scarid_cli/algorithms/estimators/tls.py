@@ -1,0 +1,59 @@
+"""Total least squares (Golub and Van Loan 1980): errors in the regressor as well as in the torque.
+
+By the smallest singular vector of [W y], each column over its norm, so that all are taken to be
+wrong by the same part of their size. In one pass: the singular values are those of the triangle.
+Its covariance is the first-order one of Van Huffel and Vandewalle (1991, section 8.5). No settings.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from scarid_cli.algorithms.regression import Rows
+from scarid_cli.algorithms.statistics.information import Fit, Information, absorb, empty, solve
+from scarid_cli.arrays import Array
+
+
+@dataclass(frozen=True)
+class Estimator:
+    RECURSIVE: ClassVar[bool] = False
+    HOLDS: ClassVar[bool] = False
+
+    def init(self, prior: Array) -> Information:
+        """Of the initial parameters only their number counts."""
+        return empty(len(prior))
+
+    def step(
+        self,
+        state: Information,
+        rows: Rows,
+        *,
+        trace: bool = False,  # noqa: ARG002
+    ) -> tuple[Information, Array]:
+        return absorb(state, rows.W, rows.y, rows.scales)
+
+    def fit(self, state: Information) -> Fit:
+        plain = solve(state)  # refuses what is not identifiable
+        p = state.parameters
+        triangle = np.vstack((state.triangle, np.append(np.zeros(p), np.sqrt(state.residual))))
+        norms = np.sqrt((triangle**2).sum(axis=0))
+        norms[norms == 0.0] = 1.0
+        _, singular, directions = np.linalg.svd(triangle / norms)
+        last = directions[-1]
+        scaled = -last[:p] / last[p]
+        W = triangle[:, :p] / norms[:p]
+        spread = singular[-1] ** 2
+        gram = np.linalg.inv(W.T @ W - spread * np.eye(p))
+        unit = gram + spread * gram @ gram * (1.0 + scaled @ scaled)
+        rescale = norms[p] / norms[:p]
+        freedom = max(state.weight - p, 1.0)
+        return Fit(
+            estimates=scaled * rescale,
+            unit_covariance=unit * np.outer(rescale, rescale),
+            variance=(1.0 + scaled @ scaled) * spread / freedom,
+            condition=plain.condition,
+            robust=False,
+        )

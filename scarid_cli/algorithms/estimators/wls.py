@@ -1,0 +1,64 @@
+"""Least squares with each joint weighted by its residual (Gautier 1997, "Dynamic identification of
+robots with power model"), in one pass.
+
+The deviation of a joint's torque is that of the residual of its own rows, fitted alone. So that a
+joint with torques of hundreds of N m does not drown one with one N m. No settings.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from scarid_cli.algorithms.regression import Rows
+from scarid_cli.algorithms.statistics.information import (
+    Fit,
+    Information,
+    absorb,
+    empty,
+    merged,
+    residual_deviation,
+    solve,
+)
+from scarid_cli.arrays import Array
+
+State = tuple[Information, ...]
+
+
+@dataclass(frozen=True)
+class Estimator:
+    RECURSIVE: ClassVar[bool] = False
+    HOLDS: ClassVar[bool] = False
+
+    def init(self, prior: Array) -> State:
+        """Of the initial parameters only their number counts: the joints are not known yet."""
+        return (empty(len(prior)),)
+
+    def step(
+        self,
+        state: State,
+        rows: Rows,
+        *,
+        trace: bool = False,  # noqa: ARG002
+    ) -> tuple[State, Array]:
+        joints = rows.y.shape[1]
+        parts = state if len(state) == joints else state * joints
+        found = [
+            absorb(part, *(np.ascontiguousarray(x[:, j : j + 1]) for x in _of(rows)))
+            for j, part in enumerate(parts)
+        ]
+        return tuple(part for part, _ in found), np.empty((0, rows.W.shape[2]))
+
+    def fit(self, state: State) -> Fit:
+        deviations = np.array([residual_deviation(part) for part in state])
+        # A joint that is fitted exactly (no torque at all) must not outweigh all others.
+        least = 1e-6 * max(deviations.max(), np.finfo(float).tiny)
+        inverse = 1.0 / np.maximum(deviations, least)
+        fit = solve(merged(state, inverse.tolist()))
+        return replace(fit, whitening=np.diag(inverse))
+
+
+def _of(rows: Rows) -> tuple[Array, Array, Array]:
+    return rows.W, rows.y, rows.scales

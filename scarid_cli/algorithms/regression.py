@@ -1,0 +1,115 @@
+"""Rows of the regression tau = W theta (paper eq. 25), and what is done to them before it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.arrays import Array, Numbers
+
+
+@dataclass(frozen=True)
+class Rows:
+    """W (samples, joints, parameters), torques y and scales (samples, joints).
+
+    A row counts `scales` times, 0 leaves it out. `at` (samples) are the numbers of the samples in
+    the record; where they jump, the record has a gap. `motion` (4, joints, samples): position,
+    velocity, acceleration and torque the rows were made of; `reference` (2, joints, samples):
+    position and velocity that the robot was to follow, where the log has them.
+    """
+
+    W: Array
+    y: Array
+    scales: Array
+    at: Numbers
+    motion: Array
+    reference: Array | None = None
+
+    @property
+    def samples(self) -> int:
+        return len(self.W)
+
+    def part(self, chosen: slice) -> Rows:
+        """Some of the samples."""
+        return Rows(
+            np.ascontiguousarray(self.W[chosen]),
+            np.ascontiguousarray(self.y[chosen]),
+            np.ascontiguousarray(self.scales[chosen]),
+            self.at[chosen],
+            self.motion[:, :, chosen],
+            None if self.reference is None else self.reference[:, :, chosen],
+        )
+
+
+def plain(W: Array, y: Array) -> Rows:
+    """Rows of equal weight without a motion behind them."""
+    samples, joints, _ = W.shape
+    motion = np.zeros((4, joints, samples))
+    motion[3] = y.T
+    return Rows(W, y, np.ones((samples, joints)), np.arange(samples), motion)
+
+
+def rows_of(
+    robot: Robot,
+    motion: Array,
+    at: Numbers,
+    *,
+    slow: Array | None = None,
+    reference: Array | None = None,
+) -> Rows:
+    """The rows of a motion (4, joints, samples): position, velocity, acceleration, torque.
+
+    Rows of joints below their velocity `slow` (joints) are left out: there dry friction is not
+    sign(dq).
+    """
+    q, dq, ddq, tau = motion
+    scales = np.ones(tau.T.shape)
+    if slow is not None:
+        scales[np.abs(dq.T) < slow] = 0.0
+    y = np.ascontiguousarray(tau.T)
+    return Rows(robot.regressor(q, dq, ddq), y, scales, at, motion, reference)
+
+
+def joined(parts: Sequence[Rows]) -> Rows:
+    """Parts of a record as one."""
+    references = [part.reference for part in parts if part.reference is not None]
+    return Rows(
+        np.concatenate([part.W for part in parts]),
+        np.concatenate([part.y for part in parts]),
+        np.concatenate([part.scales for part in parts]),
+        np.concatenate([part.at for part in parts]),
+        np.concatenate([part.motion for part in parts], axis=2),
+        np.concatenate(references, axis=2) if len(references) == len(parts) else None,
+    )
+
+
+def runs(at: Numbers) -> Iterator[slice]:
+    """The parts of a record between its gaps."""
+    breaks = np.flatnonzero(np.diff(at) != 1) + 1
+    edges = [0, *breaks.tolist(), len(at)]
+    for start, end in pairwise(edges):
+        yield slice(start, end)
+
+
+def with_delay(rows: Rows, theta: Array, h: float) -> Rows:
+    """The rows with one more column: how the torques change if they come a second earlier.
+
+    Its parameter is the time [s] by which the measured torques lead what the motion tells
+    (tau(t) = W(t + delay) theta, to first order). At reversals, where dry friction jumps, the
+    column is 0.
+    """
+    predicted = rows.W @ theta[: rows.W.shape[2]]
+    column = np.zeros_like(predicted)
+    for run in runs(rows.at):
+        if run.stop - run.start > 1:
+            column[run] = np.gradient(predicted[run], h, axis=0)
+            direction = np.sign(rows.motion[1][:, run].T)
+            turns = np.zeros(direction.shape, dtype=bool)
+            turns[1:] |= direction[1:] != direction[:-1]
+            turns[:-1] |= turns[1:]
+            column[run][turns] = 0.0
+    return replace(rows, W=np.ascontiguousarray(np.concatenate((rows.W, column[:, :, None]), 2)))

@@ -1,0 +1,150 @@
+"""Is the result any good? One grade, and the reasons in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.belief import Belief, Joint
+from scarid_cli.arrays import Array
+
+GOOD, DOUBTFUL, NOT_IDENTIFIABLE = "good", "doubtful", "not identifiable"
+LAGGED = 0.5  # of the residual that the neighbours explain: biased beyond
+DOUBT = 30.0  # %: a parameter with a greater relative deviation is not known
+WEAK = 1e4  # scaled condition number from which a combination of parameters is not determined
+POOR = 0.8  # R2 of a joint below which the model does not tell its torque
+NOISE = 3.0  # times the torque noise: less is no torque
+FRICTION = ("viscous", "coulomb")  # terms that cannot be negative
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The grade, and why, each reason a sentence without its full stop."""
+
+    grade: str
+    reasons: tuple[str, ...]
+
+    @property
+    def text(self) -> str:
+        return f"{self.grade}: {'; '.join(self.reasons)}."
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a verdict is made of; errors are robust where known, in the order of the names."""
+
+    names: Sequence[str]
+    estimates: Array
+    errors: Array
+    condition: float
+    scaled_condition: float
+    weak: str
+    belief: Belief | None
+
+
+def verdict(evidence: Evidence, robot: Robot) -> Verdict:
+    """From the worst to the least: what cannot be known, what is wrong, what is uncertain."""
+    joints = evidence.belief.joints if evidence.belief else ()
+    hopeless = [*_idle(joints, robot), *_undetermined(evidence)]
+    if hopeless:
+        return Verdict(NOT_IDENTIFIABLE, (*hopeless, *_summary(evidence)))
+    unknown = _unknown(evidence)
+    wrong = [*_biased(evidence.belief), *_poor(joints), *_impossible(evidence, robot)]
+    if 2 * len(unknown) > len(evidence.names):
+        wrong.append(f"{len(unknown)} of {len(evidence.names)} parameters are not known")
+    uncertain = (
+        [f"{_listed(unknown)} cannot be told from zero within {DOUBT:g} %"] if unknown else []
+    )
+    grade = DOUBTFUL if wrong else GOOD
+    return Verdict(grade, (*wrong, *_summary(evidence), *uncertain))
+
+
+def _idle(joints: Sequence[Joint], robot: Robot) -> list[str]:
+    """Joints without torque: there parameters of zero fit perfectly."""
+    return [
+        f"joint {i} has hardly any torque ({joint.torque:.3g} {robot.joints[i - 1].torque_unit} "
+        "rms, less than its noise or dry friction), so parameters of zero would fit it: use a log "
+        "in which it is driven"
+        for i, joint in enumerate(joints, start=1)
+        if joint.torque
+        < max(NOISE * robot.joints[i - 1].torque_noise, abs(robot.value("coulomb", i)))
+    ]
+
+
+def _undetermined(evidence: Evidence) -> list[str]:
+    if not evidence.scaled_condition > WEAK:
+        return []
+    return [
+        f"the motion hardly determines {evidence.weak} (scaled condition number "
+        f"{evidence.scaled_condition:.2g}): use one that excites it, or fewer parameters"
+    ]
+
+
+def _biased(belief: Belief | None) -> list[str]:
+    if belief is None or not belief.lag_share > LAGGED:
+        return []
+    return [
+        f"biased: the motion 25 ms before and after explains {100 * belief.lag_share:.0f} % of the "
+        "residual, so torques and derivatives do not belong to the same instant (scarid "
+        "differentiate --match), the derivatives are mostly noise, or a force acts that the model "
+        "does not have"
+    ]
+
+
+def _poor(joints: Sequence[Joint]) -> list[str]:
+    return [
+        f"the model explains the torque of joint {i} badly (R2 {joint.r2:.3g})"
+        for i, joint in enumerate(joints, start=1)
+        if joint.r2 < POOR
+    ]
+
+
+def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
+    """Friction that would drive the robot, beyond its error."""
+    terms = {p.name: p.term for p in robot.parameters}
+    rows = zip(evidence.names, evidence.estimates, evidence.errors, strict=True)
+    return [
+        f"{name} is negative ({estimate:.3g}), which friction cannot be"
+        for name, estimate, error in rows
+        if terms.get(name, "").startswith(FRICTION) and estimate < -3.0 * error
+    ]
+
+
+def _unknown(evidence: Evidence) -> list[str]:
+    """Parameters whose error is greater than 30 % of them, or has no value."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = 100.0 * evidence.errors / np.abs(evidence.estimates)
+    return [n for n, r in zip(evidence.names, relative, strict=True) if not r <= DOUBT]
+
+
+def _summary(evidence: Evidence) -> list[str]:
+    """The numbers that say how good."""
+    known = len(evidence.names) - len(_unknown(evidence))
+    parts = [f"{known} of {len(evidence.names)} parameters within {DOUBT:g} %"]
+    if evidence.belief:
+        r2 = ", ".join(f"{joint.r2:.4f}" for joint in evidence.belief.joints)
+        parts.append(f"R2 {r2}")
+    if np.isfinite(evidence.condition):
+        parts.append(f"condition number {evidence.condition:.3g}")
+    return [", ".join(parts)]
+
+
+def _listed(names: Sequence[str], most: int = 8) -> str:
+    shown = list(names[:most])
+    if len(names) > most:
+        shown.append(f"{len(names) - most} more")
+    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
+
+
+def combination(direction: Array, names: Sequence[str]) -> str:
+    """A direction of parameters written out: its parts above a tenth of the greatest."""
+    unit = direction / direction[int(np.argmax(np.abs(direction)))]
+    parts = sorted(
+        ((x, n) for x, n in zip(unit, names, strict=True) if abs(x) > 0.1),
+        key=lambda part: -abs(part[0]),
+    )
+    text = " ".join(f"{'-' if x < 0 else '+'} {abs(x):.2g} {name}" for x, name in parts)
+    return text.removeprefix("+ ").replace("1 ", "", 1) if text.startswith("+ 1 ") else text

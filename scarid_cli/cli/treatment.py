@@ -1,0 +1,28 @@
+"""From the options of `options.treatment` to what is done to the rows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.cli.job import per_joint
+from scarid_cli.errors import UsageFault
+from scarid_cli.stages.rows import Treatment
+
+
+def treated(given: dict[str, Any], robot: Robot) -> tuple[Robot, Treatment]:
+    """The robot with its friction smoothed, and the treatment."""
+    factors, slow, smooth = given["decimate"] or (), given["drop_slow"] or (), given["smooth_sign"]
+    if any(factor % 1 or factor < 2 for factor in factors):
+        raise UsageFault("--decimate: factors are whole numbers from 2")
+    if any(not v >= 0.0 for v in slow):
+        raise UsageFault("--drop-slow: velocities cannot be negative")
+    if smooth is not None and not smooth > 0.0:
+        raise UsageFault(f"--smooth-sign must be positive, not {smooth:g}")
+    return robot.smoothed(smooth) if smooth else robot, Treatment(
+        skip=given["skip"],
+        decimate=tuple(map(int, factors)),
+        slow=tuple(per_joint(slow, len(robot.joints), "--drop-slow")) if slow else (),
+        align=given.get("align", False),
+        essential=given.get("essential", False),
+    )

@@ -1,0 +1,79 @@
+"""Save where an estimation is, and go on from there with another log."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from scarid_cli.algorithms.estimators.ekf import State
+from scarid_cli.algorithms.regression import Rows
+from scarid_cli.algorithms.statistics.information import Information
+from scarid_cli.algorithms.witness import Witness
+from scarid_cli.errors import BadData, UsageFault
+from scarid_cli.stages.identify import Progress
+
+KNOWN = {kind.__name__: kind for kind in (Information, Progress, Rows, State, Witness)}
+
+
+def saved(progress: Progress, settings: dict[str, Any]) -> bytes:
+    """An .npz file: the arrays, and a JSON document of how they belong together."""
+    arrays: dict[str, Any] = {}
+    tree = json.dumps({"settings": settings, "progress": _packed(progress, arrays)})
+    out = io.BytesIO()
+    np.savez(out, tree=np.array(tree), **arrays)
+    return out.getvalue()
+
+
+def restored(path: str, settings: dict[str, Any]) -> Progress:
+    """Where the estimation was, which must have been one with the same settings."""
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            document = json.loads(str(archive["tree"]))
+            progress = _unpacked(document["progress"], archive)
+            before = document["settings"]
+    except FileNotFoundError:
+        raise UsageFault(f"{path}: no such file; make one with `scarid identify --save`") from None
+    except (KeyError, OSError, TypeError, ValueError):
+        raise BadData(
+            f"{path}: found no state, expected a file as `scarid identify --save` makes it"
+        ) from None
+    for key, value in settings.items():
+        if before.get(key) != value:
+            raise UsageFault(
+                f"{path}: saved with {key} {before.get(key)}, not {value}; go on with the same"
+            )
+    assert isinstance(progress, Progress)
+    return progress
+
+
+def _packed(value: Any, arrays: dict[str, Any]) -> Any:
+    """The value as JSON, its arrays by number."""
+    if isinstance(value, np.ndarray):
+        name = f"a{len(arrays)}"
+        arrays[name] = value
+        return {"array": name}
+    if is_dataclass(value):
+        parts = {f.name: _packed(getattr(value, f.name), arrays) for f in fields(value)}
+        return {"kind": type(value).__name__, "fields": parts}
+    if isinstance(value, tuple | list):
+        return {"items": [_packed(item, arrays) for item in value]}
+    if isinstance(value, dict):
+        return {"map": {key: _packed(item, arrays) for key, item in value.items()}}
+    return {"value": value}
+
+
+def _unpacked(tree: Any, archive: Any) -> Any:
+    if "array" in tree:
+        return archive[tree["array"]]
+    if "kind" in tree:
+        parts = {name: _unpacked(part, archive) for name, part in tree["fields"].items()}
+        return KNOWN[tree["kind"]](**parts)
+    if "items" in tree:
+        return tuple(_unpacked(item, archive) for item in tree["items"])
+    if "map" in tree:
+        return {key: _unpacked(item, archive) for key, item in tree["map"].items()}
+    return tree["value"]

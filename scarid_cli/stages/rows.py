@@ -1,0 +1,107 @@
+"""From a motion to the rows of a regression, and what is done to them on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.algorithms.regression import Rows, joined, rows_of
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.arrays import Array
+from scarid_cli.io.table import Table, matrix, settled_runs
+
+
+@dataclass(frozen=True)
+class Treatment:
+    """What is done to the rows before they are fitted.
+
+    `skip` rows at the start are left out; W and the torques are decimated by each factor in turn;
+    rows of a joint slower than `slow` (joints) [rad/s or m/s] are left out; `align` fits the time
+    by which the torques lead the motion as well; `essential` drops what is not known.
+    The last two are the estimation's own.
+    """
+
+    skip: int = 0
+    decimate: tuple[int, ...] = ()
+    slow: tuple[float, ...] = ()
+    align: bool = False
+    essential: bool = False
+
+    @property
+    def holds(self) -> bool:
+        """Whether it needs all rows at once."""
+        return bool(self.decimate) or self.align
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The columns of a motion that a robot's regression needs."""
+
+    robot: Robot
+
+    @property
+    def names(self) -> list[str]:
+        joints = range(1, len(self.robot.joints) + 1)
+        return [f"{signal}{i}" for signal in ("q", "dq", "ddq", "tau") for i in joints]
+
+    def motion(self, batch: pa.RecordBatch) -> Array:
+        """Position, velocity, acceleration and torque (4, joints, samples)."""
+        return matrix(batch, self.names).reshape(4, len(self.robot.joints), batch.num_rows)
+
+    def references(self, columns: list[str], batch: pa.RecordBatch) -> Array | None:
+        """Position and velocity that the robot was to follow, where the table has them."""
+        joints = range(1, len(self.robot.joints) + 1)
+        names = [f"{signal}{i}_ref" for signal in ("q", "dq") for i in joints]
+        if not set(names) <= set(columns):
+            return None
+        return matrix(batch, names).reshape(2, len(self.robot.joints), batch.num_rows)
+
+    def rows(self, columns: list[str], batch: pa.RecordBatch, at: int, slow: Array | None) -> Rows:
+        """The rows of a batch whose first sample has this number."""
+        return rows_of(
+            self.robot,
+            self.motion(batch),
+            np.arange(at, at + batch.num_rows),
+            slow=slow,
+            reference=self.references(columns, batch),
+        )
+
+
+def treated(
+    table: Table, robot: Robot, treatment: Treatment, seen: int = 0
+) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
+    """The rows of the settled samples, batch by batch; or all at once, then without a batch.
+
+    `seen` is the number of the first sample.
+    """
+    columns = Columns(robot)
+    slow = np.array(treatment.slow) if treatment.slow else None
+    late = None if treatment.decimate else slow
+    held = []
+    for first, batch in settled_runs(table.batches):
+        start = max(0, treatment.skip - first)
+        if start >= batch.num_rows:
+            continue
+        kept = batch.slice(start)
+        rows = columns.rows(table.columns, kept, seen + first + start, late)
+        if treatment.holds:
+            held.append(rows)
+        else:
+            yield kept, rows
+    if held:
+        yield None, _decimated(joined(held), treatment.decimate, slow)
+
+
+def _decimated(rows: Rows, factors: tuple[int, ...], slow: Array | None) -> Rows:
+    if not factors:
+        return rows
+    from scarid_cli.algorithms.decimation import decimated  # scipy.signal takes a second
+
+    for factor in factors:
+        rows = decimated(rows, factor)
+    if slow is None:
+        return rows
+    return replace(rows, scales=(np.abs(rows.motion[1].T) >= slow).astype(np.float64))
