@@ -80,6 +80,7 @@ def _told(where: str, message: str, status: int) -> int:
 def run() -> None:
     """The entry of the `scarid` command."""
     _mend_streams()
+    sys.meta_path.insert(0, WithoutPandas())
     signal.signal(signal.SIGTERM, _terminate)
     status = _flushed(main())
     for number, code in (
@@ -92,6 +93,14 @@ def run() -> None:
             signal.signal(number, signal.SIG_DFL)
             os.kill(os.getpid(), number)
     sys.exit(status)
+
+
+class WithoutPandas:
+    """pyarrow would import pandas wherever it is installed, which takes a third of a second."""
+
+    def find_spec(self, name: str, _path: object = None, _target: object = None) -> None:
+        if name == "pandas":
+            raise ModuleNotFoundError("scarid uses no pandas", name=name)
 
 
 def _terminate(_number: int, _frame: FrameType | None) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -10,9 +10,6 @@ from scarid_cli.algorithms.registry import ESTIMATORS
 from scarid_cli.algorithms.settings import names_of
 from scarid_cli.cli import options
 from scarid_cli.cli.described import describing
-
-if TYPE_CHECKING:
-    from scarid_cli.algorithms.robots.description import Robot
 
 
 @click.command(name="identify", cls=describing(ESTIMATORS, "Estimators and their settings"))
@@ -96,28 +93,29 @@ def command(
     import numpy as np
 
     from scarid_cli.cli.job import job
-    from scarid_cli.cli.treatment import treated
+    from scarid_cli.cli.treatment import for_robot, treatment_of
     from scarid_cli.errors import UsageFault
     from scarid_cli.stages import identify as stage
     from scarid_cli.stages.validate import estimates
 
     method = ESTIMATORS.load(estimator)
+    given = _given(method, estimator, rest)
+    method(**given)  # refuses settings before anything is read
+    treatment = treatment_of(rest)
     if trace and not method.RECURSIVE:
         raise UsageFault(f"--trace: {estimator} has no estimates after every sample")
+    if treatment.align and hasattr(method, "for_robot"):
+        raise UsageFault(f"--align does not go with --estimator {estimator}")
+    if (save or resumed or trace) and (treatment.holds or method.HOLDS):
+        what = f"--estimator {estimator}" if method.HOLDS else "--decimate or --align"
+        raise UsageFault(f"--save, --from and --trace go row by row; not with {what}")
     with job(rest) as run:
         out = run.output(rest["output"], rest["format"])
         side = run.output(trace) if trace else None
         place = run.text(save) if save else None
         table, arm = run.read_for(file, "motion", robot, torques=True)
-        arm, treatment = treated(rest, arm)
-        if (save or resumed or trace) and (treatment.holds or method.HOLDS):
-            raise UsageFault(
-                "--save, --from and --trace go row by row; not with --decimate, --align, "
-                f"or --estimator {estimator}"
-                * method.HOLDS
-                or "--save, --from and --trace go row by row; not with --decimate or --align"
-            )
-        solver = _solver(method, estimator, rest, arm)
+        arm, treatment = for_robot(arm, treatment, rest)
+        solver = method(**given, **_single(rest["forgetting"], arm.names))
         if initial == "apriori":
             start = arm.apriori
         elif initial:
@@ -157,11 +155,10 @@ def command(
         _say(run, arm.name, estimator, result.meta.extra)
 
 
-def _solver(method: Any, name: str, rest: dict[str, Any], robot: Robot) -> Any:
-    """The estimator with its settings."""
+def _given(method: Any, name: str, rest: dict[str, Any]) -> dict[str, Any]:
+    """The settings that were given, which must be some of the estimator's."""
     from scarid_cli.errors import UsageFault
 
-    known = names_of(method)
     given: dict[str, Any] = {}
     for text in rest["settings"]:
         key, sign, value = text.partition("=")
@@ -174,33 +171,44 @@ def _solver(method: Any, name: str, rest: dict[str, Any], robot: Robot) -> Any:
     if rest["p0"] is not None:
         given["p0"] = rest["p0"]
     if rest["forgetting"] is not None:
-        given["forgetting"] = _factors(rest["forgetting"], robot.names)
+        given["forgetting"] = _number(rest["forgetting"], rest["forgetting"].split(",")[0])
+    known = names_of(method)
     for key in given:
         if key not in known:
             choice = ", ".join(known) or "none"
             raise UsageFault(f"{name} has no setting {key!r}; it has {choice}")
-    return method(**given)
+    if "," in (rest["forgetting"] or ""):
+        del given["forgetting"]  # of single parameters: these are known with the robot
+    return given
 
 
-def _factors(text: str, names: list[str]) -> float | tuple[float, ...]:
-    """`0.999,Fv1=0.99`: one factor for all, then those of single parameters."""
+def _single(text: str | None, names: list[str]) -> dict[str, tuple[float, ...]]:
+    """`0.999,Fv1=0.99`: one forgetting factor for all, then those of single parameters."""
     from scarid_cli.errors import UsageFault
 
+    if text is None or "," not in text:
+        return {}
     first, *single = text.split(",")
+    factors = dict.fromkeys(names, _number(text, first))
+    for part in single:
+        name, _, value = part.partition("=")
+        if name not in factors:
+            raise UsageFault(
+                f"--forgetting {text}: no parameter {name!r}; there are {', '.join(names)}"
+            )
+        factors[name] = _number(text, value)
+    return {"forgetting": tuple(factors.values())}
+
+
+def _number(text: str, part: str) -> float:
+    from scarid_cli.errors import UsageFault
+
     try:
-        factors = dict.fromkeys(names, float(first))
-        for part in single:
-            name, _, value = part.partition("=")
-            if name not in factors:
-                raise UsageFault(
-                    f"--forgetting {text}: no parameter {name!r}; there are {', '.join(names)}"
-                )
-            factors[name] = float(value)
+        return float(part)
     except ValueError:
         raise UsageFault(
             f"--forgetting {text}: write a number, then NAME=NUMBER for single parameters"
         ) from None
-    return tuple(factors.values()) if single else float(first)
 
 
 def _told(solver: Any) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from scarid_cli.algorithms.robots.description import Robot
@@ -10,8 +11,8 @@ from scarid_cli.errors import UsageFault
 from scarid_cli.stages.rows import Treatment
 
 
-def treated(given: dict[str, Any], robot: Robot) -> tuple[Robot, Treatment]:
-    """The robot with its friction smoothed, and the treatment."""
+def treatment_of(given: dict[str, Any]) -> Treatment:
+    """What was asked for, before the robot is known."""
     factors, slow, smooth = given["decimate"] or (), given["drop_slow"] or (), given["smooth_sign"]
     if any(factor % 1 or factor < 2 for factor in factors):
         raise UsageFault("--decimate: factors are whole numbers from 2")
@@ -19,10 +20,18 @@ def treated(given: dict[str, Any], robot: Robot) -> tuple[Robot, Treatment]:
         raise UsageFault("--drop-slow: velocities cannot be negative")
     if smooth is not None and not smooth > 0.0:
         raise UsageFault(f"--smooth-sign must be positive, not {smooth:g}")
-    return robot.smoothed(smooth) if smooth else robot, Treatment(
+    return Treatment(
         skip=given["skip"],
         decimate=tuple(map(int, factors)),
-        slow=tuple(per_joint(slow, len(robot.joints), "--drop-slow")) if slow else (),
+        slow=tuple(slow),
         align=given.get("align", False),
         essential=given.get("essential", False),
     )
+
+
+def for_robot(robot: Robot, treatment: Treatment, given: dict[str, Any]) -> tuple[Robot, Treatment]:
+    """The robot with its friction smoothed, and the treatment with a velocity per joint."""
+    smooth, slow = given["smooth_sign"], treatment.slow
+    if slow:
+        slow = tuple(per_joint(slow, len(robot.joints), "--drop-slow"))
+    return robot.smoothed(smooth) if smooth else robot, replace(treatment, slow=slow)

@@ -34,18 +34,19 @@ def command(
     treated as by identify: give it the same options.
     """
     from scarid_cli.cli.job import job
-    from scarid_cli.cli.treatment import treated
+    from scarid_cli.cli.treatment import for_robot, treatment_of
     from scarid_cli.errors import UsageFault
     from scarid_cli.stages import validate as stage
 
+    treatment = treatment_of(rest)
+    if treatment.holds and predictions:
+        raise UsageFault("--predictions are of every row; not with --decimate")
     with job(rest) as run:
         out = run.output(rest["output"], rest["format"])
         side = run.output(predictions) if predictions else None
         known = run.read(parameters, "parameters")
         table, arm = run.read_for(file, "motion", robot or known.meta.robot, torques=True)
-        arm, treatment = treated(rest, arm)
-        if treatment.holds and predictions:
-            raise UsageFault("--predictions are of every row; not with --decimate")
+        arm, treatment = for_robot(arm, treatment, rest)
         arm, theta = stage.estimates(known, arm)
         result = stage.validate(
             run.recorded(table), arm, theta, treatment=treatment, predictions=side

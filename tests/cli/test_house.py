@@ -15,20 +15,21 @@ from conftest import ROOT, Result
 from importlinter.cli import lint_imports
 
 from scarid_cli import __version__
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS, Registry
 from scarid_cli.cli import COMMANDS, options
 from scarid_cli.io import schemas, writer
 from scarid_cli.reporting import schemas as page
 
 Run = Callable[..., Result]
-HEAVY = ["jinja2", "matplotlib", "numpy", "pyarrow", "pyarrow.compute", "rich", "scipy"]
+HEAVY = ["jinja2", "matplotlib", "numpy", "pandas", "pyarrow", "pyarrow.compute", "rich", "scipy"]
 
 
 def loaded(pipe_in: str, *words: str, cwd: Path) -> set[str]:
     """The heavy modules that a command has imported by its end."""
     script = (
-        "import sys; from scarid_cli.__main__ import main; status = main(sys.argv[1:]);"
-        f"print([m for m in {HEAVY} if m in sys.modules], file=sys.stderr); sys.exit(status)"
+        f"import atexit, sys; told = lambda: [m for m in {HEAVY} if sys.modules.get(m)];"
+        "atexit.register(lambda: print(told(), file=sys.stderr));"
+        "from scarid_cli.__main__ import run; run()"
     )
     done = subprocess.run(
         [sys.executable, "-c", script, *words],
@@ -95,10 +96,13 @@ def test_every_command_has_help_with_examples(name: str, scarid: Run) -> None:
     assert not re.search(r"\.\.\.$", COMMANDS[name])
 
 
-def test_the_help_describes_every_method(scarid: Run) -> None:
-    text = scarid("differentiate", "--help").out
-    for name in DIFFERENTIATORS.names:
-        assert DIFFERENTIATORS.describe(name).splitlines()[0] in text
+@pytest.mark.parametrize(
+    ("command", "registry"), [("differentiate", DIFFERENTIATORS), ("identify", ESTIMATORS)]
+)
+def test_the_help_describes_every_choice(command: str, registry: Registry, scarid: Run) -> None:
+    text = scarid(command, "--help").out
+    for name in registry.names:
+        assert registry.describe(name).splitlines()[0] in text
 
 
 def test_the_readme_names_every_command() -> None:

@@ -53,20 +53,24 @@ class Kept:
         return pa.Table.from_batches(self.batches, schema).combine_chunks()
 
 
+SCARA = reading.load("scara2")
+
+
 def motion(rows: int = 400, seed: int = 0) -> dict[str, np.ndarray]:
-    """A noisy motion of two joints with torques, velocities and accelerations."""
+    """A noisy motion of two joints with velocities, accelerations, torques and references."""
     rng = np.random.default_rng(seed)
     t = np.arange(rows) * PERIOD
     columns = {"t": t}
+    exact = []
     for i, rate in ((1, 3.0), (2, 5.0)):
-        noise = rng.standard_normal((4, rows))
-        columns[f"q{i}"] = np.round(np.sin(rate * t) / 1e-4 + noise[0]) * 1e-4
-        columns[f"dq{i}"] = rate * np.cos(rate * t) + 0.01 * noise[1]
-        columns[f"ddq{i}"] = -(rate**2) * np.sin(rate * t) + 0.1 * noise[2]
-        columns[f"tau{i}"] = noise[3]
-        columns[f"q{i}_ref"] = np.sin(rate * t)
-        columns[f"dq{i}_ref"] = rate * np.cos(rate * t)
+        noise = rng.standard_normal((3, rows))
+        exact.append((np.sin(rate * t), rate * np.cos(rate * t), -(rate**2) * np.sin(rate * t)))
+        q, dq, ddq = exact[-1]
+        columns[f"q{i}"] = np.round(q / 1e-4 + noise[0]) * 1e-4
+        columns[f"dq{i}"] = dq + 0.01 * noise[1]
+        columns[f"ddq{i}"] = ddq + 0.1 * noise[2]
+        columns[f"q{i}_ref"], columns[f"dq{i}_ref"] = q, dq
+    W = SCARA.regressor(*(np.array(signal) for signal in zip(*exact, strict=True)))
+    for i, tau in enumerate(SCARA.torques(W, SCARA.apriori), start=1):
+        columns[f"tau{i}"] = tau + 0.1 * rng.standard_normal(rows)
     return columns
-
-
-SCARA = reading.load("scara2")

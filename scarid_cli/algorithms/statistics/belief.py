@@ -6,19 +6,26 @@ Everything is computed from rows of the record, all of them or a part that stand
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows, runs
-from scarid_cli.algorithms.statistics.information import Fit
+from scarid_cli.algorithms.regression import Rows, runs, with_delay
+from scarid_cli.algorithms.statistics.information import (
+    Fit,
+    NotIdentifiableError,
+    absorb,
+    empty,
+    solve,
+)
 from scarid_cli.arrays import Array, Marks, Numbers
 
 BLOCK = 0.5  # s: residuals so far apart are taken to be independent
 BLOCKS = (10, 128)  # of a record at least, and at most
 LAG = 0.025  # s: what soft sensors delay
 PIECE = 4096  # samples that are worked on at once
+SLOW = 0.1  # of the usual velocity
 FLAT = 1e-9  # of the greatest eigenvalue: directions that the lagged motion does not have
 Z95 = 1.959963984540054
 
@@ -46,13 +53,17 @@ class Belief:
 
     `errors` are standard errors robust to autocorrelation, `quantile` times which is half of a 95 %
     interval; `lag_share` is the part of the residual that the motion 25 ms before and after
-    explains: near 0 if all signals belong to the same instant, near 1 if they do not.
+    explains: near 0 if all signals belong to the same instant, near 1 if they do not. `moved` is by
+    how many errors the estimates move if the rows slower than `slow` (joints) [rad/s or m/s] are
+    left out and a delay of the torques is fitted as well.
     """
 
     errors: Array
     quantile: float
     joints: tuple[Joint, ...]
     lag_share: float
+    moved: Array
+    slow: Array
 
 
 def believe(rows: Rows, fit: Fit, h: float, total: float, parameters: int) -> Belief:
@@ -63,12 +74,33 @@ def believe(rows: Rows, fit: Fit, h: float, total: float, parameters: int) -> Be
     joints = _joints(rows, fit)
     covariance, blocks = jackknife(rows, fit, h)
     share = rows.samples / total if total > rows.samples else 1.0
+    errors: Array = np.sqrt(share * np.diag(covariance))
+    slow = SLOW * np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
+    fast = replace(rows, scales=rows.scales * (np.abs(rows.motion[1].T) >= slow))
+    other = with_delay_fitted(fast, fit, h, joints, parameters)
     return Belief(
-        errors=np.sqrt(share * np.diag(covariance)),
+        errors=errors,
         quantile=t95(blocks - 1),
         joints=joints,
-        lag_share=lag_share(rows, h, joints, parameters),
+        lag_share=lag_share(fast, h, joints, parameters),
+        moved=(other - fit.estimates[:parameters]) / errors[:parameters],
+        slow=slow,
     )
+
+
+def with_delay_fitted(
+    rows: Rows, fit: Fit, h: float, joints: tuple[Joint, ...], parameters: int
+) -> Array:
+    """The estimates with the delay of the torques fitted as well; nan if that is singular."""
+    own = replace(rows, W=rows.W[:, :, :parameters])
+    wide = with_delay(own, fit.estimates[:parameters], h)
+    weights = np.array([1.0 / j.deviation if j.deviation > 0.0 else 0.0 for j in joints])
+    scales = np.ascontiguousarray(rows.scales * weights)
+    state, _ = absorb(empty(parameters + 1), wide.W, wide.y, scales)
+    try:
+        return solve(state).estimates[:parameters]
+    except NotIdentifiableError:
+        return np.full(parameters, np.nan)
 
 
 def jackknife(rows: Rows, fit: Fit, h: float) -> tuple[Array, int]:
@@ -167,6 +199,8 @@ def _joint(y: Array, residual: Array, counts: Marks, at: Numbers) -> Joint:
 
 def lag_share(rows: Rows, h: float, joints: tuple[Joint, ...], parameters: int) -> float:
     """The part of the residual that W a lag earlier and later explains, joints weighted alike.
+
+    Of rows that are not slow: what dry friction does at rest is another matter.
 
     Torques and derivatives that belong to different instants, or derivatives that are mostly noise,
     make the neighbours of a row say more of its torque than the row itself.

@@ -16,6 +16,7 @@ LAGGED = 0.5  # of the residual that the neighbours explain: biased beyond
 DOUBT = 30.0  # %: a parameter with a greater relative deviation is not known
 WEAK = 1e4  # scaled condition number from which a combination of parameters is not determined
 POOR = 0.8  # R2 of a joint below which the model does not tell its torque
+DEVIATIONS = 3.0  # that an estimate may move by
 NOISE = 3.0  # times the torque noise: less is no torque
 FRICTION = ("viscous", "coulomb")  # terms that cannot be negative
 
@@ -52,7 +53,11 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     if hopeless:
         return Verdict(NOT_IDENTIFIABLE, (*hopeless, *_summary(evidence)))
     unknown = _unknown(evidence)
-    wrong = [*_biased(evidence.belief), *_poor(joints), *_impossible(evidence, robot)]
+    wrong = [
+        *(_biased(evidence.belief) or _moved(evidence.belief, robot)),
+        *_poor(joints),
+        *_impossible(evidence, robot),
+    ]
     if 2 * len(unknown) > len(evidence.names):
         wrong.append(f"{len(unknown)} of {len(evidence.names)} parameters are not known")
     uncertain = (
@@ -88,9 +93,25 @@ def _biased(belief: Belief | None) -> list[str]:
         return []
     return [
         f"biased: the motion 25 ms before and after explains {100 * belief.lag_share:.0f} % of the "
-        "residual, so torques and derivatives do not belong to the same instant (scarid "
-        "differentiate --match), the derivatives are mostly noise, or a force acts that the model "
-        "does not have"
+        "residual (signals of different instants, see scarid differentiate --match; noisy "
+        "derivatives; or a force that the model lacks)"
+    ]
+
+
+def _moved(belief: Belief | None, robot: Robot) -> list[str]:
+    """Estimates that rely on what slow rows say of dry friction, or on a delay."""
+    if belief is None or not any(p.term.startswith("coulomb") for p in robot.parameters):
+        return []
+    moved = [
+        name for name, x in zip(robot.names, belief.moved, strict=False) if abs(x) > DEVIATIONS
+    ]
+    if not moved:
+        return []
+    slow = ",".join(f"{v:.1g}" for v in belief.slow)
+    most = np.nanmax(np.abs(belief.moved))
+    return [
+        f"{_listed(moved)} would move by up to {most:.1f} deviations without the slow rows and "
+        f"with the torques' delay fitted (--drop-slow {slow} --align)"
     ]
 
 
@@ -109,7 +130,7 @@ def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
     return [
         f"{name} is negative ({estimate:.3g}), which friction cannot be"
         for name, estimate, error in rows
-        if terms.get(name, "").startswith(FRICTION) and estimate < -3.0 * error
+        if terms.get(name, "").startswith(FRICTION) and estimate < -DEVIATIONS * error
     ]
 
 
