@@ -50,6 +50,7 @@ def plain(W: Array, y: Array) -> Rows:
     samples, joints, _ = W.shape
     motion = np.zeros((4, joints, samples))
     motion[3] = y.T
+    W, y = np.ascontiguousarray(W), np.ascontiguousarray(y)
     return Rows(W, y, np.ones((samples, joints)), np.arange(samples), motion)
 
 

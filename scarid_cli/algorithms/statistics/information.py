@@ -166,10 +166,11 @@ def weakest(covariance: Array) -> tuple[float, Array]:
 
     From the covariance of the estimates, so that units do not matter.
     """
-    gram = np.linalg.inv(covariance)
+    errors = np.sqrt(np.diag(covariance))
+    gram = np.linalg.inv(covariance / np.outer(errors, errors))
     length = np.sqrt(np.diag(gram))
     values, directions = np.linalg.eigh(gram / np.outer(length, length))
-    free = directions[:, 0] / length
+    free = directions[:, 0] / length * errors
     return float(np.sqrt(values[-1] / max(values[0], 1e-300))), free / np.linalg.norm(free)
 
 

@@ -1,0 +1,159 @@
+"""Estimators that know the robot: Stribeck friction, instruments, the Kalman filter."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.signal
+
+from scarid_cli.algorithms.decimation import decimated
+from scarid_cli.algorithms.estimators import ekf, iv, separable
+from scarid_cli.algorithms.estimators.ekf import forward
+from scarid_cli.algorithms.estimators.ls import Estimator as LeastSquares
+from scarid_cli.algorithms.plants.loop import mechanism
+from scarid_cli.algorithms.regression import Rows, plain, rows_of
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.arrays import Array
+from scarid_cli.errors import UsageFault
+
+H = 0.005
+SCARA = load("scara2")
+T = np.arange(8000) * H
+RATES = ((1.1, 0.37), (1.7, 0.53))
+
+
+def exact() -> Array:
+    """Position, velocity and acceleration (3, joints, samples) of sines."""
+    sines = [
+        [np.sin(a * T) + 0.6 * np.sin(b * T + 1.0) for a, b in RATES],
+        [a * np.cos(a * T) + 0.6 * b * np.cos(b * T + 1.0) for a, b in RATES],
+        [-a * a * np.sin(a * T) - 0.6 * b * b * np.sin(b * T + 1.0) for a, b in RATES],
+    ]
+    return np.array(sines)
+
+
+def with_torques(extra: Array, noise: float = 0.02, seed: int = 0) -> Rows:
+    """The exact motion with the torques of the SCARA, more friction and noise."""
+    motion = exact()
+    tau = SCARA.torques(SCARA.regressor(*motion), SCARA.apriori) + extra
+    tau = tau + noise * np.random.default_rng(seed).standard_normal(tau.shape)
+    return rows_of(SCARA, np.concatenate((motion, tau[None])), np.arange(len(T)))
+
+
+def fitted(estimator: Any, rows: Rows, initial: Array | None = None) -> Any:
+    solver = estimator.for_robot(SCARA, H) if hasattr(estimator, "for_robot") else estimator
+    start = np.zeros(rows.W.shape[2]) if initial is None else initial
+    return solver.fit(solver.step(solver.init(start), rows)[0])
+
+
+# Stribeck friction
+
+STRIBECK = {"Fst1": 0.8, "Fst2": 0.2, "vs1": 0.15, "vs2": 0.3}
+
+
+def stribeck(dq: Array) -> Array:
+    peaks, velocities = np.array([[0.8], [0.2]]), np.array([[0.15], [0.3]])
+    friction: Array = peaks * np.sign(dq) * np.exp(-((dq / velocities) ** 2))
+    return friction
+
+
+def test_separable_recovers_a_stribeck_curve_and_halves_the_error_of_linear_friction() -> None:
+    rows = with_torques(stribeck(exact()[1]))
+    fit = fitted(separable.Estimator(), rows)
+    truth = np.concatenate((SCARA.apriori, list(STRIBECK.values())))
+    assert [name for name, _ in fit.added] == list(STRIBECK)
+    errors = fit.standard_errors()
+    assert np.all(np.abs(fit.estimates - truth) < 4.0 * errors)
+    np.testing.assert_allclose(fit.estimates[8:], truth[8:], rtol=0.03)
+    linear = fitted(LeastSquares(), rows)
+    residuals = [rows.y - rows.W @ linear.estimates, fit.rows.y - fit.rows.W @ fit.estimates]
+    linear_error, own_error = (np.sqrt((r**2).mean(axis=0)) for r in residuals)
+    assert np.all(own_error < 0.5 * linear_error)
+    np.testing.assert_allclose(own_error, 0.02, rtol=0.02)
+
+
+def test_the_robot_with_stribeck_friction_predicts_what_was_fitted() -> None:
+    rows = with_torques(stribeck(exact()[1]), noise=0.0)
+    robot = SCARA.with_stribeck({1: 0.15, 2: 0.3})
+    theta = np.concatenate((SCARA.apriori, [0.8, 0.2]))
+    q, dq, ddq, tau = rows.motion
+    np.testing.assert_allclose(robot.torques(robot.regressor(q, dq, ddq), theta), tau, atol=1e-12)
+
+
+def test_separable_without_dry_friction_is_refused() -> None:
+    smooth = replace(SCARA, parameters=SCARA.parameters[:1])
+    with pytest.raises(UsageFault, match="no joint with dry friction"):
+        separable.Estimator().for_robot(smooth, H)
+
+
+# Instruments
+
+
+def test_iv_without_a_reference_or_a_controller_is_refused() -> None:
+    solver = iv.Estimator().for_robot(SCARA, H)
+    with pytest.raises(UsageFault, match="q1_ref"):
+        solver.step(solver.init(np.zeros(8)), with_torques(np.zeros((2, len(T)))))
+    with pytest.raises(UsageFault, match="no controller"):
+        iv.Estimator().for_robot(replace(SCARA, control=None), H)
+
+
+# Kalman filter
+
+
+def test_the_forward_model_is_the_plant_s() -> None:
+    """Accelerations from the regressor against the closed form of the two-link arm."""
+    rng = np.random.default_rng(0)
+    q, dq, tau = rng.standard_normal((3, 2, 50))
+    zz1r, zz2, mx, my, fv1, fv2, fs1, fs2, *_ = mechanism(SCARA)
+    c, s = np.cos(q[1]), np.sin(q[1])
+    m12 = zz2 + mx * c - my * s
+    m11 = zz1r + zz2 + 2.0 * (mx * c - my * s)
+    h = mx * s + my * c
+    rest1 = -h * dq[1] * (2.0 * dq[0] + dq[1]) + fv1 * dq[0] + fs1 * np.sign(dq[0])
+    rest2 = h * dq[0] ** 2 + fv2 * dq[1] + fs2 * np.sign(dq[1])
+    b1, b2 = tau[0, 0] - rest1, tau[1, 0] - rest2
+    determinant = m11 * zz2 - m12**2
+    expected = [(zz2 * b1 - m12 * b2) / determinant, (m11 * b2 - m12 * b1) / determinant]
+    found = forward(SCARA, q, dq, tau[:, 0], SCARA.apriori)
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_the_kalman_filter_comes_from_wrong_parameters_to_the_true_ones() -> None:
+    """Friction of the filter's own, smooth kind; positions are exact, torques noisy."""
+    smooth = SCARA.smoothed(0.05)
+    motion = exact()[:, :, :4000]
+    tau = smooth.torques(smooth.regressor(*motion), SCARA.apriori)
+    tau = tau + 0.02 * np.random.default_rng(0).standard_normal(tau.shape)
+    rows = rows_of(SCARA, np.concatenate((motion, tau[None])), np.arange(4000))
+    start = SCARA.apriori * 1.3
+    fit = fitted(ekf.Estimator(acceleration_noise=0.2), rows, start)
+    inertias = [SCARA.names.index(name) for name in ("ZZ1R", "ZZ2", "L1MX2")]
+    np.testing.assert_allclose(fit.estimates[inertias], SCARA.apriori[inertias], rtol=0.03)
+
+
+def test_the_kalman_filter_needs_initial_parameters() -> None:
+    with pytest.raises(UsageFault, match="--initial"):
+        ekf.Estimator().for_robot(SCARA, H).init(np.zeros(8))
+
+
+# Decimation
+
+
+def test_decimation_is_that_of_scipy() -> None:
+    """Where both keep the same samples; its padding differs, so the ends do."""
+    x = np.random.default_rng(0).standard_normal(2001).cumsum()
+    rows = decimated(plain(x[:, None, None], x[:, None]), 10)
+    expected = scipy.signal.decimate(x, 10, n=8, ftype="iir", zero_phase=True)
+    np.testing.assert_allclose(rows.W[80:-80, 0, 0], expected[80:-80], rtol=1e-6)
+    np.testing.assert_array_equal(rows.W[:, 0, 0], rows.y[:, 0])
+
+
+@pytest.mark.parametrize("samples", [200, 201, 207])
+def test_decimation_keeps_the_last_sample(samples: int) -> None:
+    rows = decimated(plain(np.ones((samples, 1, 1)), np.ones((samples, 1))), 10)
+    kept = np.arange(samples)[(samples - 1) % 10 :: 10]
+    assert kept[-1] == samples - 1
+    assert rows.at.tolist() == (kept // 10).tolist()
