@@ -25,7 +25,7 @@ FORMATS = {"csv": "csv", "parquet": "parquet", "arrow": "arrows", "arrow-file": 
 CHAINS = [
     *[f"scarid differentiate --method {name} LOG" for name in DIFFERENTIATORS.names],
     *[
-        f"scarid differentiate LOG | scarid identify -q --estimator {name}"
+        f"scarid differentiate LOG | scarid identify -q --estimator {name} --initial apriori"
         for name in ESTIMATORS.names
     ],
     "scarid filter LOG",

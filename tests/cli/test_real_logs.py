@@ -27,6 +27,62 @@ def test_emps_gives_its_published_mass(shell: Shell, real_logs: Path) -> None:
     assert float(rows["offset"]["estimate"]) == pytest.approx(-3.1648, rel=0.01)
 
 
+PUBLISHED_PIPE = (
+    "scarid filter --zero-phase --cutoff 100 -c q1 LOG --format arrow |"
+    " scarid differentiate --method central --no-match --format arrow |"
+)
+RECIPE = "--estimator ls --skip 49 --decimate 10 --variance sample"
+
+
+def test_emps_gives_its_published_figures_to_the_last_digit(shell: Shell, real_logs: Path) -> None:
+    """Janot, Gautier and Brunot 2019: estimates, relative deviations, condition number, errors."""
+    emps = real_logs / "emps"
+    pipe = PUBLISHED_PIPE.replace("LOG", f"{emps}/emps_train.csv")
+    cross = PUBLISHED_PIPE.replace("LOG", f"{emps}/emps_test_pulses.csv")
+    judge = " scarid validate --robot emps --parameters p.csv --skip 49 --decimate 10"
+    result = shell(
+        f"{pipe} scarid identify -q --robot emps {RECIPE} -o p.parquet &&"
+        " scarid convert p.parquet -o p.csv && cat p.csv &&"
+        " scarid info p.parquet | grep ^condition_number &&"
+        f" {pipe} {judge} | tail -1 && {cross} {judge} | tail -1"
+    )
+    assert result.status == 0, result.err
+    *parameters, condition, direct, pulses = result.out.splitlines()
+    rows = [row.split(",") for row in parameters[1:]]
+    assert [row[0] for row in rows] == ["M", "Fv", "Fc", "offset"]
+    estimates = [f"{float(row[2]):.4f}" for row in rows]
+    assert estimates == ["95.1089", "203.5034", "20.3935", "-3.1648"]
+    deviations = [f"{float(row[4]):.4f}" for row in rows]
+    assert deviations == ["0.1141", "0.5631", "0.4964", "1.4021"]
+    assert condition.split() == ["condition_number", "25.9883"]
+    assert f"{float(direct.split(',')[4]):.4f}" == "4.0834"
+    assert f"{float(pulses.split(',')[4]):.4f}" == "5.9824"
+
+
+def test_emps_with_asymmetric_friction_gives_its_published_figures(
+    shell: Shell, real_logs: Path
+) -> None:
+    pipe = PUBLISHED_PIPE.replace("LOG", f"{real_logs}/emps/emps_train.csv")
+    robot = "--robot $SAMPLES/emps-asymmetric.toml"
+    result = shell(
+        f"{pipe} tee motion.arrows | scarid identify -q {robot} {RECIPE} -o p.csv &&"
+        f" cut -d, -f3 p.csv && scarid validate {robot} --parameters p.csv --skip 49 --decimate 10 motion.arrows"
+    )
+    assert result.status == 0, result.err
+    lines = result.out.splitlines()
+    estimates = [f"{float(x):.4f}" for x in lines[1:6]]
+    assert estimates == ["95.1540", "166.7061", "20.1440", "240.4236", "20.6277"]
+    assert f"{float(lines[-1].split(',')[4]):.4f}" == "3.1117"
+
+
+def test_the_verdict_tells_a_real_log_that_is_not_matched(shell: Shell, real_logs: Path) -> None:
+    pipe = (
+        f"scarid differentiate MATCH {real_logs}/emps/emps_train.csv | scarid identify --robot emps"
+    )
+    assert "good: 4 of 4 parameters" in shell(pipe.replace("MATCH", "--match")).err
+    assert "doubtful: biased" in shell(pipe.replace("MATCH", "--no-match")).err
+
+
 @pytest.mark.parametrize(("method", "within"), [("p2smd", 0.02), ("ed-fir", 0.003)])
 def test_matching_gives_emps_its_mass_online(
     method: str, within: float, shell: Shell, real_logs: Path

@@ -1,0 +1,124 @@
+"""Options of identify that need more than one table: going on, treatments, essential parameters."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable
+
+import pytest
+from conftest import Result
+
+Shell = Callable[..., Result]
+MOTION = "scarid differentiate $SAMPLES/scara2.csv -o motion.csv"
+HALVES = (
+    f"{MOTION} && head -301 motion.csv > first.csv && (head -1 motion.csv; tail -n +302 motion.csv)"
+    " > second.csv"
+)
+
+
+@pytest.mark.parametrize("options", ["", "--forgetting 0.999,Fs1=0.99", "--estimator wls",
+                                     "--estimator ekf --initial apriori"])  # fmt: skip
+def test_two_logs_one_after_the_other_are_as_one(options: str, shell: Shell) -> None:
+    result = shell(
+        f"{HALVES} && scarid identify -q {options} motion.csv > whole.csv &&"
+        f" scarid identify -q {options} --save state.npz first.csv > /dev/null &&"
+        f" scarid identify -q {options} --from state.npz second.csv | cmp - whole.csv"
+    )
+    assert (result.status, result.out, result.err) == (0, "", "")
+
+
+def test_a_saved_state_is_for_the_same_estimation(shell: Shell) -> None:
+    result = shell(
+        f"{HALVES} && scarid identify -q --save state.npz first.csv > /dev/null &&"
+        " scarid identify --from state.npz --forgetting 0.9 second.csv"
+    )
+    assert result.status == 2
+    assert "saved with settings" in result.err
+    assert "go on with the same" in result.err
+
+
+@pytest.mark.parametrize(
+    ("make", "status", "told"),
+    [
+        ("true", 2, "no such file"),
+        ("echo no > state.npz", 65, "found no state"),
+        ("scarid identify -q --save state.npz motion.csv | head -1 > /dev/null;"
+         "truncate -s 1000 state.npz", 65, "found no state"),
+    ],
+    ids=["missing", "not a state", "cut"],
+)  # fmt: skip
+def test_what_is_no_state_is_told(make: str, status: int, told: str, shell: Shell) -> None:
+    result = shell(f"{MOTION}; {make}; scarid identify --from state.npz motion.csv")
+    assert result.status == status
+    assert told in result.err
+    assert len(result.err.splitlines()) == 1
+
+
+def test_a_failed_estimation_saves_no_state(shell: Shell) -> None:
+    result = shell(
+        f"{MOTION}; awk 'NR == 50 {{sub(/^[^,]*/, \"x\")}} 1' motion.csv > bad.csv;"
+        " scarid identify --save state.npz bad.csv -o p.csv; ls"
+    )
+    assert "state.npz" not in result.out
+    assert "p.csv" not in result.out
+
+
+def rows_of(result: Result) -> dict[str, dict[str, str]]:
+    assert result.status == 0, result.err
+    return {row["parameter"]: row for row in csv.DictReader(io.StringIO(result.out))}
+
+
+def test_essential_parameters_are_kept_and_the_others_are_zero(shell: Shell) -> None:
+    result = shell(
+        "scarid trajgen -q | scarid simulate | scarid differentiate |"
+        " scarid identify --estimator wls --drop-slow 0.1 --essential"
+    )
+    rows = rows_of(result)
+    assert "dropped L1MY2" in result.err
+    assert float(rows["L1MY2"]["estimate"]) == 0.0
+    assert rows["L1MY2"]["standard_error"] == rows["L1MY2"]["low"] == ""
+    assert float(rows["ZZ2"]["estimate"]) == pytest.approx(0.064, rel=0.01)
+
+
+def test_instruments_of_the_simulated_robot_agree_with_least_squares_on_a_clean_log(
+    shell: Shell,
+) -> None:
+    pipe = (
+        "scarid trajgen -q --seed 2 | scarid simulate --seed 2 | scarid differentiate |"
+        " scarid identify --estimator NAME --drop-slow 0.1"
+    )
+    least, instruments = (rows_of(shell(pipe.replace("NAME", name))) for name in ("wls", "iv"))
+    for name, row in instruments.items():
+        apart = abs(float(row["estimate"]) - float(least[name]["estimate"]))
+        assert apart < 3.0 * float(row["robust_error"]), name
+    assert "Durbin-Wu-Hausman p" in shell(pipe.replace("NAME", "iv")).err
+
+
+def test_stribeck_friction_goes_on_to_validate(shell: Shell) -> None:
+    result = shell(
+        f"{MOTION} && scarid identify -q --estimator separable motion.csv -o p.csv &&"
+        " cut -d, -f1,2 p.csv | tail -4 && scarid validate --parameters p.csv motion.csv"
+    )
+    assert result.status == 0, result.err
+    assert result.out.splitlines()[:4] == ["Fst1,N m", "Fst2,N m", "vs1,rad/s", "vs2,rad/s"]
+
+
+def test_friction_smoothed_alike_predicts_what_was_fitted(shell: Shell) -> None:
+    result = shell(
+        f"{MOTION} && scarid identify -q --estimator ls --smooth-sign 0.1 motion.csv -o p.csv &&"
+        " for v in 0.1 0.001; do scarid validate --parameters p.csv --smooth-sign $v motion.csv |"
+        " awk -F, 'NR > 1 { squares += $3 * $3 } END { print squares }'; done"
+    )
+    same, other = map(float, result.out.split())
+    assert same < other
+
+
+def test_the_metadata_hold_the_verdict_and_its_numbers(shell: Shell) -> None:
+    result = shell(
+        "scarid trajgen -q --format arrow | scarid simulate --format arrow |"
+        " scarid differentiate --format arrow | scarid identify -q --align --drop-slow 0.1"
+        " --estimator wls -o p.parquet && scarid info p.parquet"
+    )
+    for key in ("verdict", "reasons", "delay", "lag_share", "joints", "scaled_condition_number"):
+        assert f"\n{key} " in result.out
