@@ -31,6 +31,7 @@ def sections(results: Sequence[Result], values: published.Values | None = None) 
     traces = [r for r in results if isinstance(r, Trace)]
     torques = [r for r in results if isinstance(r, (Metrics, Prediction))]
     return [
+        *_verdicts(parameters),
         *published.settings(results, values or {}),
         *(logs(group) for group in _grouped(_of(results, Log), _experiment)),
         *(soft_sensors(group, colours) for group in _grouped(_of(results, Motion), _experiment)),
@@ -50,6 +51,20 @@ def sections(results: Sequence[Result], values: published.Values | None = None) 
             for group in _grouped(torques, lambda r: (r.joints, r.name.experiment))
         ),
     ]
+
+
+def _verdicts(results: Sequence[Parameters]) -> list[Section]:
+    """Whether to believe each estimation, before anything else."""
+    rows = [
+        (_caption(r, r.name.label), r.extra["verdict"], "; ".join(r.extra["reasons"]))
+        for r in results
+        if "verdict" in r.extra
+    ]
+    if not rows:
+        return []
+    note = "Whether the estimates can be relied on, and why."
+    headers = ("method", "verdict", "why")
+    return [Section("Verdict", note, headers, tuple(rows), texts=3, keys=3, prose=True)]
 
 
 def _of(results: Sequence[Result], kind: type[R]) -> list[R]:
@@ -82,7 +97,13 @@ def _estimates(group: Sequence[Parameters], colours: dict[str, int]) -> Section:
     keys = [first.names, first.units]
     if robot:
         keys.append(tuple(f"{value:.4g}" for value in robot.apriori))
-    columns = [_cells(r, values) for r in group for values in (r.estimates, r.deviations)]
+    robust = any(r.robust for r in group)
+    columns = [
+        _cells(r, values)
+        for r in group
+        for values in (r.estimates, r.deviations, *([_robust(r)] if robust else []))
+    ]
+    percents = ("%", "robust %") if robust else ("%",)
     known = [_greatest(r.deviations) for r in group]
     bars = Bars(
         caption="Largest relative standard deviation of a parameter, per method (eq. 34). "
@@ -96,17 +117,22 @@ def _estimates(group: Sequence[Parameters], colours: dict[str, int]) -> Section:
     )
     return Section(
         title=_titled("Parameters", first),
-        note=f"{_of_robot(group)}Each estimate with its relative standard deviation in % (eq. 34).",
+        note=f"{_of_robot(group)}Each estimate with its relative standard deviation in % (eq. 34)"
+        + (", and one that autocorrelated residuals cannot shrink." if robust else "."),
         headers=(
             *("parameter", "unit", "a priori")[: len(keys)],
-            *(header for name in shown for header in (name, "%")),
+            *(header for name in shown for header in (name, *percents)),
         ),
         rows=tuple(zip(*keys, *columns, strict=True)),
         texts=2,
         keys=len(keys),
-        group=2,
+        group=1 + len(percents),
         plots=(bars,) if any(map(isfinite, known)) else (),
     )
+
+
+def _robust(result: Parameters) -> tuple[float, ...]:
+    return result.robust or (nan,) * len(result.names)
 
 
 def _greatest(values: Sequence[float]) -> float:
@@ -115,7 +141,7 @@ def _greatest(values: Sequence[float]) -> float:
 
 def _fit(group: Sequence[Parameters]) -> Section | None:
     """What the metadata tell of the estimation; CSV tells nothing."""
-    keys = ("condition_number", "samples", "residual_deviation")
+    keys = ("condition_number", "samples", "residual_deviation", "lag_share")
     group = [r for r in group if any(key in r.extra for key in keys)]
     if not group:
         return None
@@ -124,8 +150,10 @@ def _fit(group: Sequence[Parameters]) -> Section | None:
     unit = f" [{units.pop()}]" if len(units) == 1 else ""
     return Section(
         title=_titled("Fit", group[0]),
-        note="Condition number of the observation matrix W; standard deviation of the residual.",
-        headers=("method", "condition number", "samples", f"residual deviation{unit}"),
+        note="Condition number of the observation matrix W; standard deviation of the residual; "
+        "part of it that the motion 25 ms before and after explains, near 1 if torques and "
+        "derivatives do not belong to the same instant.",
+        headers=("method", "condition number", "samples", f"residual deviation{unit}", "lag share"),
         rows=tuple(
             (name, *(number(r.extra.get(key)) for key in keys))
             for name, r in zip(_shown(group), group, strict=True)

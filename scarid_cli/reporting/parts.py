@@ -61,7 +61,7 @@ class Section:
     """A table under a title and a note; without rows only its plots are shown.
 
     The first `keys` columns tell what a row is, the first `texts` of them in words; the others
-    belong together in groups of `group`.
+    belong together in groups of `group`. With `prose` the last column holds sentences.
     """
 
     title: str
@@ -71,6 +71,7 @@ class Section:
     texts: int = 1
     keys: int = 1
     group: int = 1
+    prose: bool = False
     plots: tuple[Plot, ...] = ()
 
 

@@ -55,6 +55,7 @@ def _published(result: Result, values: Values) -> Result | None:
             estimates=tuple(of(p, "estimate") for p in result.names),
             deviations=tuple(of(p, "relative_deviation") for p in result.names),
             extra={},
+            robust=(),
         )
     if isinstance(result, Trace):
         errors = tuple(of(p, "rms_error") for p in result.names)

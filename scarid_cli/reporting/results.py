@@ -26,7 +26,10 @@ REPORTED = ("parameters", "trace", "metrics", "prediction", "motion", "measureme
 
 @dataclass(frozen=True)
 class Parameters:
-    """Estimates with their relative standard deviations [%]; nan is unknown."""
+    """Estimates with their relative standard deviations [%]; nan is unknown.
+
+    `robust` ones are those that autocorrelated residuals cannot shrink.
+    """
 
     name: Name
     robot: Robot | None
@@ -36,6 +39,7 @@ class Parameters:
     deviations: tuple[float, ...]
     extra: dict[str, Any]
     commands: tuple[str, ...] = ()
+    robust: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -146,7 +150,16 @@ def _parameters(
         deviations=_numbers(rows, "relative_deviation"),
         extra=table.meta.extra,
         commands=tuple(entry["command"] for entry in table.meta.history),
+        robust=_relative(_numbers(rows, "robust_error"), rows["estimate"]),
     )
+
+
+def _relative(errors: Sequence[float], estimates: Sequence[float]) -> tuple[float, ...]:
+    """In percent; nothing if none is known."""
+    found = [
+        100.0 * e / abs(x) if x else float("nan") for e, x in zip(errors, estimates, strict=True)
+    ]
+    return tuple(found) if np.isfinite(found).any() else ()
 
 
 def _metrics(table: Table, name: Name, robot: Robot | None, _others: Sequence[Robot]) -> Metrics:

@@ -30,7 +30,7 @@ def terminal(sections: Sequence[Section]) -> str:
                 console.print(section.note, style="dim")
             for part in split(section, width, GAP) if console.is_terminal else [section]:
                 # What does not fit even so is wrapped by the terminal: no number is cut.
-                console.width = max(width, sum(_widths(part)))
+                console.width = width if part.prose else max(width, sum(_widths(part)))
                 console.print(_table(part))
                 console.print()
     # A name that the terminal cannot show does not end the report.
@@ -51,7 +51,8 @@ def _table(section: Section) -> Table:
     table = Table(box=RULE, show_edge=False, padding=(0, GAP - 1, 0, 0), pad_edge=False)
     for index, header in enumerate(section.headers):
         left = index < section.texts
-        table.add_column(header, justify="left" if left else "right", no_wrap=True)
+        prose = section.prose and index == len(section.headers) - 1
+        table.add_column(header, justify="left" if left else "right", no_wrap=not prose)
     for row in section.rows:
         table.add_row(*row)
     return table

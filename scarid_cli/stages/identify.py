@@ -214,7 +214,10 @@ def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[s
     extra: dict[str, Any] = {
         "condition_number": fit.condition if np.isfinite(fit.condition) else None,
         "scaled_condition_number": scaled,
-        "residual_deviation": None if np.isnan(fit.variance) else float(np.sqrt(fit.variance)),
+        # Of weighted rows it is near 1 and says nothing; `joints` has theirs.
+        "residual_deviation": float(np.sqrt(fit.variance))
+        if fit.variance >= 0.0 and fit.whitening is None
+        else None,
         "samples": found.samples,
         "verdict": judged.grade,
         "reasons": list(judged.reasons),

@@ -66,7 +66,8 @@ def test_emps_with_asymmetric_friction_gives_its_published_figures(
     robot = "--robot $SAMPLES/emps-asymmetric.toml"
     result = shell(
         f"{pipe} tee motion.arrows | scarid identify -q {robot} {RECIPE} -o p.csv &&"
-        f" cut -d, -f3 p.csv && scarid validate {robot} --parameters p.csv --skip 49 --decimate 10 motion.arrows"
+        f" cut -d, -f3 p.csv && scarid validate {robot} --parameters p.csv --skip 49"
+        " --decimate 10 motion.arrows"
     )
     assert result.status == 0, result.err
     lines = result.out.splitlines()
