@@ -5,6 +5,7 @@
 # make bench   start-up, time per sample, memory
 # make bench-differentiators   every differentiator and its peers on known signals
 # make crossvalidate           online identification of twenty simulated experiments
+# make montecarlo              coverage of the stated intervals, and whether bias is caught
 # make emps EMPS=emps_train.csv   every differentiator on the real EMPS log
 # make docs    docs/tables.md from schemas/
 # make samples the small log and parameters under samples/
@@ -18,7 +19,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test lint bench bench-differentiators crossvalidate emps docs samples clean
+.PHONY: all paper paper-montecarlo repetition test lint bench bench-differentiators crossvalidate montecarlo emps docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -48,18 +49,21 @@ lint: $(VENV)/tested
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-bench: $(VENV)/tested
-	$(BIN)/python benchmarks/bench.py
-
 $(VENV)/compared: $(VENV)/tested
 	$(PIP) install --editable '.[compare]'
 	@touch $@
+
+bench: $(VENV)/compared
+	$(BIN)/python benchmarks/bench.py
 
 bench-differentiators: $(VENV)/compared
 	$(BIN)/python benchmarks/differentiators.py
 
 crossvalidate: $(VENV)/tested
 	$(BIN)/python benchmarks/crossvalidation.py
+
+montecarlo: $(VENV)/tested
+	$(BIN)/python benchmarks/montecarlo.py
 
 EMPS ?= ../shared/data/emps/emps_train.csv
 emps: $(VENV)/tested

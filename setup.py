@@ -17,13 +17,16 @@ DIRECTIVES = {
     "initializedcheck": False,
 }
 
+# Loops as short as a regressor has columns: the checks before vectors cost more than they save.
+SHORT_LOOPS = {"information": ["-fno-tree-vectorize"]}
+
 extensions = cythonize(
     [
         Extension(
             f"scarid_cli.kernels.{pxd.stem}",
             [str(pxd.with_suffix(".py"))],
             # No contraction to fused multiply-add: compiled and interpreted bits stay equal.
-            extra_compile_args=["-O3", "-ffp-contract=off"],
+            extra_compile_args=["-O3", "-ffp-contract=off", *SHORT_LOOPS.get(pxd.stem, [])],
             define_macros=[("Py_LIMITED_API", "0x030B0000")],
             py_limited_api=True,
         )

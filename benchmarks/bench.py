@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.regression import plain
 from scarid_cli.kernels import fir, information, moments, p2smd, plant, sos
 
 SCARID = str(Path(sys.executable).parent / "scarid")
@@ -113,9 +114,9 @@ def kernels() -> None:
     def update(module: ModuleType, k: int, *, trace: bool) -> None:
         triangle = np.column_stack([0.1 * np.eye(8), np.zeros(8)])
         out = np.empty((k if trace else 0, 8))
-        keep = np.full(8, np.sqrt(0.999) if trace else 1.0)
+        factors = np.full(8, 0.999 if trace else 1.0)
         work, sums, scales = np.empty(9), np.zeros(3), np.ones((k, 2))
-        module.update(W[:k], y[:k], scales, triangle, work, sums, out, keep, 1e-5)
+        module.update(W[:k], y[:k], scales, triangle, work, sums, out, factors, 1e-12)
 
     runs: dict[str, tuple[ModuleType, Callable[[ModuleType, int], object]]] = {
         "p2smd": (p2smd, lambda m, k: m.differentiate(
@@ -161,6 +162,43 @@ def differentiators() -> None:
             print(f"  {name:30} {forms[0]:9.0f} {forms[1]:12.0f}")
     implicit = DIFFERENTIATORS.load("p2smd")(implicit=1)
     print(f"  {'p2smd, implicit':30} {best(lambda: run(implicit), len(q)):9.0f}")
+
+
+def estimators() -> None:
+    """Recursive least squares of padasip and statsmodels, the same estimates, per row of eight."""
+    import padasip
+    import statsmodels.api as sm
+
+    rng = np.random.default_rng(0)
+    rows, theta = 20_000, np.arange(1.0, 9.0)
+    x = rng.standard_normal((rows, 8))
+    y = x @ theta + 0.1 * rng.standard_normal(rows)
+    regression = plain(x[:, None, :], y[:, None])
+
+    def ours(p0: float, *, trace: bool) -> Any:
+        rls = ESTIMATORS.load("rls")(p0=p0)
+        state, _ = rls.step(rls.init(np.zeros(8)), regression, trace=trace)
+        return rls.fit(state).estimates
+
+    def padasip_s() -> Any:
+        filtering = padasip.filters.FilterRLS(8, mu=1.0, eps=0.01, w=np.zeros(8))
+        filtering.run(y, x)
+        return filtering.w
+
+    def statsmodels_s() -> Any:
+        return sm.RecursiveLS(y, x).fit().params
+
+    print(f"\nRecursive least squares, ns a row of eight parameters, {rows} rows")
+    # statsmodels starts diffuse, padasip from P0 = 100 I.
+    for name, peer, p0 in (("padasip", padasip_s, 1e2), ("statsmodels", statsmodels_s, 1e9)):
+        apart = np.abs(np.asarray(peer()) / ours(p0, trace=False) - 1.0).max()
+        theirs = best(peer, rows)
+        own = [best(lambda trace=t: ours(p0, trace=trace), rows) for t in (False, True)]  # noqa: B023
+        print(
+            f"  {name:14} {theirs:6.0f}; scarid {own[0]:.0f}, {theirs / own[0]:.0f} times as fast;"
+            f" with estimates after each row {own[1]:.0f}, {theirs / own[1]:.0f} times;"
+            f" estimates within {apart:.1g}"
+        )
 
 
 def stream(rows: int) -> None:
@@ -228,6 +266,7 @@ def main() -> None:
         startup(Path(folder))
         kernels()
         differentiators()
+        estimators()
         memory(Path(folder))
 
 

@@ -11,10 +11,10 @@ cdef extern from "math.h" nogil:
 cpdef update(
     const double[:, :, ::1] W, const double[:, ::1] y, const double[:, ::1] scales,
     double[:, ::1] triangle, double[::1] row, double[::1] sums, double[:, ::1] estimates,
-    const double[::1] keep, double floor,
+    const double[::1] forgetting, double floor,
 )
 
-@cython.locals(j=cython.Py_ssize_t, scale=double)
+@cython.locals(j=cython.Py_ssize_t, scale=double, weight=double)
 cdef void take(
     const double[:, :, ::1] W, const double[:, ::1] y, const double[:, ::1] scales,
     double[:, ::1] triangle, double[::1] row, double[::1] sums,
@@ -22,22 +22,27 @@ cdef void take(
 ) noexcept nogil
 
 @cython.locals(i=cython.Py_ssize_t, count=cython.Py_ssize_t)
-cdef bint differs(const double[::1] keep, double value, Py_ssize_t p) noexcept nogil
+cdef bint differs(const double[::1] factors, double value, Py_ssize_t p) noexcept nogil
 
-@cython.locals(
-    i=cython.Py_ssize_t, j=cython.Py_ssize_t, z=double, back=double, theta=double,
-    several=cython.bint,
-)
+@cython.locals(i=cython.Py_ssize_t, theta=double, back=double, several=cython.bint)
 cdef void forget(
-    double[:, ::1] triangle, double[::1] row, const double[::1] keep, double floor,
+    double[:, ::1] triangle, double[::1] row, const double[::1] forgetting, double floor,
     Py_ssize_t turn, Py_ssize_t p,
 ) noexcept nogil
 
-@cython.locals(
-    i=cython.Py_ssize_t, j=cython.Py_ssize_t, x=double, d=double, r=double, c=double, s=double,
-    t=double, u=double,
-)
-cdef void rotate(double[:, ::1] triangle, double[::1] row, Py_ssize_t p) noexcept nogil
+@cython.locals(j=cython.Py_ssize_t, z=double, ratio=double)
+cdef void tilt(
+    double[:, ::1] triangle, double[::1] theta, const double[::1] forgetting, Py_ssize_t i,
+    Py_ssize_t p,
+) noexcept nogil
 
-@cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, t=double)
+@cython.locals(
+    i=cython.Py_ssize_t, j=cython.Py_ssize_t, x=double, d=double, pull=double, total=double,
+    c=double, s=double, t=double, u=double,
+)
+cdef double rotate(
+    double[:, ::1] triangle, double[::1] row, double weight, Py_ssize_t p,
+) noexcept nogil
+
+@cython.locals(i=cython.Py_ssize_t, j=cython.Py_ssize_t, x=double)
 cdef void solve(double[:, ::1] triangle, double[::1] row, Py_ssize_t p) noexcept nogil

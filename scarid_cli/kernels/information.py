@@ -1,42 +1,44 @@
-"""Recursive least squares in square-root information form, by Givens rotations.
+"""Recursive least squares in information form, by Givens rotations without square roots.
 
-The triangle R and the vector z say all that the rows so far say of theta: |R theta - z|^2 plus
-the residual is the sum of squares. No normal equations are formed, so no digits are lost, and
-the covariance (R' R)^-1 is symmetric positive definite by construction. A triangle of zeros is
-plain least squares; P0^(-1/2) and a forgetting factor make it recursive least squares.
+Gentleman 1973 ("Least squares computations by Givens transformations without square roots"), as in
+algorithm AS 274. The unit triangle R, the weights d of its rows and the vector z say all that the
+rows so far say of theta: the sum of d (R theta - z)^2, plus the residual, is the sum of squares. No
+normal equations are formed, so no digits are lost, and the covariance (R' d R)^-1 is symmetric
+positive definite by construction. Weights of zero are plain least squares; P0^-1 and a forgetting
+factor make it recursive least squares.
 """
 
 from math import sqrt
 
 
-def update(W, y, scales, triangle, row, sums, estimates, keep, floor):
+def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor):
     """Take the rows of W and y in, sample by sample; write theta after each to estimates.
 
     W (samples, joints, parameters), y (samples, joints), scales (samples, joints): what each row is
-    multiplied by, 0 leaves it out; triangle (parameters, parameters + 1) holding R and z, row
-    (parameters + 1): work space; sums: the sum of squares not explained, the number of rows, both
-    forgetting, and the samples so far; estimates (samples or 0, parameters). All but W, y, scales
-    and keep are changed in place. keep (parameters): square roots of the forgetting factors per
-    sample; the residual forgets like the first of them. floor: see `forget`.
+    multiplied by, 0 leaves it out; triangle (parameters, parameters + 1) holding R and z, with d
+    in place of the ones; row (parameters + 1): work space; sums: the sum of squares not explained,
+    the number of rows, both forgetting, and the samples so far; estimates (samples or 0,
+    parameters). All but W, y, scales and forgetting are changed in place. forgetting (parameters):
+    factors per sample; the residual forgets by the first of them. floor: see `forget`.
     """
     p = triangle.shape[0]
     samples = W.shape[0]
     joints = W.shape[1]
-    if W.shape[2] != p or triangle.shape[1] != p + 1 or estimates.shape[1] != p or len(keep) != p:
+    if W.shape[2] != p or triangle.shape[1] != p + 1 or estimates.shape[1] != p:
         raise ValueError("information: numbers of parameters differ")
     if y.shape[0] != samples or y.shape[1] != joints or len(row) != p + 1 or len(sums) != 3:
         raise ValueError("information: numbers of samples or joints differ")
-    if scales.shape[0] != samples or scales.shape[1] != joints:
-        raise ValueError("information: numbers of scales differ")
+    if scales.shape[0] != samples or scales.shape[1] != joints or len(forgetting) != p:
+        raise ValueError("information: numbers of scales or factors differ")
     traced = estimates.shape[0] > 0
     if traced and estimates.shape[0] != samples:
         raise ValueError("information: numbers of samples and estimates differ")
-    forgets = differs(keep, 1.0, p)
+    forgets = differs(forgetting, 1.0, p)
     for k in range(samples):
         if forgets:
-            sums[0] = float(sums[0]) * float(keep[0]) * float(keep[0])
-            sums[1] = float(sums[1]) * float(keep[0]) * float(keep[0])
-            forget(triangle, row, keep, floor, int(float(sums[2])) % p, p)
+            sums[0] = float(sums[0]) * float(forgetting[0])
+            sums[1] = float(sums[1]) * float(forgetting[0])
+            forget(triangle, row, forgetting, floor, int(float(sums[2])) % p, p)
         for n in range(joints):
             take(W, y, scales, triangle, row, sums, k, n, p)
         sums[2] = float(sums[2]) + 1.0
@@ -52,69 +54,84 @@ def take(W, y, scales, triangle, row, sums, k, n, p):
     if scale == 0.0:
         return
     for j in range(p):
-        row[j] = scale * float(W[k, n, j])
-    row[p] = scale * float(y[k, n])
-    rotate(triangle, row, p)
-    sums[0] = float(sums[0]) + float(row[p]) * float(row[p])
+        row[j] = float(W[k, n, j])
+    row[p] = float(y[k, n])
+    weight = rotate(triangle, row, scale * scale, p)
+    sums[0] = float(sums[0]) + weight * float(row[p]) * float(row[p])
     sums[1] = float(sums[1]) + 1.0
 
 
-def differs(keep, value, p):
+def differs(factors, value, p):
     """Whether a factor is another than this."""
     count = 0
     for i in range(p):
-        count += float(keep[i]) != value
+        count += float(factors[i]) != value
     return count > 0
 
 
-def forget(triangle, row, keep, floor, turn, p):
+def forget(triangle, row, forgetting, floor, turn, p):
     """Let the information of each parameter count a little less; the estimates stay.
 
-    A little information, worth floor^2 in the long run, is given back to one parameter in turn, at
-    its present estimate: without excitation the covariance stays below about floor^-2, in every
-    direction.
+    A little information, worth the floor in the long run, is given back to one parameter in turn,
+    at its present estimate: without excitation the covariance stays below about 1 / floor, in
+    every direction.
     """
     solve(triangle, row, p)
-    several = differs(keep, float(keep[0]), p)
+    several = differs(forgetting, float(forgetting[0]), p)
     for i in range(p):
-        z = 0.0
-        for j in range(i, p):
-            triangle[i, j] = float(triangle[i, j]) * float(keep[j])
-            z += float(triangle[i, j]) * float(row[j])
-        triangle[i, p] = z if several else float(triangle[i, p]) * float(keep[0])
-    back = floor * sqrt(p * (1.0 - float(keep[turn]) * float(keep[turn])))
+        triangle[i, i] = float(triangle[i, i]) * float(forgetting[i])
+        if several:
+            tilt(triangle, row, forgetting, i, p)
     theta = float(row[turn])
     for i in range(p):
         row[i] = 0.0
-    row[turn] = back
-    row[p] = back * theta
-    rotate(triangle, row, p)
+    row[turn] = 1.0
+    row[p] = theta
+    back = floor * p * (1.0 - float(forgetting[turn]))
+    if back > 0.0:
+        rotate(triangle, row, back, p)
 
 
-def rotate(triangle, row, p):
-    """Turn one row into the triangle; what is left in row[p] is its share of the residual."""
+def tilt(triangle, theta, forgetting, i, p):
+    """Row i when the parameters forget at rates of their own: the same estimates solve it."""
+    z = float(theta[i])
+    for j in range(i + 1, p):
+        ratio = sqrt(float(forgetting[j]) / float(forgetting[i]))
+        triangle[i, j] = float(triangle[i, j]) * ratio
+        z += float(triangle[i, j]) * float(theta[j])
+    triangle[i, p] = z
+
+
+def rotate(triangle, row, weight, p):
+    """Turn one row into the triangle; row[p], with the weight that is left, is its residual."""
     for j in range(p):
         x = float(row[j])
         if x == 0.0:
             continue
         d = float(triangle[j, j])
-        r = sqrt(d * d + x * x)
-        if r == 0.0:  # both squares underflow
+        pull = weight * x
+        total = d + pull * x
+        if total == 0.0:  # the squares underflow
             continue
-        c = d / r
-        s = x / r
-        triangle[j, j] = r
+        c = d / total
+        s = pull / total
+        triangle[j, j] = total
+        weight = c * weight
         for i in range(j + 1, p + 1):
             t = float(triangle[j, i])
             u = float(row[i])
             triangle[j, i] = c * t + s * u
-            row[i] = c * u - s * t
+            row[i] = u - x * t
+        if weight == 0.0:
+            break
+    return weight
 
 
 def solve(triangle, row, p):
     """Back substitution: R theta = z, into the row."""
-    for i in range(p - 1, -1, -1):
-        t = float(triangle[i, p])
-        for j in range(i + 1, p):
-            t -= float(triangle[i, j]) * float(row[j])
-        row[i] = t / float(triangle[i, i])
+    for i in range(p):
+        row[i] = float(triangle[i, p])
+    for j in range(p - 1, 0, -1):
+        x = float(row[j])
+        for i in range(j):
+            row[i] = float(row[i]) - float(triangle[i, j]) * x

@@ -152,7 +152,7 @@ def test_rls_forgets_no_more_than_it_has_to(row: list[float]) -> None:
     fit = estimator.fit(state)
     assert np.isfinite(trace).all()
     np.testing.assert_allclose(W[-1] @ fit.estimates, W[-1] @ truth, rtol=1e-6)
-    assert np.linalg.eigvalsh(fit.unit_covariance).max() <= 2.0 * estimator.p0 / rls.FADED**2
+    assert np.linalg.eigvalsh(fit.unit_covariance).max() <= 2.0 * estimator.p0 / rls.FADED
 
 
 def test_rls_follows_a_parameter_that_changes_if_it_forgets() -> None:
@@ -367,7 +367,7 @@ def test_rls_without_excitation_stays_bounded_for_ten_million_updates() -> None:
     np.testing.assert_allclose(fit.estimates, before, rtol=1e-9)
     np.testing.assert_array_equal(fit.unit_covariance, fit.unit_covariance.T)
     sizes = np.linalg.eigvalsh(fit.unit_covariance)
-    assert 0.0 < sizes.min() <= sizes.max() <= 2.0 * estimator.p0 / rls.FADED**2
+    assert 0.0 < sizes.min() <= sizes.max() <= 2.0 * estimator.p0 / rls.FADED
 
 
 # Identifiability

@@ -140,8 +140,8 @@ def information(
     scales = rng.integers(0, 3, (samples, joints)) / 2.0
     triangle = np.column_stack((0.1 * np.eye(p), rng.standard_normal(p)))
     estimates = np.empty((samples if trace else 0, p))
-    keep = np.sqrt(np.resize(forgetting, p))
-    return [W, y, scales, triangle, np.empty(p + 1), rng.random(3), estimates, keep, 0.05]
+    factors = np.resize(forgetting, p).astype(float)
+    return [W, y, scales, triangle, np.empty(p + 1), rng.random(3), estimates, factors, 0.05]
 
 
 def moments(rng: np.random.Generator) -> Arguments:

@@ -1,6 +1,6 @@
 """Recursive least squares with forgetting (paper section 2.3, and section 5 for several factors).
 
-In square-root information form: the covariance stays symmetric positive definite, and bounded
+In factored information form: the covariance stays symmetric positive definite, and bounded
 where forgetting meets no excitation.
 forgetting = 1: forgetting factor per sample, in (0, 1]; one, or one per parameter.
 p0 = 100: initial covariance, P0 = p0 I.
@@ -19,8 +19,8 @@ from scarid_cli.algorithms.statistics.information import Fit, Information, absor
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
-# What forgetting leaves of the square root of the initial information.
-FADED = 1e-5
+# What forgetting leaves of the initial information.
+FADED = 1e-10
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Estimator:
             rows.y,
             rows.scales,
             forgetting=np.resize(self.factors, state.parameters),
-            floor=FADED / np.sqrt(self.p0),
+            floor=FADED / self.p0,
             trace=trace,
         )
 

@@ -1,4 +1,4 @@
-"""The square-root information of a linear regression, and the estimates it holds."""
+"""The information of a linear regression, and the estimates it holds."""
 
 from __future__ import annotations
 
@@ -27,20 +27,28 @@ class NotIdentifiableError(ValueError):
 
 @dataclass(frozen=True)
 class Information:
-    """What the rows so far say: |R theta - z|^2 + residual, with R and z in one triangle.
+    """What the rows so far say, as the kernel keeps it: a unit triangle with weights.
 
     `weight` is the number of rows, each weighted by what forgetting left of it, `count` that of the
     samples.
     """
 
-    triangle: Array
+    weighted: Array
     residual: float = 0.0
     weight: float = 0.0
     count: float = 0.0
 
     @property
     def parameters(self) -> int:
-        return len(self.triangle)
+        return len(self.weighted)
+
+    @property
+    def triangle(self) -> Array:
+        """R and z: |R theta - z|^2 + residual is the sum of squares."""
+        unit = self.weighted.copy()
+        np.fill_diagonal(unit, 1.0)
+        triangle: Array = np.sqrt(np.diag(self.weighted))[:, None] * unit
+        return triangle
 
 
 @dataclass(frozen=True)
@@ -84,8 +92,7 @@ def empty(parameters: int) -> Information:
 
 def prior(estimates: Array, p0: float) -> Information:
     """Initial parameters with covariance P0 = p0 I."""
-    root = np.eye(len(estimates)) / np.sqrt(p0)
-    return Information(np.column_stack((root, root @ estimates)))
+    return Information(np.column_stack((np.eye(len(estimates)) / p0, estimates)))
 
 
 def absorb(
@@ -100,35 +107,36 @@ def absorb(
 ) -> tuple[Information, Array]:
     """Take rows in, each times its scale; with `trace`, also the estimates after each sample.
 
-    `forgetting` (parameters): factors per sample; `floor`: square root of the information that
-    forgetting leaves of each parameter in the long run.
+    `forgetting` (parameters): factors per sample; `floor`: the information that forgetting leaves
+    of each parameter in the long run.
     """
     samples, _, parameters = W.shape
-    triangle = state.triangle.copy()
+    weighted = state.weighted.copy()
     sums = np.array([state.residual, state.weight, state.count])
     estimates = np.empty((samples if trace else 0, parameters))
     information.update(
         W,
         y,
         np.ones(y.shape) if scales is None else scales,
-        triangle,
+        weighted,
         np.empty(parameters + 1),
         sums,
         estimates,
-        np.ones(parameters) if forgetting is None else np.sqrt(forgetting),
+        np.ones(parameters) if forgetting is None else forgetting,
         floor,
     )
-    return Information(triangle, *map(float, sums)), estimates
+    return Information(weighted, *map(float, sums)), estimates
 
 
 def merged(parts: Sequence[Information], scales: Sequence[float]) -> Information:
     """What several sources say together, each times its scale."""
     total = empty(parts[0].parameters)
     for part, scale in zip(parts, scales, strict=True):
-        W, y = part.triangle[:, None, :-1], part.triangle[:, None, -1]
+        triangle = part.triangle
+        W, y = triangle[:, None, :-1], triangle[:, None, -1]
         both, _ = absorb(total, np.ascontiguousarray(W), y.copy(), np.full(y.shape, scale))
         total = Information(
-            both.triangle,
+            both.weighted,
             both.residual + scale**2 * part.residual,
             total.weight + part.weight,
             total.count + part.count,
@@ -139,7 +147,8 @@ def merged(parts: Sequence[Information], scales: Sequence[float]) -> Information
 def solve(state: Information) -> Fit:
     """Estimates and statistics; NotIdentifiableError if the triangle is singular to rounding."""
     p = state.parameters
-    R, z = state.triangle[:, :p], state.triangle[:, p]
+    triangle = state.triangle
+    R, z = triangle[:, :p], triangle[:, p]
     _check_rank(R, max(p, state.weight))
     singular = np.linalg.svd(R, compute_uv=False)
     inverse = np.linalg.inv(R)
