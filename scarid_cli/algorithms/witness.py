@@ -6,27 +6,26 @@ from dataclasses import dataclass
 
 from scarid_cli.algorithms.regression import Rows, joined
 
-NUMBERS = 2_000_000  # held of a streamed record, 16 MB
+SAMPLES = 16_384  # held of a streamed record
 ALL = 10**15
-SEGMENTS = 8  # of the record, held at most
+SEGMENTS = 8  # that these are in, at most
 
 
 @dataclass(frozen=True)
 class Witness:
-    """Every `stride`-th segment of a record, by the numbers of its samples; memory is bounded.
+    """Every `stride`-th segment of a record, by the numbers of its samples.
 
-    `numbers` are held at most. `total` counts the samples that went by.
+    `samples` are held at most. `total` counts the samples that went by.
     """
 
     parts: tuple[Rows, ...] = ()
-    numbers: int = NUMBERS
-    segment: int = 0
+    samples: int = SAMPLES
     stride: int = 1
     total: int = 0
 
     def add(self, rows: Rows) -> Witness:
         """Take in the next samples."""
-        segment = self.segment or max(1, self.numbers // SEGMENTS // _size(rows))
+        segment = self.samples // SEGMENTS
         parts, stride = list(self.parts), self.stride
         start = 0
         while start < rows.samples:
@@ -38,14 +37,8 @@ class Witness:
                 stride *= 2
                 parts = [part for part in parts if int(part.at[0]) // segment % stride == 0]
             start = stop
-        return Witness(tuple(parts), self.numbers, segment, stride, self.total + rows.samples)
+        return Witness(tuple(parts), self.samples, stride, self.total + rows.samples)
 
     def rows(self) -> Rows:
         """What was kept, as one."""
         return joined(self.parts)
-
-
-def _size(rows: Rows) -> int:
-    """Numbers of one sample."""
-    arrays = (rows.W, rows.y, rows.scales, rows.motion)
-    return sum(array.size for array in arrays) // rows.samples + 1

@@ -79,7 +79,7 @@ def identify(
         schema = _trace_schema(robot)
         meta = replace(table.meta, kind="trace", robot=robot.name)
         trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    witness = Witness(numbers=ALL) if treatment.holds or estimator.HOLDS else Witness()
+    witness = Witness(samples=ALL) if treatment.holds or estimator.HOLDS else Witness()
     progress = progress or Progress(estimator.init(initial), witness)
     for batch, rows in treated(table, robot, treatment, progress.seen):
         progress, estimates = _stepped(estimator, progress, rows, trace=trace is not None)
