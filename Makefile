@@ -85,7 +85,8 @@ P := build/paper
 
 PRINTED := ed-fir 2smd astd p2smd
 OWN     := p2smd-matched kalman 2smd-mended astd-mended
-METHODS := $(PRINTED) $(OWN)
+ONLINE  := $(PRINTED) $(OWN)
+METHODS := $(ONLINE) kalman-wls
 
 # As in the paper: filtered log, settings of Table 1, derivatives beside the torque as it is.
 OPTIONS_ed-fir := --method ed-fir --preset table1 --no-match
@@ -98,8 +99,10 @@ OPTIONS_astd-mended := --method astd --no-match
 # Ours: nothing before the soft sensor.
 OPTIONS_p2smd-matched := --method p2smd --preset table1 --match
 OPTIONS_kalman        := --method kalman --match
+OPTIONS_kalman-wls    := --method kalman --match
 LOG_p2smd-matched := raw
 LOG_kalman        := raw
+LOG_kalman-wls    := raw
 log_of = $(P)/$(or $(LOG_$1),filtered).$2.measurement.parquet
 
 SEED_direct := 1
@@ -109,10 +112,11 @@ GAINS_printed-gains := --kp 6.5,155 --kd 5,25
 
 MEASURED := $(P)/raw.direct.measurement.parquet $(P)/filtered.direct.measurement.parquet \
               $(P)/raw.printed-gains.measurement.parquet
-RESULTS  := $(foreach m,$(METHODS),$(P)/$m.direct.motion.parquet $(P)/$m.parameters.parquet \
-              $(P)/$m.forgetting-0.95.parameters.parquet $(P)/$m.trace.parquet \
+RESULTS  := $(foreach m,$(METHODS),$(P)/$m.parameters.parquet \
               $(foreach e,direct cross,$(P)/$m.$e.metrics.parquet $(P)/$m.$e.prediction.parquet) \
-              $(P)/$m.common.metrics.parquet)
+              $(P)/$m.common.metrics.parquet) \
+            $(foreach m,$(ONLINE),$(P)/$m.direct.motion.parquet $(P)/$m.trace.parquet \
+              $(P)/$m.forgetting-0.95.parameters.parquet)
 
 paper: $(P)/report.html
 
@@ -145,6 +149,10 @@ $(foreach e,direct cross,$(eval $(call MOTION,$e)))
 $(P)/%.parameters.parquet $(P)/%.trace.parquet: $(P)/%.direct.motion.parquet
 	$(SCARID) identify --estimator rls --trace $(P)/$*.trace.parquet $< -o $(P)/$*.parameters.parquet
 
+# With the statistics of the rows: weights, slow rows left out, the delay of the torques fitted.
+$(P)/kalman-wls.parameters.parquet: $(P)/kalman.direct.motion.parquet
+	$(SCARID) identify --estimator wls --drop-slow 0.1 --align $< -o $@
+
 $(P)/%.forgetting-0.95.parameters.parquet: $(P)/%.direct.motion.parquet
 	$(SCARID) identify --estimator rls --forgetting 0.95 $< -o $@
 
@@ -162,13 +170,14 @@ $(P)/%.common.metrics.parquet: $(P)/common.motion.parquet $(P)/%.parameters.parq
 
 SEEDS := 50
 M     := build/montecarlo
-OF    := parameters trace direct.metrics cross.metrics common.metrics
+OF    := parameters direct.metrics cross.metrics common.metrics
+of    = $(foreach m,$(METHODS),$(OF:%=$1/$m.%.parquet)) $(foreach m,$(ONLINE),$1/$m.trace.parquet)
 
 paper-montecarlo: $(M)/report.html
 
 $(M)/report.html: $(foreach s,$(shell seq $(SEEDS)),$(M)/$s/done) samples/paper/published.csv
 	ulimit -n 16384; $(SCARID) report --repeated --published samples/paper/published.csv \
-	  $(foreach s,$(shell seq $(SEEDS)),$(foreach m,$(METHODS),$(OF:%=$(M)/$s/$m.%.parquet))) \
+	  $(foreach s,$(shell seq $(SEEDS)),$(call of,$(M)/$s)) \
 	  --html $@ --markdown $(M)/report.md --title "The paper's study over $(SEEDS) seeds"
 
 # Seeds 2 s + 1 and 2 s + 2: as of `make crossvalidate`, and apart from those of `make paper`.
@@ -178,7 +187,7 @@ $(M)/%/done: $(VENV)/installed
 	@rm -f $(@D)/*.motion.parquet $(@D)/*.measurement.parquet $(@D)/*.prediction.parquet
 	@touch $@
 
-repetition: $(foreach m,$(METHODS),$(OF:%=$(P)/$m.%.parquet))
+repetition: $(call of,$(P))
 
 # Keep every table on the way: each can be looked at with `scarid info` or `scarid convert`.
 .SECONDARY:

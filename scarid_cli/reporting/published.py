@@ -77,16 +77,17 @@ def settings(results: Sequence[Result], values: Values) -> list[Section]:
         method = result.name.label
         given = [f"{q} = {v:g}" for (m, _, q, measure), v in values.items()
                  if (m, measure) == (method, "setting")]  # fmt: skip
-        runs = [c for c in result.commands if c.startswith("scarid differentiate")]
-        command = runs[-1].removeprefix("scarid differentiate ") if runs else NONE
-        rows.append((method, ", ".join(given) or NONE, _without_files(command)))
+        used = (_options(result.commands, name) for name in ("differentiate", "identify"))
+        rows.append((method, ", ".join(given) or NONE, *used))
     if not rows or not values:
         return []
-    note = "Published settings, and the options of `scarid differentiate` that were used."
-    headers = ("method", "published", "here")
-    return [Section("Settings", note, headers, tuple(rows), texts=3)]
+    note = "Published settings, and the options that were used."
+    headers = ("method", "published", "differentiate", "identify")
+    return [Section("Settings", note, headers, tuple(rows), texts=4)]
 
 
-def _without_files(command: str) -> str:
-    words = command.split()
-    return " ".join(word for word in words if "/" not in word)
+def _options(commands: Sequence[str], name: str) -> str:
+    """Of the last run of a command, without files."""
+    runs = [c.split()[2:] for c in commands if c.split()[1] == name]
+    words = [word for word in (runs[-1] if runs else []) if "/" not in word and word != "--trace"]
+    return " ".join(words) or NONE

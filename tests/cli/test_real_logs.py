@@ -80,7 +80,7 @@ def test_the_verdict_tells_a_real_log_that_is_not_matched(shell: Shell, real_log
     pipe = (
         f"scarid differentiate MATCH {real_logs}/emps/emps_train.csv | scarid identify --robot emps"
     )
-    assert "good: 4 of 4 parameters" in shell(pipe.replace("MATCH", "--match")).err
+    assert "good: 4 of 4 parameters known" in shell(pipe.replace("MATCH", "--match")).err
     assert "doubtful: biased" in shell(pipe.replace("MATCH", "--no-match")).err
 
 

@@ -58,12 +58,9 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
         *_poor(joints),
         *_impossible(evidence, robot),
     ]
-    if 2 * len(unknown) > len(evidence.names):
-        wrong.append(f"{len(unknown)} of {len(evidence.names)} parameters are not known")
-    uncertain = (
-        [f"{_listed(unknown)} cannot be told from zero within {DOUBT:g} %"] if unknown else []
-    )
-    grade = DOUBTFUL if wrong else GOOD
+    most = 2 * len(unknown) > len(evidence.names)
+    uncertain = [f"not {_listed(unknown)}"] if unknown and not most else []
+    grade = DOUBTFUL if wrong or most else GOOD
     return Verdict(grade, (*wrong, *_summary(evidence), *uncertain))
 
 
@@ -144,7 +141,7 @@ def _unknown(evidence: Evidence) -> list[str]:
 def _summary(evidence: Evidence) -> list[str]:
     """The numbers that say how good."""
     known = len(evidence.names) - len(_unknown(evidence))
-    parts = [f"{known} of {len(evidence.names)} parameters within {DOUBT:g} %"]
+    parts = [f"{known} of {len(evidence.names)} parameters known within {DOUBT:g} %"]
     if evidence.belief:
         r2 = ", ".join(f"{joint.r2:.4f}" for joint in evidence.belief.joints)
         parts.append(f"R2 {r2}")
