@@ -110,9 +110,13 @@ def _stepped(
 
 @dataclass(frozen=True)
 class Found:
-    """What came out: the fit, its statistics, and the delay [s] with its error if it was fitted."""
+    """What came out: the fit, its statistics, and the delay [s] with its error if it was fitted.
+
+    `excitation` is the root-mean-square torque that a unit of each parameter makes.
+    """
 
     fit: Fit
+    excitation: Array
     belief: Belief | None
     reduced: Essential
     samples: int
@@ -141,7 +145,9 @@ def _found(
     reduced = Essential(fit, (), 0.0)
     if treatment.essential:
         reduced = essential(fit, float((rows.scales > 0.0).sum()))
-    return Found(fit, belief, reduced, progress.witness.total, delay)
+    counted = rows.W[:, :, : len(fit.estimates)] * (rows.scales > 0.0)[:, :, None]
+    excitation = np.sqrt((counted**2).sum(axis=(0, 1)) / max((rows.scales > 0.0).sum(), 1))
+    return Found(fit, excitation, belief, reduced, progress.witness.total, delay)
 
 
 def _aligned(
@@ -219,6 +225,7 @@ def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[s
         if fit.variance >= 0.0 and fit.whitening is None
         else None,
         "samples": found.samples,
+        "excitation": dict(zip(names, found.excitation.tolist(), strict=False)),
         "verdict": judged.grade,
         "reasons": list(judged.reasons),
         **fit.extra,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from scarid_cli.io import schemas
 from scarid_cli.io.reader import nominal_period
@@ -22,7 +23,7 @@ def described(table: Table) -> Iterator[str]:
     if times is not None:
         yield f"time      {times[0]:.9g} s to {times[1]:.9g} s, {_rate(*times, rows)}"
     for key, value in sorted(meta.extra.items()):
-        yield f"{key:<9} {value:.6g}" if isinstance(value, float) else f"{key:<9} {value}"
+        yield from _told(key, value)
     yield "columns"
     width = max((len(name) for name in table.columns), default=0)
     for field in table.schema:
@@ -35,6 +36,21 @@ def described(table: Table) -> Iterator[str]:
         yield f"  {entry['command']}  (scarid {entry['version']})"
         for name, digest in entry["inputs"].items():
             yield f"    {name}: {f'sha256 {digest}' if digest else 'a pipe'}"
+
+
+def _told(key: str, value: Any) -> Iterator[str]:
+    """A value on its line; what a list holds, on lines of their own."""
+    if isinstance(value, list):
+        yield key
+        yield from (f"  {_shown(item)}" for item in value)
+    else:
+        yield f"{key:<9} {_shown(value)}"
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {_shown(item)}" for name, item in value.items())
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _read(table: Table) -> tuple[int, tuple[float, float, float] | None]:
