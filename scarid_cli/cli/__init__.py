@@ -12,6 +12,7 @@ from scarid_cli import __version__
 COMMANDS = {
     "trajgen": "Generate an excitation trajectory.",
     "simulate": "Let a simulated robot follow a trajectory, in closed loop.",
+    "resample": "Put a log with a jittered clock on a regular one.",
     "filter": "Low-pass filter columns of a log.",
     "tune": "Find settings of differentiators in a log, without the truth.",
     "differentiate": "Estimate velocities and accelerations from positions (the soft sensor).",

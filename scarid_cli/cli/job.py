@@ -54,7 +54,7 @@ class Job:
         self.outputs.append(document)
         return document
 
-    def read(self, path: str, kind: str | None) -> Table:
+    def read(self, path: str, kind: str | None, *, regular: bool = True) -> Table:
         """A checked table of a kind, or any table as it stands for None."""
         if path == "-" and STDIN in self._inputs:
             raise UsageFault(
@@ -65,7 +65,7 @@ class Job:
         self._inputs[source.name] = source.sha256() if self._history else None
         table = open_table(source)
         if kind:
-            table = checked(table, kind)
+            table = checked(table, kind, regular=regular)
         if self._verbose:
             rate = f"{1.0 / table.meta.period:.6g} Hz, " if table.meta.period else ""
             self.say(f"{source.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")

@@ -56,7 +56,7 @@ def common(function: F) -> F:
 
 robot: Callable[[F], F] = click.option(
     "--robot", metavar="NAME",
-    help="scara2, emps, or a .toml file.  [default: the table's robot, else scara2]",
+    help="scara2, emps, planar2-gravity, or a .toml file.  [default: the table's robot, else scara2]",
 )  # fmt: skip
 
 

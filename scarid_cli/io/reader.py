@@ -36,10 +36,11 @@ def open_table(source: ByteSource) -> Table:
     return arrowio.read_stream(source)
 
 
-def checked(table: Table, kind: str) -> Table:
+def checked(table: Table, kind: str, *, regular: bool = True) -> Table:
     """The table, known to be of a kind: its columns, types and units now, each value as it comes.
 
-    For a sampled table the clock must be regular; its period [s] is put into the metadata.
+    For a sampled table the clock must be regular, unless it need not be; its period [s] is put
+    into the metadata.
     """
     schema = schemas.load(kind)
     _check_columns(table, schema)
@@ -57,8 +58,10 @@ def checked(table: Table, kind: str) -> Table:
                 remedy="give a longer log",
             )
         t = first.column("t")
-        meta = replace(meta, period=nominal_period(t[1].as_py() - t[0].as_py()))
-        batches = _regular(_chained(first, batches), table.name, meta.period or 0.0)
+        batches = _chained(first, batches)
+        if regular:
+            meta = replace(meta, period=nominal_period(t[1].as_py() - t[0].as_py()))
+            batches = _regular(batches, table.name, meta.period or 0.0)
     return replace(table, meta=meta, batches=batches)
 
 
@@ -216,7 +219,8 @@ def _regular(
     if abs(mean - period) > DRIFT * period:
         raise BadData(
             f"{name}, column t: found a mean interval of {mean:.9g} s over {row} rows, expected "
-            f"{period:.9g} s like the first; resample the log to a constant rate"
+            f"{period:.9g} s like the first; put it on a constant rate with `scarid resample "
+            "--rate`"
         )
 
 
@@ -239,7 +243,7 @@ def _check_steps(steps: Array, t: Array, name: str, period: float, row: int) -> 
         name,
         f"an interval of {steps[at]:.6g} s",
         expected=f"{period:.6g} s within {JITTER:.0%}",
-        remedy="resample the log to a constant rate",
+        remedy="put it on a constant rate with `scarid resample --rate`",
         row=row + at,
         column="t",
     )

@@ -6,6 +6,7 @@ import io
 import json
 from dataclasses import fields, is_dataclass
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -37,7 +38,7 @@ def restored(path: str, settings: dict[str, Any]) -> Progress:
             before = document["settings"]
     except FileNotFoundError:
         raise UsageFault(f"{path}: no such file; make one with `scarid identify --save`") from None
-    except (KeyError, OSError, TypeError, ValueError):
+    except (BadZipFile, EOFError, KeyError, OSError, TypeError, ValueError):
         raise BadData(
             f"{path}: found no state, expected a file as `scarid identify --save` makes it"
         ) from None

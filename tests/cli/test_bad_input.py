@@ -162,7 +162,10 @@ USAGE = {
     "no such option": (["filter", "--frob"], "No such option '--frob'"),
     "no such command": (["frobnicate"], "No such command 'frobnicate'"),
     "one output twice": (["identify", "--trace", "-"], "standard output: two tables cannot share"),
-    "no such robot": (["trajgen", "--robot", "r2d2"], "unknown robot 'r2d2'; choose emps, scara2"),
+    "no such robot": (
+        ["trajgen", "--robot", "r2d2"],
+        "unknown robot 'r2d2'; choose emps, planar2-gravity, scara2",
+    ),
     "no such method": (["differentiate", "--method", "magic"], "'magic' is not one of"),
     "no such column": (["filter", "-c", "q7", "LOG"], "no column 'q7'; the table has t, q1"),
     "no such setting": (["differentiate", "--set", "gamma2=1", "LOG"], "has no setting 'gamma2'"),

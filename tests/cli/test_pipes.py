@@ -100,6 +100,8 @@ def test_a_stage_killed_in_a_binary_pipe_fails_every_later_one(
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             env=environment,
+            # A run in the background ignores SIGINT, and its children would as well.
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
         )
 
     filtering = stage("filter", source=subprocess.PIPE)

@@ -68,6 +68,25 @@ def test_planar_arm_obeys_lagrange() -> None:
     np.testing.assert_allclose(torques, lagrange(q, dq, ddq) + friction, rtol=1e-11, atol=1e-11)
 
 
+def test_vertical_arm_is_the_horizontal_one_and_the_slope_of_its_potential_energy() -> None:
+    """Hanging at q = 0; L1MX2 is 0.2 m times MX2."""
+    q, dq, ddq = motions(joints=2)
+    vertical, flat = load("planar2-gravity"), load("scara2")
+    mx1r, mx2, g, step = 0.7, 0.4, 9.81, 1e-30
+    theta = dict.fromkeys(vertical.names, 0.0) | {"ZZ1R": 1.1, "ZZ2": 0.3, "MX1R": mx1r, "MX2": mx2}
+    same = dict.fromkeys(flat.names, 0.0) | {"ZZ1R": 1.1, "ZZ2": 0.3, "L1MX2": 0.2 * mx2}
+
+    def energy(q: Array) -> Array:
+        return -g * (mx1r * np.cos(q[0]) + mx2 * np.cos(q[0] + q[1]))
+
+    weight = [energy(q + 1j * step * unit).imag / step for unit in np.eye(2)[:, :, None]]
+    torques, inertial = (
+        robot.torques(robot.regressor(q, dq, ddq), np.array(list(values.values())))
+        for robot, values in ((vertical, theta), (flat, same))
+    )
+    np.testing.assert_allclose(torques, inertial + weight, rtol=1e-11, atol=1e-11)
+
+
 def test_single_axis_is_mass_friction_and_offset() -> None:
     q, dq, ddq = motions(joints=1)
     dq[0, 0] = 0.0  # dry friction has no direction at rest
@@ -150,7 +169,7 @@ def test_file_describes_a_robot_as_a_built_in_does(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["scara3", "nowhere/robot.toml", "../robots/scara2.tml"])
 def test_unknown_robot_is_refused_with_the_choice(name: str) -> None:
-    with pytest.raises(UsageFault, match=r"unknown robot .*choose emps, scara2"):
+    with pytest.raises(UsageFault, match=r"unknown robot .*choose emps, planar2-gravity, scara2"):
         load(name)
 
 

@@ -14,7 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.regression import Rows, joined
-from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.terms import stribeck
 from scarid_cli.algorithms.settings import GIVEN
 from scarid_cli.algorithms.statistics.information import Fit, absorb, empty, solve
@@ -84,7 +84,8 @@ class Estimator:
 
 def _column(rows: Rows, joint: int, velocity: float) -> tuple[int, Array]:
     q, dq, ddq, _ = rows.motion
-    return joint, stribeck(q, dq, ddq, joint - 1, velocity)[joint - 1]
+    fading = Parameter("", "stribeck", "", 0.0, joint, velocity)
+    return joint, stribeck(q, dq, ddq, fading)[joint - 1]
 
 
 def _slope(rows: Rows, joint: int, velocity: float) -> Array:

@@ -39,7 +39,7 @@ class Joint:
 class Parameter:
     """One base parameter: its term of the regressor, the joint (from 1) of a friction term.
 
-    `velocity` [rad/s or m/s] shapes dry friction: see terms.py.
+    `velocity` [rad/s or m/s], `length` [m] and `gravity` [m/s2] shape the term: see terms.py.
     """
 
     name: str
@@ -48,6 +48,8 @@ class Parameter:
     apriori: float
     joint: int = 0
     velocity: float = 0.0
+    length: float = 0.0
+    gravity: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,7 @@ class Robot:
         joints, samples = q.shape
         W = np.zeros((samples, joints, len(self.parameters)))
         for index, parameter in enumerate(self.parameters):
-            column = TERMS[parameter.term](q, dq, ddq, parameter.joint - 1, parameter.velocity)
+            column = TERMS[parameter.term](q, dq, ddq, parameter)
             for joint, values in column.items():
                 W[:, joint, index] = values
         return W

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from scarid_cli.algorithms.robots.description import UNITS, Control, Joint, Parameter, Robot
-from scarid_cli.algorithms.robots.terms import PLANAR_JOINTS, PLANAR_TERMS, TERMS
+from scarid_cli.algorithms.robots.terms import GRAVITY_TERMS, PLANAR_JOINTS, PLANAR_TERMS, TERMS
 from scarid_cli.errors import UsageFault
 
 FOLDER = Path(__file__).parent
@@ -62,7 +62,7 @@ def _joint(entry: dict[str, Any]) -> Joint:
 
 
 def _parameter(entry: dict[str, Any], joints: int) -> Parameter:
-    known = ("name", "term", "unit", "apriori", "joint", "velocity")
+    known = ("name", "term", "unit", "apriori", "joint", "velocity", "length", "gravity")
     for key in entry:
         if key not in known:
             raise ValueError(f"{key} is not of a parameter; it has {', '.join(known)}")
@@ -72,13 +72,13 @@ def _parameter(entry: dict[str, Any], joints: int) -> Parameter:
         unit=_text("unit", entry["unit"]),
         apriori=_number("apriori", entry["apriori"]),
         joint=_whole("joint", entry.get("joint", 0)),
-        velocity=_number("velocity", entry.get("velocity", 0.0)),
+        **{k: _number(k, entry.get(k, 0.0)) for k in ("velocity", "length", "gravity")},
     )
     if parameter.term not in TERMS:
         raise ValueError(f"{parameter.name} has term {parameter.term!r}; choose {', '.join(TERMS)}")
     if parameter.velocity < 0.0 or (parameter.term == "stribeck" and not parameter.velocity):
         raise ValueError(f"{parameter.name} needs a positive velocity")
-    planar = parameter.term in PLANAR_TERMS
+    planar = parameter.term in (*PLANAR_TERMS, *GRAVITY_TERMS)
     if planar and joints < PLANAR_JOINTS:
         raise ValueError(
             f"{parameter.name} has term {parameter.term}, which needs {PLANAR_JOINTS} joints"

@@ -1,0 +1,54 @@
+"""scarid resample"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from scarid_cli.cli import options
+
+
+@click.command(name="resample")
+@options.table_input
+@click.option("--rate", type=float, required=True, help="Of the new clock [Hz].")
+@click.option(
+    "--max-gap",
+    type=float,
+    default=0.1,
+    show_default=True,
+    help="Longest interval [s] that is bridged; a longer one is an error.",
+)
+@options.table_output
+@options.common
+def command(file: str, rate: float, max_gap: float, **rest: Any) -> None:
+    """Put a log with a jittered clock on a regular one.
+
+    \b
+      scarid resample --rate 500 log.csv | scarid differentiate
+      scarid resample --rate 100 log.parquet -o slow.parquet
+
+    Numbers lie on straight lines between the samples, or, where the rate becomes lower, are means
+    over a new period, against aliasing; other columns have the value of the row before. Rows that
+    repeat the time before them are left out. What the clock did is told on standard error: mean
+    rate, jitter, longest interval, repeated rows. Streaming, in memory that does not grow; without
+    delay, but a row waits for the sample after it.
+    """
+    from scarid_cli.cli.job import job
+    from scarid_cli.errors import UsageFault
+    from scarid_cli.stages import resample as stage
+
+    for name, value in (("--rate", rate), ("--max-gap", max_gap)):
+        if not 0.0 < value < float("inf"):
+            raise UsageFault(f"{name} must be positive, not {value:g}")
+    with job(rest) as run:
+        out = run.output(rest["output"], rest["format"])
+        table = run.recorded(run.read(file, "measurement", regular=False))
+
+        def told(clock: Any) -> None:
+            run.say(
+                f"{1.0 / clock.mean:.6g} Hz on average, jitter {1e3 * clock.jitter:.3g} ms, "
+                f"longest interval {1e3 * clock.longest:.3g} ms, {clock.repeated} repeated rows"
+            )
+
+        run.write(stage.resample(table, rate, max_gap, told), out)

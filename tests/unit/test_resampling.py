@@ -1,0 +1,111 @@
+"""A jittered log on a regular clock."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+import pytest
+import scipy.integrate
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stages.tables import Kept, collected, table
+
+from scarid_cli.algorithms.resampling import Clock, Resampler
+from scarid_cli.arrays import Array
+from scarid_cli.errors import BadData
+from scarid_cli.stages.resample import resample
+
+PERIOD = 0.002
+
+
+def jittered(samples: int = 500, seed: int = 0) -> tuple[Array, Array]:
+    rng = np.random.default_rng(seed)
+    t = 3.0 + np.cumsum(rng.uniform(0.5, 1.5, samples)) * PERIOD
+    return t, np.vstack((np.sin(40.0 * t), rng.standard_normal(samples)))
+
+
+def stepped(resampler: Resampler, t: Array, x: Array) -> tuple[Array, Array]:
+    _, at, rows = resampler.step(resampler.init(t[0], x[:, 0]), t[1:], x[:, 1:])
+    return at, rows
+
+
+def test_rows_lie_on_straight_lines_between_the_samples() -> None:
+    t, x = jittered()
+    at, rows = stepped(Resampler(PERIOD, smooth=False), t, x)
+    np.testing.assert_allclose(np.diff(at), PERIOD)
+    assert at[0] == t[0]
+    assert t[-1] - PERIOD < at[-1] <= t[-1]
+    for found, values in zip(rows, x, strict=True):
+        np.testing.assert_allclose(found, np.interp(at, t, values), rtol=1e-12)
+
+
+def test_lower_rates_are_means_over_a_new_period() -> None:
+    """Against scipy's trapezoidal rule on a fine grid that has every sample."""
+    t, x = jittered()
+    new = 7.3 * PERIOD
+    at, rows = stepped(Resampler(new, smooth=True), t, x)
+    for k in (0, 1, 5, len(at) - 1):
+        low, high = max(at[k] - new / 2, t[0]), at[k] + new / 2
+        fine = np.union1d(t[(t > low) & (t < high)], [low, high])
+        area = scipy.integrate.trapezoid(np.interp(fine, t, x[1]), fine)
+        assert rows[1, k] == pytest.approx(area / (high - low), rel=1e-6, abs=1e-9)
+
+
+def test_lower_rates_do_not_alias() -> None:
+    """A vibration of 200 Hz in a log of 1 kHz, at 100 Hz: sampled it would stand still at 1."""
+    t = np.arange(2000) * 0.001
+    columns = {"t": t, "q1": np.cos(2.0 * np.pi * 200.0 * t)}
+    slow = collected(resample(table(columns), 100.0, 0.1))
+    assert np.abs(slow.column("q1").to_numpy()[2:]).max() < 0.1
+
+
+@given(sizes=st.lists(st.sampled_from([1, 2, 7, 64]), min_size=1, max_size=4),
+       rate=st.sampled_from([500.0, 731.0, 60.0]))  # fmt: skip
+@settings(max_examples=20, deadline=None)
+def test_the_bits_do_not_depend_on_the_batches(sizes: list[int], rate: float) -> None:
+    t, (q, tau) = jittered(200)
+    t[50] = t[49]  # a repeated row
+    columns = {"t": t, "q1": q, "tau1": tau}
+    clocks: list[Clock] = []
+    whole = collected(resample(table(columns), rate, 0.1, clocks.append))
+    cut = collected(resample(table(columns, sizes), rate, 0.1, clocks.append))
+    assert cut.equals(whole)
+    assert clocks[0] == clocks[1]
+    assert clocks[0].repeated == 1
+
+
+def test_the_clock_is_told() -> None:
+    t, (q, _) = jittered()
+    clocks: list[Clock] = []
+    collected(resample(table({"t": t, "q1": q}), 500.0, 0.1, clocks.append))
+    steps = np.diff(t)
+    (clock,) = clocks
+    assert clock.mean == pytest.approx(steps.mean())
+    assert clock.jitter == pytest.approx(steps.std(), rel=1e-6)
+    assert (clock.longest, clock.shortest) == (steps.max(), steps.min())
+
+
+def test_other_columns_have_the_value_of_the_row_before() -> None:
+    source = table({"t": np.array([0.0, 1.0, 2.0]), "q1": np.zeros(3)})
+    batch = next(source.batches)
+    schema = source.schema.append(pa.field("note", pa.string()))
+    noted = pa.RecordBatch.from_arrays([*batch.columns, pa.array(["a", "b", "c"])], schema=schema)
+    from dataclasses import replace
+
+    found = collected(resample(replace(source, schema=schema, batches=iter([noted])), 2.0, 5.0))
+    assert found.column("note").to_pylist() == ["a", "a", "b", "b", "c"]
+
+
+@pytest.mark.parametrize(
+    ("t", "told"),
+    [
+        ([0.0, 0.1, 0.05, 0.2], "row 3, column t: found time that goes back by 0.05 s"),
+        ([0.0, 0.1, 0.5, 0.6], "row 3, column t: found a gap of 0.4 s"),
+    ],
+    ids=["backwards", "gap"],
+)
+@pytest.mark.parametrize("sizes", [(), (1,), (2,)])
+def test_a_clock_beyond_mending_is_told(t: list[float], told: str, sizes: tuple[int, ...]) -> None:
+    source = table({"t": np.array(t), "q1": np.zeros(len(t))}, sizes)
+    with pytest.raises(BadData, match=told.replace("(", r"\(")):
+        Kept().batches.extend(resample(source, 10.0, 0.2).batches)
