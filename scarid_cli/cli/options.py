@@ -56,7 +56,8 @@ def common(function: F) -> F:
 
 robot: Callable[[F], F] = click.option(
     "--robot", metavar="NAME",
-    help="scara2, emps, planar2-gravity, or a .toml file.  [default: the table's robot, else scara2]",
+    help="scara2, emps, planar2-gravity, or a .toml or .urdf file.  "
+    "[default: the table's robot, else scara2]",
 )  # fmt: skip
 
 
@@ -81,8 +82,8 @@ def treatment(function: F) -> F:
     """What is done to the rows of the regression, for identify and validate alike."""
     return _all(
         click.option(
-            "--skip", type=click.IntRange(min=0), default=0, metavar="ROWS",
-            help="Leave out so many rows at the start.",
+            "--skip", type=NUMBERS, metavar="ROWS[,ROWS]",
+            help="Leave out so many rows at the start, and at the end.",
         ),
         click.option(
             "--decimate", type=NUMBERS, metavar="N[,N...]",

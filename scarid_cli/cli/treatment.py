@@ -14,6 +14,9 @@ from scarid_cli.stages.rows import Treatment
 def treatment_of(given: dict[str, Any]) -> Treatment:
     """What was asked for, before the robot is known."""
     factors, slow, smooth = given["decimate"] or (), given["drop_slow"] or (), given["smooth_sign"]
+    skip = [*(given["skip"] or (0.0,)), 0.0]
+    if len(skip) > 3 or any(rows % 1 or rows < 0 for rows in skip):
+        raise UsageFault("--skip: a number of rows, or two: at the start and at the end")
     if any(factor % 1 or factor < 2 for factor in factors):
         raise UsageFault("--decimate: factors are whole numbers from 2")
     if any(not v >= 0.0 for v in slow):
@@ -21,7 +24,7 @@ def treatment_of(given: dict[str, Any]) -> Treatment:
     if smooth is not None and not smooth > 0.0:
         raise UsageFault(f"--smooth-sign must be positive, not {smooth:g}")
     return Treatment(
-        skip=given["skip"],
+        skip=(int(skip[0]), int(skip[1])),
         decimate=tuple(map(int, factors)),
         slow=tuple(slow),
         align=given.get("align", False),

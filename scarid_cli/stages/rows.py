@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -18,13 +19,14 @@ from scarid_cli.io.table import Table, matrix, settled_runs
 class Treatment:
     """What is done to the rows before they are fitted.
 
-    `skip` rows at the start are left out; W and the torques are decimated by each factor in turn;
-    rows of a joint slower than `slow` (joints) [rad/s or m/s] are left out; `align` fits the time
-    by which the torques lead the motion as well; `essential` drops what is not known.
+    `skip` rows at the start and at the end are left out; W and the torques are decimated by each
+    factor in turn; rows of a joint slower than `slow` (joints) [rad/s or m/s] are left out;
+    `align` fits the time by which the torques lead the motion as well; `essential` drops what is
+    not known.
     The last two are the estimation's own.
     """
 
-    skip: int = 0
+    skip: tuple[int, int] = (0, 0)
     decimate: tuple[int, ...] = ()
     slow: tuple[float, ...] = ()
     align: bool = False
@@ -81,18 +83,38 @@ def treated(
     slow = np.array(treatment.slow) if treatment.slow else None
     late = None if treatment.decimate else slow
     held = []
-    for first, batch in settled_runs(table.batches):
-        start = max(0, treatment.skip - first)
-        if start >= batch.num_rows:
-            continue
-        kept = batch.slice(start)
-        rows = columns.rows(table.columns, kept, seen + first + start, late)
+    for first, kept in _within(settled_runs(table.batches), *treatment.skip):
+        rows = columns.rows(table.columns, kept, seen + first, late)
         if treatment.holds:
             held.append(rows)
         else:
             yield kept, rows
     if held:
         yield None, _decimated(joined(held), treatment.decimate, slow)
+
+
+def _within(
+    parts: Iterator[tuple[int, pa.RecordBatch]], start: int, end: int
+) -> Iterator[tuple[int, pa.RecordBatch]]:
+    """Without the first and the last rows: these are held back until others follow."""
+    held: deque[tuple[int, pa.RecordBatch]] = deque()
+    rows = 0
+    for first, batch in parts:
+        skipped = max(0, start - first)
+        if skipped >= batch.num_rows:
+            continue
+        held.append((first + skipped, batch.slice(skipped)))
+        rows += batch.num_rows - skipped
+        while rows - held[0][1].num_rows >= end:
+            rows -= held[0][1].num_rows
+            yield held.popleft()
+            if not held:
+                break
+        if held and rows > end:
+            at, oldest = held.popleft()
+            yield at, oldest.slice(0, rows - end)
+            held.appendleft((at + rows - end, oldest.slice(rows - end)))
+            rows = end
 
 
 def _decimated(rows: Rows, factors: tuple[int, ...], slow: Array | None) -> Rows:

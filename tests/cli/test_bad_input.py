@@ -194,6 +194,7 @@ USAGE = {
     "trace of ls": (["identify", "--estimator", "ls", "--trace", "t.csv"], "no estimates after"),
     "setting without a value": (["identify", "--set", "p0"], "write NAME=VALUE"),
     "setting that is no number": (["identify", "--set", "p0=x"], "'x' is not a number"),
+    "skip of three": (["identify", "--skip", "1,2,3"], "at the start and at the end"),
     "decimation by a half": (["identify", "--decimate", "0.5"], "whole numbers from 2"),
     "negative slow": (["identify", "--drop-slow", "-1"], "cannot be negative"),
     "sign over no velocity": (["identify", "--smooth-sign", "0"], "must be positive"),

@@ -69,6 +69,15 @@ def rows_of(result: Result) -> dict[str, dict[str, str]]:
     return {row["parameter"]: row for row in csv.DictReader(io.StringIO(result.out))}
 
 
+def test_rows_skipped_at_both_ends_are_as_if_they_were_not_there(shell: Shell) -> None:
+    result = shell(
+        f"{MOTION} && (head -1 motion.csv; sed -n '12,481p' motion.csv) > inner.csv && for e in"
+        " 'ls' 'wls --align'; do scarid identify -q --estimator $e inner.csv > a.csv && scarid"
+        " identify -q --skip 10,21 --estimator $e motion.csv | cmp - a.csv; done"
+    )
+    assert (result.status, result.out, result.err) == (0, "", "")
+
+
 def test_essential_parameters_are_kept_and_the_others_are_zero(shell: Shell) -> None:
     result = shell(
         "scarid trajgen -q | scarid simulate | scarid differentiate |"

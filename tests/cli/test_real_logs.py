@@ -111,6 +111,53 @@ def test_the_default_gives_emps_its_published_mass_online(shell: Shell, real_log
     assert error < 4.4
 
 
+TX40 = """title = "Staubli TX40"
+urdf = "{folder}/tx40_mdh_modified.urdf"
+[[joint]]
+[[joint]]
+[[joint]]
+[[joint]]
+[[joint]]
+[[joint]]
+terms = ["viscous", "coulomb", "offset"]
+[[coupling]]
+joints = [5, 6]
+"""
+
+
+def test_six_axes_give_their_published_base_parameters(
+    shell: Shell, real_logs: Path, tmp_path: Path
+) -> None:
+    """60 of them: at least 50 within two published deviations, the error of the torques 5.05 %."""
+    pytest.importorskip("pinocchio")
+    folder = real_logs / "staubli_tx40"
+    (tmp_path / "tx40.toml").write_text(TX40.format(folder=folder.resolve()))
+    treated = (
+        f"--robot {tmp_path}/tx40.toml --skip 20,20 --decimate 10,10"
+        " --drop-slow 0.0501,0.0501,0.0750,0.0716,0.0559,0.1222"
+    )
+    result = shell(
+        f"scarid filter --zero-phase --cutoff 100 -c 'q?' {folder}/tx40_joint_5kHz.parquet"
+        " --format arrow | scarid differentiate --method central --no-match -o motion.arrows &&"
+        f" scarid identify {treated} --estimator wls motion.arrows -o p.csv && cut -d, -f1,3 p.csv"
+        f" && scarid validate {treated} --parameters p.csv motion.arrows"
+    )
+    assert result.status == 0, result.err
+    lines = result.out.splitlines()
+    start = lines.index("joint,r2,rmse,unit,relative_error,samples")
+    estimates = {name: float(x) for name, x in (line.split(",") for line in lines[1:start])}
+    with (folder / "TX40_bp_5.csv").open() as file:
+        published = {row[0].split()[0]: (float(row[3]), float(row[4])) for row in csv.reader(file)}
+    assert estimates.keys() == published.keys()
+    near = [n for n, (x, r) in published.items() if abs(estimates[n] - x) <= 0.02 * r * abs(x)]
+    assert len(near) >= 50
+    rows = [row.split(",") for row in lines[start + 1 :]]
+    assert min(float(row[1]) for row in rows) >= 0.98
+    errors = [float(row[2]) ** 2 * int(row[5]) for row in rows]
+    squares = [e / (float(row[4]) / 100.0) ** 2 for e, row in zip(errors, rows, strict=True)]
+    assert 100.0 * (sum(errors) / sum(squares)) ** 0.5 <= 5.1
+
+
 TRAIN = ("143524", "143601", "154220")
 UNDRIVEN = {"143704": 1, "143747": 1, "143906": 2, "144003": 2, "144115": 2}
 

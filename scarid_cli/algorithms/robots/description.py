@@ -7,6 +7,7 @@ from math import inf
 
 import numpy as np
 
+from scarid_cli.algorithms.robots.rigid import Body
 from scarid_cli.algorithms.robots.terms import TERMS
 from scarid_cli.arrays import Array
 
@@ -39,6 +40,8 @@ class Joint:
 class Parameter:
     """One base parameter: its term of the regressor, the joint (from 1) of a friction term.
 
+    `stands_for` writes it out in the parameters counted to it; `column` is its place among the
+    standard parameters of a URDF, `other` the joint that a coupled term is coupled to.
     `velocity` [rad/s or m/s], `length` [m] and `gravity` [m/s2] shape the term: see terms.py.
     """
 
@@ -50,6 +53,9 @@ class Parameter:
     velocity: float = 0.0
     length: float = 0.0
     gravity: float = 0.0
+    other: int = 0
+    column: int = -1
+    stands_for: str = ""
 
 
 @dataclass(frozen=True)
@@ -71,6 +77,7 @@ class Robot:
     joints: tuple[Joint, ...]
     parameters: tuple[Parameter, ...]
     control: Control | None
+    body: Body | None = None
 
     @property
     def names(self) -> list[str]:
@@ -105,7 +112,13 @@ class Robot:
         """W (samples, joints, parameters) from motions (joints, samples); sources in terms.py."""
         joints, samples = q.shape
         W = np.zeros((samples, joints, len(self.parameters)))
+        standard = [(i, p.column) for i, p in enumerate(self.parameters) if p.column >= 0]
+        if self.body and standard:
+            places, columns = zip(*standard, strict=True)
+            W[:, :, list(places)] = self.body.columns(q, dq, ddq)[:, :, list(columns)]
         for index, parameter in enumerate(self.parameters):
+            if parameter.column >= 0:
+                continue
             column = TERMS[parameter.term](q, dq, ddq, parameter)
             for joint, values in column.items():
                 W[:, joint, index] = values

@@ -7,7 +7,10 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from scarid_cli.algorithms.robots.base import with_base_parameters
 from scarid_cli.algorithms.robots.description import UNITS, Control, Joint, Parameter, Robot
+from scarid_cli.algorithms.robots.rigid import SYMBOLS, Body
+from scarid_cli.algorithms.robots.rigid import UNITS as STANDARD_UNITS
 from scarid_cli.algorithms.robots.terms import GRAVITY_TERMS, PLANAR_JOINTS, PLANAR_TERMS, TERMS
 from scarid_cli.errors import UsageFault
 
@@ -21,12 +24,19 @@ def built_in() -> list[str]:
 
 
 def load(name: str) -> Robot:
-    """A built-in robot by name, or one described in a TOML file."""
+    """A built-in robot by name, or one described in a TOML file or a URDF."""
+    if name.endswith(".urdf"):
+        return with_base_parameters(_arm(name, {"title": name, "urdf": name}, Path()))
     path = Path(name) if name.endswith(".toml") else FOLDER / f"{name}.toml"
     if not path.is_file():
-        raise UsageFault(f"unknown robot {name!r}; choose {', '.join(built_in())}, or a .toml file")
+        raise UsageFault(
+            f"unknown robot {name!r}; choose {', '.join(built_in())}, or a .toml or .urdf file"
+        )
     try:
-        return _robot(name, tomllib.loads(path.read_text("utf-8")))
+        document = tomllib.loads(path.read_text("utf-8"))
+        if "urdf" in document:
+            return with_base_parameters(_arm(name, document, path.parent))
+        return _robot(name, document)
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
         told = " ".join(reason.split())
@@ -48,6 +58,55 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
         parameters=parameters,
         control=_control(control, len(joints)) if control else None,
     )
+
+
+TERMS_OF_AXIS = {
+    "inertia": ("Ia", "mass", "kg m2"),
+    "viscous": ("fv", "viscous", "N m s/rad"),
+    "coulomb": ("fs", "coulomb", "N m"),
+    "offset": ("off", "offset", "N m"),
+}
+TERMS_OF_COUPLING = (
+    ("Iam", "coupled-inertia", "kg m2"),
+    ("fvm", "coupled-viscous", "N m s/rad"),
+    ("fsm", "coupled-coulomb", "N m"),
+)
+
+
+def _arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
+    """A robot whose rigid bodies a URDF describes; all standard parameters, and its axes' terms.
+
+    [[joint]] may have limits, noise, and `terms`, by default all of TERMS_OF_AXIS; [[coupling]] has
+    the two joints that share a motor.
+    """
+    body = Body(str(folder / _text("urdf", document["urdf"])))
+    types = body.types
+    entries = document.get("joint") or [{} for _ in types]
+    if len(entries) != len(types):
+        raise ValueError(f"{len(entries)} joints for the {len(types)} of {body.path}")
+    joints, parameters = [], []
+    for i, (kind, entry) in enumerate(zip(types, entries, strict=True), start=1):
+        axis = {k: v for k, v in entry.items() if k != "terms"}
+        joints.append(_joint({"type": kind, **axis}))
+        parameters += [
+            Parameter(f"{symbol}{i}", "standard", unit, 0.0, column=10 * (i - 1) + k)
+            for k, (symbol, unit) in enumerate(zip(SYMBOLS, STANDARD_UNITS, strict=True))
+        ]
+        for term in entry.get("terms", TERMS_OF_AXIS):
+            if term not in TERMS_OF_AXIS:
+                raise ValueError(f"term {term!r} of an axis; choose {', '.join(TERMS_OF_AXIS)}")
+            symbol, column, unit = TERMS_OF_AXIS[term]
+            parameters.append(Parameter(f"{symbol}{i}", column, unit, 0.0, joint=i))
+    for entry in document.get("coupling", []):
+        one, two = (_whole("coupling", x) for x in entry["joints"])
+        if not {one, two} <= set(range(1, len(types) + 1)) or one == two:
+            raise ValueError(f"joints {one} and {two} cannot be coupled")
+        parameters += [
+            Parameter(f"{symbol}{two}", term, unit, 0.0, joint=one, other=two)
+            for symbol, term, unit in TERMS_OF_COUPLING
+        ]
+    title = _text("title", document["title"])
+    return Robot(name, title, tuple(joints), tuple(parameters), control=None, body=body)
 
 
 def _joint(entry: dict[str, Any]) -> Joint:
@@ -72,7 +131,9 @@ def _parameter(entry: dict[str, Any], joints: int) -> Parameter:
         unit=_text("unit", entry["unit"]),
         apriori=_number("apriori", entry["apriori"]),
         joint=_whole("joint", entry.get("joint", 0)),
-        **{k: _number(k, entry.get(k, 0.0)) for k in ("velocity", "length", "gravity")},
+        velocity=_number("velocity", entry.get("velocity", 0.0)),
+        length=_number("length", entry.get("length", 0.0)),
+        gravity=_number("gravity", entry.get("gravity", 0.0)),
     )
     if parameter.term not in TERMS:
         raise ValueError(f"{parameter.name} has term {parameter.term!r}; choose {', '.join(TERMS)}")

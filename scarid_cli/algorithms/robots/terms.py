@@ -3,7 +3,8 @@
 Each term maps positions, velocities and accelerations, arrays (joints, samples), to the torque
 per unit of its parameter: a dict from joint (from 0) to samples. Joints that are left out feel
 nothing. The last argument has the constants of the term: the joint it is on (from 1), a velocity
-[rad/s or m/s] that shapes dry friction, a length [m] and the acceleration of gravity [m/s2].
+[rad/s or m/s] that shapes dry friction, a length [m], the acceleration of gravity
+[m/s2], and the joint that a coupled term is coupled to.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ class Constants(Protocol):
     def length(self) -> float: ...
     @property
     def gravity(self) -> float: ...
+    @property
+    def other(self) -> int: ...
 
 
 Term = Callable[[Array, Array, Array, Constants], Column]
@@ -89,6 +92,25 @@ def mass(_q: Array, _dq: Array, ddq: Array, its: Constants) -> Column:
     return {joint: ddq[joint]}
 
 
+def coupled_inertia(_q: Array, _dq: Array, ddq: Array, its: Constants) -> Column:
+    """Inertia of a motor that turns with both of two coupled joints [kg m2]."""
+    one, two = its.joint - 1, its.other - 1
+    return {one: ddq[two], two: ddq[one]}
+
+
+def coupled_viscous(_q: Array, dq: Array, _ddq: Array, its: Constants) -> Column:
+    """Viscous friction of such a motor [N m s/rad]."""
+    one, two = its.joint - 1, its.other - 1
+    return {one: dq[two], two: dq[one]}
+
+
+def coupled_coulomb(_q: Array, dq: Array, _ddq: Array, its: Constants) -> Column:
+    """Dry friction of such a motor [N m]."""
+    one, two = its.joint - 1, its.other - 1
+    both = np.sign(dq[one] + dq[two])
+    return {one: both, two: both}
+
+
 def zz1r(_q: Array, _dq: Array, ddq: Array, _its: Constants) -> Column:
     """ZZ1 + M2 L1^2 of the planar arm [kg m2] (eq. 26)."""
     return {0: ddq[0]}
@@ -145,6 +167,9 @@ TERMS: dict[str, Term] = {
     "coulomb-backward": coulomb_backward,
     "offset": offset,
     "mass": mass,
+    "coupled-inertia": coupled_inertia,
+    "coupled-viscous": coupled_viscous,
+    "coupled-coulomb": coupled_coulomb,
     "ZZ1R": zz1r,
     "ZZ2": zz2,
     "L1MX2": l1mx2,

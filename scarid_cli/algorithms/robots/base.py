@@ -1,0 +1,63 @@
+"""Base parameters: the fewest that the torques depend on (Gautier 1991, by QR decomposition).
+
+Columns of the regressor along random motions, one after the other: one that the columns before it
+make up is left out, and its parameter counted to theirs. The motions are always the same, so the
+set is too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.arrays import Array
+
+SAMPLES = 400
+REACH = 3.0  # rad or m, and per s and s2
+DEPENDENT = 1e-8  # of a column of unit length
+NONE = 1e-12  # of the longest column: rounding alone
+ABSENT = 1e-6  # times its neighbour: not a part of a combination
+
+
+def with_base_parameters(robot: Robot) -> Robot:
+    """The robot with its base parameters alone, each written out in those it stands for."""
+    rng = np.random.default_rng(0)
+    motion = rng.uniform(-REACH, REACH, (3, len(robot.joints), SAMPLES))
+    W = robot.regressor(*motion).reshape(-1, len(robot.parameters))
+    kept, parts = independent(W)
+    names = robot.names
+    parameters = []
+    for row, i in enumerate(kept):
+        others = zip(parts[row], names, strict=True)
+        rest = "".join(
+            f" {'-' if x < 0.0 else '+'} {abs(x):.6g} {name}"
+            for x, name in others
+            if abs(x) > ABSENT
+        )
+        parameters.append(replace(robot.parameters[i], stands_for=f"{names[i]}{rest}"))
+    return replace(robot, parameters=tuple(parameters))
+
+
+def independent(W: Array) -> tuple[list[int], Array]:
+    """The columns that those before them do not make up, and how they make up the others.
+
+    The second (kept columns, columns) has zeros where a column is kept or always zero.
+    """
+    lengths = np.linalg.norm(W, axis=0)
+    basis = np.empty((len(W), 0))
+    kept: list[int] = []
+    for i, length in enumerate(lengths):
+        if not length > NONE * lengths.max():
+            continue
+        rest = W[:, i] / length
+        for _ in range(2):  # once more, for the digits that the first projection loses
+            rest = rest - basis @ (basis.T @ rest)
+        size = float(np.linalg.norm(rest))
+        if size > DEPENDENT:
+            basis = np.column_stack((basis, rest / size))
+            kept.append(i)
+    parts: Array = np.asarray(np.linalg.lstsq(W[:, kept], W, rcond=None)[0], dtype=np.float64)
+    parts[:, kept] = 0.0
+    return kept, parts

@@ -1,0 +1,126 @@
+"""Regressors from a URDF and their base parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from scarid_cli.algorithms.robots.base import independent
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.errors import UsageFault
+
+pinocchio = pytest.importorskip("pinocchio")
+
+URDF = """<robot name="two">
+  <link name="base"/>
+  <joint name="a" type="revolute"><parent link="base"/><child link="one"/>
+    <origin xyz="0 0 0.1"/><axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="9" velocity="9"/></joint>
+  <link name="one"><inertial><origin xyz="0.1 0 0"/><mass value="2"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.3"/></inertial></link>
+  <joint name="b" type="TYPE"><parent link="one"/><child link="two"/>
+    <origin xyz="0.3 0 0"/><axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="9" velocity="9"/></joint>
+  <link name="two"><inertial><origin xyz="0.1 0 0.05"/><mass value="1"/>
+    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.03"/></inertial></link>
+</robot>"""
+
+
+@pytest.fixture
+def urdf(tmp_path: Path) -> str:
+    path = tmp_path / "two.urdf"
+    path.write_text(URDF.replace("TYPE", "revolute"))
+    return str(path)
+
+
+def test_the_regressor_gives_the_torques_of_inverse_dynamics(urdf: str) -> None:
+    """With the base parameters written out in the URDF's own values; against Pinocchio's RNEA."""
+    robot = load(urdf)
+    model = pinocchio.buildModelFromUrdf(urdf)
+    data = model.createData()
+    standard: dict[str, float] = {}
+    order = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
+    for i, inertia in enumerate(list(model.inertias)[1:], start=1):
+        values = zip(order, inertia.toDynamicParameters(), strict=True)
+        standard |= {f"{symbol}{i}": x for symbol, x in values}
+    theta = np.array([written_out(p.stands_for, standard) for p in robot.parameters])
+    rng = np.random.default_rng(1)
+    q, dq, ddq = rng.standard_normal((3, 2, 20))
+    torques = robot.torques(robot.regressor(q, dq, ddq), theta)
+    for k in range(20):
+        expected = pinocchio.rnea(model, data, q[:, k], dq[:, k], ddq[:, k])
+        np.testing.assert_allclose(torques[:, k], expected, rtol=1e-5, atol=1e-5)
+
+
+def written_out(combination: str, values: dict[str, float]) -> float:
+    """`Iyy1 + 0.09 m2 - 1 Ia1`, without friction."""
+    first, *words = combination.split()
+    total = values.get(first, 0.0)
+    for sign, factor, name in zip(words[::3], words[1::3], words[2::3], strict=True):
+        total += (-1.0 if sign == "-" else 1.0) * float(factor) * values.get(name, 0.0)
+    return total
+
+
+def test_base_parameters_are_those_of_a_planar_arm_and_always_the_same(urdf: str) -> None:
+    robot = load(urdf)
+    bodies = [p.name for p in robot.parameters if p.column >= 0]
+    assert bodies == ["Iyy1", "mx1", "mz1", "Iyy2", "mx2", "mz2"]
+    assert robot.parameters[0].stands_for == "Iyy1 + 1 Ia1 + 0.09 m2"
+    again = load(urdf)
+    assert [p.stands_for for p in again.parameters] == [p.stands_for for p in robot.parameters]
+    motion = np.random.default_rng(2).standard_normal((3, 2, 100))
+    W = robot.regressor(*motion).reshape(-1, len(robot.parameters))
+    assert np.linalg.matrix_rank(W) == len(robot.parameters)
+
+
+def test_dependent_columns_are_counted_to_those_before_them() -> None:
+    W = np.random.default_rng(0).standard_normal((50, 5))
+    W[:, 1] = 0.0
+    W[:, 3] = 2.0 * W[:, 0] - 0.5 * W[:, 2]
+    kept, parts = independent(W)
+    assert kept == [0, 2, 4]
+    np.testing.assert_allclose(parts[:, 3], [2.0, -0.5, 0.0], atol=1e-12)
+    np.testing.assert_allclose(W[:, kept] @ parts[:, [1, 3]], W[:, [1, 3]], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("<robot", "not a URDF"),
+        (URDF.replace("TYPE", "continuous"), "only revolute and prismatic"),
+    ],
+    ids=["broken", "continuous"],
+)
+def test_what_is_no_arm_is_told(content: str, told: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.urdf"
+    path.write_text(content)
+    with pytest.raises(UsageFault, match=told):
+        load(str(path))
+
+
+def test_a_prismatic_joint_is_known_by_its_type(tmp_path: Path) -> None:
+    path = tmp_path / "x.urdf"
+    path.write_text(URDF.replace("TYPE", "prismatic"))
+    assert [joint.type for joint in load(str(path)).joints] == ["revolute", "prismatic"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ("[[joint]]", "1 joints for the 2"),
+        ("[[joint]]\n[[joint]]\nterms = ['magic']", "term 'magic' of an axis"),
+        ("[[coupling]]\njoints = [1, 3]", "joints 1 and 3 cannot be coupled"),
+        ("", "no such file"),
+    ],
+    ids=["joints", "term", "coupling", "urdf"],
+)
+def test_a_description_that_does_not_fit_is_told(
+    lines: str, told: str, urdf: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "robot.toml"
+    place = urdf if lines else "nowhere.urdf"
+    path.write_text(f"title = 'two'\nurdf = '{place}'\n{lines}\n")
+    with pytest.raises(UsageFault, match=told):
+        load(str(path))
