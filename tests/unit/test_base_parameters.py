@@ -9,6 +9,7 @@ import pytest
 
 from scarid_cli.algorithms.robots.base import independent
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.cli.robot import described
 from scarid_cli.errors import UsageFault
 
 pinocchio = pytest.importorskip("pinocchio")
@@ -124,3 +125,11 @@ def test_a_description_that_does_not_fit_is_told(
     path.write_text(f"title = 'two'\nurdf = '{place}'\n{lines}\n")
     with pytest.raises(UsageFault, match=told):
         load(str(path))
+
+
+def test_a_check_writes_the_base_parameters_out(urdf: str) -> None:
+    lines = list(described(load(urdf)))
+    assert "freedom     2 joints, 13 parameters" in lines
+    assert "controller  none: it cannot be simulated" in lines
+    assert "  Iyy1  kg m2      0  = Iyy1 + 1 Ia1 + 0.09 m2" in lines
+    assert "  mx2   kg m       0" in lines

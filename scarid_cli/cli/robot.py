@@ -1,0 +1,67 @@
+"""scarid robot check"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from scarid_cli.cli import options
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.robots.description import Robot
+
+
+@click.group(name="robot")
+def command() -> None:
+    """Robot descriptions: what a name, a TOML file or a URDF stands for.
+
+    \b
+      scarid robot check scara2
+      scarid robot check arm.urdf
+    """
+
+
+@command.command(name="check")
+@click.argument("robot", metavar="ROBOT")
+@options.common
+def check(robot: str, **_rest: Any) -> None:
+    """Tell what was understood of a robot description.
+
+    \b
+      scarid robot check planar2-gravity
+      scarid robot check mine.toml
+
+    Joints with their limits, and the parameters that identify estimates: name, unit, a priori
+    value, and, for a URDF, the standard parameters that each base parameter stands for.
+    """
+    from scarid_cli.algorithms.robots.reading import load
+
+    for line in described(load(robot)):
+        click.echo(line)
+
+
+def described(robot: Robot) -> Iterator[str]:
+    """A line for the robot, each joint and each parameter."""
+    joints, parameters = len(robot.joints), len(robot.parameters)
+    yield f"robot       {robot.name}: {robot.title}"
+    yield f"freedom     {joints} joint{'s' if joints > 1 else ''}, {parameters} parameters"
+    yield f"controller  {'described' if robot.control else 'none: it cannot be simulated'}"
+    yield "joints"
+    for i, joint in enumerate(robot.joints, start=1):
+        limits = (
+            ("position", joint.position_limit, joint.unit),
+            ("velocity", joint.velocity_limit, f"{joint.unit}/s"),
+            ("torque", joint.torque_limit, joint.torque_unit),
+        )
+        known = ", ".join(f"{name} {x:g} {unit}" for name, x, unit in limits if isfinite(x))
+        yield f"  {i}  {joint.type:<9}  {known or 'no limits'}"
+    yield "parameters"
+    width = max(len(parameter.name) for parameter in robot.parameters)
+    for parameter in robot.parameters:
+        more = parameter.stands_for
+        more = f"  = {more}" if more != parameter.name and more else ""
+        line = f"  {parameter.name:<{width}}  {parameter.unit:<9}  {parameter.apriori:g}{more}"
+        yield line.rstrip()
