@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -54,8 +54,18 @@ class Job:
         self.outputs.append(document)
         return document
 
-    def read(self, path: str, kind: str | None, *, regular: bool = True) -> Table:
-        """A checked table of a kind, or any table as it stands for None."""
+    def read(
+        self,
+        path: str,
+        kind: str | None,
+        *,
+        regular: bool = True,
+        through: Callable[[ByteSource], ByteSource] | None = None,
+    ) -> Table:
+        """A checked table of a kind, or any table as it stands for None.
+
+        `regular`: its clock must be; `through` may translate its bytes.
+        """
         if path == "-" and STDIN in self._inputs:
             raise UsageFault(
                 "standard input can be read only once; give a FILE for the other table"
@@ -63,7 +73,7 @@ class Job:
         source = ByteSource.open(path)
         self.sources.append(source)
         self._inputs[source.name] = source.sha256() if self._history else None
-        table = open_table(source)
+        table = open_table(through(source) if through else source)
         if kind:
             table = checked(table, kind, regular=regular)
         if self._verbose:

@@ -1,0 +1,83 @@
+"""What labs have: CSV of other customs, NumPy's .npz and MATLAB's .mat files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.errors import BadData, UsageFault, bad_data
+from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.table import Metadata, Table, doubles
+
+ARCHIVES = (".npz", ".mat")
+
+
+class Customs(ByteSource):
+    """CSV with another separator, a decimal comma, or without a header, turned into ours.
+
+    Byte by byte, so in files whose texts have neither character.
+    """
+
+    def __init__(self, source: ByteSource, separator: str, decimal: str, header: str) -> None:
+        super().__init__(source.fd, source.name)
+        self._table = bytes.maketrans(
+            (separator + decimal).encode(), (b"," if separator else b"") + b"." * len(decimal)
+        )
+        if separator and decimal == ",":
+            self._table = bytes.maketrans(separator.encode() + b",", b",.")
+        if header:
+            self._ahead = header.encode() + b"\n"
+
+    def _fetch(self, size: int) -> bytes:
+        return super()._fetch(size).translate(self._table)
+
+
+def read_archive(path: str) -> Table:
+    """The arrays of an .npz or .mat file as columns; a matrix `q` becomes q1, q2, ..."""
+    try:
+        arrays = _arrays(path)
+    except FileNotFoundError:
+        raise UsageFault(f"{path}: no such file") from None
+    except (OSError, ValueError, TypeError, NotImplementedError) as error:
+        told = " ".join(str(error).split())
+        raise BadData(f"{path}: not a readable {Path(path).suffix} file: {told}") from None
+    columns: dict[str, Any] = {}
+    for name, array in arrays.items():
+        columns |= _columns(name, np.asarray(array))
+    lengths = {len(column) for column in columns.values()}
+    if not columns or len(lengths) > 1:
+        found = ", ".join(f"{name} ({len(x)})" for name, x in columns.items()) or "no numbers"
+        raise bad_data(
+            path, found, expected="arrays of one length", remedy="save those of the log alone"
+        )
+    batch = pa.RecordBatch.from_arrays([doubles(x) for x in columns.values()], list(columns))
+    return Table(path, batch.schema, Metadata(), iter([batch]))
+
+
+def _arrays(path: str) -> dict[str, Any]:
+    if path.endswith(".npz"):
+        with np.load(path, allow_pickle=False) as archive:
+            return {name: archive[name] for name in archive.files}
+    from scipy.io import loadmat
+    from scipy.io.matlab import MatReadError
+
+    try:
+        found = loadmat(path)
+    except MatReadError as error:
+        raise ValueError(str(error)) from None
+    return {name: array for name, array in found.items() if not name.startswith("__")}
+
+
+def _columns(name: str, array: Any) -> dict[str, Any]:
+    """One column of a vector; of a matrix one per column, or per row if these are longer."""
+    if array.dtype.kind not in "fiub" or array.ndim > 2 or array.size < 2:
+        return {}
+    flat = array.reshape(len(array), -1) if array.ndim else array.reshape(1, 1)
+    if flat.shape[0] < flat.shape[1]:
+        flat = flat.T
+    if flat.shape[1] == 1:
+        return {name: flat[:, 0]}
+    return {f"{name}{i}": column for i, column in enumerate(flat.T, start=1)}

@@ -1,0 +1,95 @@
+"""A lab's log with the names, units and clock that the commands expect."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from math import pi
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.errors import UsageFault
+from scarid_cli.io.table import Table, doubles, matrix, number
+
+# Unit of a log: what to multiply with, and the unit that comes out.
+UNITS = {
+    "deg": (pi / 180.0, "rad"),
+    "deg/s": (pi / 180.0, "rad/s"),
+    "deg/s2": (pi / 180.0, "rad/s2"),
+    "rev": (2.0 * pi, "rad"),
+    "rpm": (2.0 * pi / 60.0, "rad/s"),
+    "mm": (1e-3, "m"),
+    "mm/s": (1e-3, "m/s"),
+    "mN m": (1e-3, "N m"),
+    "N mm": (1e-3, "N m"),
+    "kN m": (1e3, "N m"),
+    "mN": (1e-3, "N"),
+    "kN": (1e3, "N"),
+    "ms": (1e-3, "s"),
+    "us": (1e-6, "s"),
+    "ns": (1e-9, "s"),
+}
+
+
+def adapted(
+    table: Table, names: dict[str, str], units: list[tuple[str, str]], rate: float | None
+) -> Table:
+    """Columns renamed (`names`: new to old), converted (column patterns and units), with a clock.
+
+    `rate` [Hz] gives a table without t a time column.
+    """
+    fields = _renamed(table, names)
+    new = [field.name for field in fields]
+    scales = _scales(new, units)
+    if rate is not None and "t" in new:
+        raise UsageFault("--rate: the table has a time column t")
+    out = [number(f.name, scales[f.name][1]) if f.name in scales else f for f in fields]
+    clock = [number("t", "s")] if rate is not None else []
+    schema = pa.schema([*clock, *out])
+    return replace(table, schema=schema, batches=_rows(table, schema, new, scales, rate))
+
+
+def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:
+    for old in names.values():
+        if old not in table.columns:
+            raise UsageFault(f"--map: no column {old!r}; the table has {', '.join(table.columns)}")
+    to = {old: new for new, old in names.items()}
+    fields = [f.with_name(to.get(f.name, f.name)) for f in table.schema]
+    twice = next((f.name for f in fields if [g.name for g in fields].count(f.name) > 1), None)
+    if twice:
+        raise UsageFault(f"--map: two columns would be called {twice!r}")
+    return fields
+
+
+def _scales(names: list[str], units: list[tuple[str, str]]) -> dict[str, tuple[float, str]]:
+    scales: dict[str, tuple[float, str]] = {}
+    for pattern, unit in units:
+        if unit not in UNITS:
+            raise UsageFault(f"--unit {pattern}={unit}: unknown unit; there are {', '.join(UNITS)}")
+        found = [name for name in names if fnmatchcase(name, pattern)]
+        if not found:
+            raise UsageFault(f"--unit: no column {pattern!r}; the table has {', '.join(names)}")
+        scales |= dict.fromkeys(found, UNITS[unit])
+    return scales
+
+
+def _rows(
+    table: Table,
+    schema: pa.Schema,
+    names: list[str],
+    scales: dict[str, tuple[float, str]],
+    rate: float | None,
+) -> Iterator[pa.RecordBatch]:
+    row = 0
+    for batch in table.batches:
+        columns = []
+        for name, old, column in zip(names, table.columns, batch.columns, strict=True):
+            if name in scales:
+                column = doubles(matrix(batch, [old])[0] * scales[name][0])
+            columns.append(column)
+        if rate is not None:
+            columns.insert(0, doubles(np.arange(row, row + batch.num_rows) / rate))
+        row += batch.num_rows
+        yield pa.RecordBatch.from_arrays(columns, schema=schema)
