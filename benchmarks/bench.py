@@ -215,6 +215,64 @@ def stream(rows: int) -> None:
             )
 
 
+AXES = 6
+AXIS_ROWS = 1_000_000
+
+
+def stream_six(rows: int) -> None:
+    """The same of a log of six axes."""
+    names = [f"{signal}{i}" for signal in ("q", "tau") for i in range(1, AXES + 1)]
+    schema = pa.schema([(name, pa.float64()) for name in ["t", *names]])
+    with pa.ipc.new_stream(sys.stdout.buffer, schema) as writer:
+        for start in range(0, rows, 8192):
+            t = np.arange(start, min(start + 8192, rows)) / 1000
+            q = [np.sin((1.0 + 0.17 * i) * t) + 0.3 * np.cos(0.41 * i * t) for i in range(AXES)]
+            columns = [t, *q, *(np.cos(x) + x for x in q)]
+            arrays = [pa.array(column) for column in columns]
+            writer.write_batch(pa.RecordBatch.from_arrays(arrays, schema=schema))
+
+
+def six_axes(folder: Path) -> None:
+    """A log of six axes through filter, differentiate and identify, by a URDF."""
+    axes = ("0 0 1", "0 1 0", "0 1 0", "1 0 0", "0 1 0", "1 0 0")
+    parts = ['<robot name="arm"><link name="link0"/>']
+    for i, axis in enumerate(axes, start=1):
+        parts.append(
+            f'<joint name="j{i}" type="revolute"><parent link="link{i - 1}"/>'
+            f'<child link="link{i}"/><origin xyz="0.2 0 0.1"/><axis xyz="{axis}"/>'
+            '<limit lower="-3" upper="3" effort="9" velocity="9"/></joint>'
+            f'<link name="link{i}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0"'
+            ' iyy="1" iyz="0" izz="1"/></inertial></link>'
+        )
+    (folder / "arm.urdf").write_text("".join(parts) + "</robot>")
+    robot = str(folder / "arm.urdf")
+    made = f"{sys.executable} {__file__} six"
+    pipe = (
+        f"{made} {{rows}} | {SCARID} filter --format arrow | {SCARID} differentiate --format arrow"
+    )
+    print(f"\nSix axes, peak memory of the last stage on 50,000 and {AXIS_ROWS:,} rows")
+    for name, last in (
+        ("filter | differentiate", ""),
+        ("... | identify, 61 parameters", f"{SCARID} identify -q --robot {robot}"),
+    ):
+        peaks, seconds = [], 0.0
+        for rows in (50_000, AXIS_ROWS):
+            *before, end = pipe.format(rows=rows).split(" | ")
+            stages = " | ".join([*before, end]) if last else " | ".join(before)
+            with subprocess.Popen(["bash", "-c", stages], stdout=subprocess.PIPE) as source:
+                start = time.perf_counter()
+                done = subprocess.run(
+                    [sys.executable, "-c", LAUNCHER, *(last or end).split()],
+                    stdin=source.stdout, capture_output=True, check=True,
+                )  # fmt: skip
+            seconds = time.perf_counter() - start
+            peaks.append(int(done.stderr.split()[-1]) / 1024)
+        print(
+            f"  {name:30} {peaks[0]:6.1f} MB {peaks[1]:6.1f} MB  ratio {peaks[1] / peaks[0]:5.3f}"
+            f"  {seconds / AXIS_ROWS * 1e6:6.2f} us a row"
+        )
+
+
 def peak(words: list[str], rows: int) -> tuple[float, float]:
     """Peak memory [MB] and time [s] of a stage that reads so many rows from a pipe."""
     with subprocess.Popen(
@@ -261,6 +319,9 @@ def main() -> None:
     if sys.argv[1:2] == ["stream"]:
         stream(int(sys.argv[2]))
         return
+    if sys.argv[1:2] == ["six"]:
+        stream_six(int(sys.argv[2]))
+        return
     subprocess.run([SCARID, "--version"], check=True)
     with tempfile.TemporaryDirectory() as folder:
         startup(Path(folder))
@@ -268,6 +329,7 @@ def main() -> None:
         differentiators()
         estimators()
         memory(Path(folder))
+        six_axes(Path(folder))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 from scarid_cli.algorithms.regression import Rows, joined
 
-SAMPLES = 16_384  # held of a streamed record
+SAMPLES = 16_384  # held of a streamed record, at most
+NUMBERS = 2_000_000  # that these have, unless that is too few
+FEWEST = 4096  # samples
 ALL = 10**15
 SEGMENTS = 8  # that these are in, at most
 
@@ -25,14 +27,17 @@ class Witness:
 
     def add(self, rows: Rows) -> Witness:
         """Take in the next samples."""
-        segment = self.samples // SEGMENTS
+        limit = self.samples
+        if limit < ALL:
+            limit = min(limit, max(FEWEST, NUMBERS // _size(rows)))
+        segment = limit // SEGMENTS
         parts, stride = list(self.parts), self.stride
         start = 0
         while start < rows.samples:
             number = int(rows.at[start]) // segment
             stop = start + int((rows.at[start:] < (number + 1) * segment).sum())
             if number % stride == 0:
-                parts.append(rows.part(slice(start, stop)))
+                parts.append(_copied(rows.part(slice(start, stop))))
             while len({int(part.at[0]) // segment for part in parts}) > SEGMENTS:
                 stride *= 2
                 parts = [part for part in parts if int(part.at[0]) // segment % stride == 0]
@@ -42,3 +47,21 @@ class Witness:
     def rows(self) -> Rows:
         """What was kept, as one."""
         return joined(self.parts)
+
+
+def _size(rows: Rows) -> int:
+    """Numbers of one sample."""
+    arrays = (rows.W, rows.y, rows.scales, rows.motion)
+    return max(1, sum(array.size for array in arrays) // max(1, rows.samples))
+
+
+def _copied(rows: Rows) -> Rows:
+    """A part that does not keep the whole it was cut from."""
+    return Rows(
+        rows.W.copy(),
+        rows.y.copy(),
+        rows.scales.copy(),
+        rows.at.copy(),
+        rows.motion.copy(),
+        None if rows.reference is None else rows.reference.copy(),
+    )

@@ -24,7 +24,7 @@ from scarid_cli.arrays import Array, Marks, Numbers
 BLOCK = 0.5  # s: residuals so far apart are taken to be independent
 BLOCKS = (10, 128)  # of a record at least, and at most
 LAG = 0.025  # s: what soft sensors delay
-PIECE = 4096  # samples that are worked on at once
+PIECE = 1024  # samples that are worked on at once
 SLOW = 0.1  # of the usual velocity
 FLAT = 1e-9  # of the greatest eigenvalue: directions that the lagged motion does not have
 Z95 = 1.959963984540054
