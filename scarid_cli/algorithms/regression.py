@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import ClassVar
 
 import numpy as np
 
@@ -45,6 +46,25 @@ class Rows:
         )
 
 
+class Held:
+    """An estimator whose state is all rows so far: what it does with them is its `fit`."""
+
+    RECURSIVE: ClassVar[bool] = False
+    HOLDS: ClassVar[bool] = True
+
+    def init(self, prior: Array) -> list[Rows]:  # noqa: ARG002 (their number is that of W's columns)
+        return []
+
+    def step(
+        self,
+        state: list[Rows],
+        rows: Rows,
+        *,
+        trace: bool = False,  # noqa: ARG002 (there is nothing before the end)
+    ) -> tuple[list[Rows], Array]:
+        return [*state, rows], np.empty((0, rows.W.shape[2]))
+
+
 def plain(W: Array, y: Array) -> Rows:
     """Rows of equal weight without a motion behind them."""
     samples, joints, _ = W.shape
@@ -68,11 +88,14 @@ def rows_of(
     sign(dq).
     """
     q, dq, ddq, tau = motion
-    scales = np.ones(tau.T.shape)
-    if slow is not None:
-        scales[np.abs(dq.T) < slow] = 0.0
     y = np.ascontiguousarray(tau.T)
-    return Rows(robot.regressor(q, dq, ddq), y, scales, at, motion, reference)
+    rows = Rows(robot.regressor(q, dq, ddq), y, np.ones(y.shape), at, motion, reference)
+    return rows if slow is None else without_slow(rows, slow)
+
+
+def without_slow(rows: Rows, slow: Array) -> Rows:
+    """The rows without those of joints below these velocities (joints)."""
+    return replace(rows, scales=rows.scales * (np.abs(rows.motion[1].T) >= slow))
 
 
 def joined(parts: Sequence[Rows]) -> Rows:

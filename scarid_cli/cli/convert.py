@@ -59,6 +59,7 @@ def command(
     metadata: units and history end there.
     """
     from scarid_cli.cli.job import job
+    from scarid_cli.cli.pairs import pair
     from scarid_cli.errors import UsageFault
     from scarid_cli.io.foreign import ARCHIVES, Customs, read_archive
     from scarid_cli.stages.adapt import adapted
@@ -69,8 +70,8 @@ def command(
         raise UsageFault(f"--separator is one character, not {separator!r}")
     if decimal_comma and not separator:
         raise UsageFault("--decimal-comma needs a --separator other than the comma")
-    pairs = [_pair(text, "--map") for text in (mapping.split(",") if mapping else [])]
-    wanted = [_pair(text, "--unit") for text in units]
+    pairs = [pair(text, "--map") for text in (mapping.split(",") if mapping else [])]
+    wanted = [pair(text, "--unit") for text in units]
     foreign = separator or header
     with job(rest) as run:
         out = run.output(rest["output"], rest["format"])
@@ -83,12 +84,3 @@ def command(
         else:
             table = run.read(file, None)
         run.write(run.recorded(adapted(table, dict(pairs), wanted, rate)), out)
-
-
-def _pair(text: str, option: str) -> tuple[str, str]:
-    from scarid_cli.errors import UsageFault
-
-    left, sign, right = text.partition("=")
-    if not sign or not left.strip() or not right.strip():
-        raise UsageFault(f"{option} {text}: write NAME=VALUE")
-    return left.strip(), right.strip()

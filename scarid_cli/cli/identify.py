@@ -157,13 +157,12 @@ def command(
 
 def _given(method: Any, name: str, rest: dict[str, Any]) -> dict[str, Any]:
     """The settings that were given, which must be some of the estimator's."""
+    from scarid_cli.cli.pairs import pair, require_known
     from scarid_cli.errors import UsageFault
 
     given: dict[str, Any] = {}
     for text in rest["settings"]:
-        key, sign, value = text.partition("=")
-        if not sign:
-            raise UsageFault(f"--set {text}: write NAME=VALUE")
+        key, value = pair(text, "--set")
         try:
             given[key] = float(value)
         except ValueError:
@@ -174,9 +173,7 @@ def _given(method: Any, name: str, rest: dict[str, Any]) -> dict[str, Any]:
         given["forgetting"] = _number(rest["forgetting"], rest["forgetting"].split(",")[0])
     known = names_of(method)
     for key in given:
-        if key not in known:
-            choice = ", ".join(known) or "none"
-            raise UsageFault(f"{name} has no setting {key!r}; it has {choice}")
+        require_known(known, key, name)
     if "," in (rest["forgetting"] or ""):
         del given["forgetting"]  # of single parameters: these are known with the robot
     return given

@@ -7,6 +7,7 @@ from typing import Any
 
 from scarid_cli.algorithms.registry import Registry
 from scarid_cli.cli.job import per_joint
+from scarid_cli.cli.pairs import pair, require_known
 from scarid_cli.cli.settings import Settings
 from scarid_cli.errors import UsageFault
 
@@ -24,13 +25,11 @@ def configured(
     known = [field.name for field in fields(method)]
     values = {key: [value] * joints for key, value in _preset(method, name, preset).items()}
     for key, numbers in saved.get(name, {}).items():
-        _require(known, key, name, f"--settings: {key}")
+        require_known(known, key, name, f"--settings: {key}: ")
         values[key] = per_joint(numbers, joints, f"--settings: {name}, {key}")
     for text in settings:
-        key, sign, value = text.partition("=")
-        if not sign:
-            raise UsageFault(f"--set {text}: write NAME=VALUE")
-        _require(known, key, name, f"--set {text}")
+        key, value = pair(text, "--set")
+        require_known(known, key, name, f"--set {text}: ")
         values[key] = per_joint(_numbers(text, value), joints, f"--set {key}")
     return [method(**{key: row[joint] for key, row in values.items()}) for joint in range(joints)]
 
@@ -39,12 +38,6 @@ def _method(registry: Registry, name: str) -> Any:
     if name not in registry.names:
         raise UsageFault(f"--settings: no method {name!r}; there are {', '.join(registry.names)}")
     return registry.load(name)
-
-
-def _require(known: list[str], key: str, name: str, where: str) -> None:
-    if key not in known:
-        choice = ", ".join(known) or "none"
-        raise UsageFault(f"{where}: {name} has no setting {key!r}; it has {choice}")
 
 
 def _numbers(text: str, value: str) -> list[float]:

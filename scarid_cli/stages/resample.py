@@ -49,7 +49,7 @@ def _rows(
     resampler = Resampler(period, smooth=period > SLOWER * own)
     numbers = [f.name for f in table.schema if pa.types.is_floating(f.type) and f.name != "t"]
     state: State | None = None
-    held: pa.Table | None = None  # the samples of the state, with all their columns
+    held: pa.RecordBatch | None = None  # the samples of the state, with all their columns
     row = 0
     for whole in batches:
         before = state.t[-1] if state else None
@@ -60,12 +60,12 @@ def _rows(
         x = np.array(values).reshape(len(numbers), len(t))
         if state is None:
             state = resampler.init(float(t[0]), x[:, 0])
-            held = pa.Table.from_batches([batch.slice(0, 1)])
+            held = batch.slice(0, 1)
             batch, t, x = batch.slice(1), t[1:], x[:, 1:]
         state = replace(state, clock=state.clock.after(steps, whole.num_rows - len(kept)))
         if not len(t):
             continue
-        together = pa.concat_tables([held, pa.Table.from_batches([batch])]).combine_chunks()
+        together = pa.Table.from_batches([held, batch]).combine_chunks().to_batches()[0]
         times = np.concatenate((state.t, t))
         state, at, found = resampler.step(state, t, x)
         held = together.slice(len(times) - len(state.t))
@@ -109,7 +109,7 @@ def _checked(
 
 
 def _joined(
-    source: pa.Table, schema: pa.Schema, at: Array, numbers: dict[str, Array], left: Numbers
+    source: pa.RecordBatch, schema: pa.Schema, at: Array, numbers: dict[str, Array], left: Numbers
 ) -> pa.RecordBatch:
     columns = []
     for field in schema:
@@ -118,6 +118,5 @@ def _joined(
         elif field.name in numbers:
             columns.append(doubles(numbers[field.name]))
         else:
-            taken = source.column(field.name).combine_chunks().take(pa.array(left))
-            columns.append(taken.combine_chunks() if hasattr(taken, "combine_chunks") else taken)
+            columns.append(source.column(field.name).take(pa.array(left)))
     return pa.RecordBatch.from_arrays(columns, schema=schema)

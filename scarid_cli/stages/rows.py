@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.regression import Rows, joined, rows_of
+from scarid_cli.algorithms.regression import Rows, joined, rows_of, without_slow
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table, matrix, settled_runs
@@ -124,6 +124,4 @@ def _decimated(rows: Rows, factors: tuple[int, ...], slow: Array | None) -> Rows
 
     for factor in factors:
         rows = decimated(rows, factor)
-    if slow is None:
-        return rows
-    return replace(rows, scales=(np.abs(rows.motion[1].T) >= slow).astype(np.float64))
+    return rows if slow is None else without_slow(rows, slow)

@@ -11,7 +11,7 @@ smoothing = 0.05: velocity over which dry friction changes its sign [rad/s or m/
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -32,7 +32,6 @@ class State:
 
     x: Array
     covariance: Array
-    extra: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

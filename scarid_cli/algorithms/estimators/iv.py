@@ -10,13 +10,12 @@ rows. No settings.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError
-from scarid_cli.algorithms.regression import Rows, joined, runs
+from scarid_cli.algorithms.regression import Held, Rows, joined, runs
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.settings import GIVEN
 from scarid_cli.algorithms.statistics.belief import shifts
@@ -31,31 +30,21 @@ SETTLING = 0.5  # s: until a simulation that starts at rest follows its referenc
 
 
 @dataclass(frozen=True)
-class Estimator:
+class Estimator(Held):
     robot: Robot | None = field(default=None, metadata=GIVEN)
     h: float = field(default=0.0, metadata=GIVEN)
-
-    RECURSIVE: ClassVar[bool] = False
-    HOLDS: ClassVar[bool] = True
 
     def for_robot(self, robot: Robot, h: float) -> Estimator:
         if robot.control is None:
             raise UsageFault(f"iv: robot {robot.name} has no controller to simulate it with")
         return replace(self, robot=robot, h=h)
 
-    def init(self, prior: Array) -> list[Rows]:  # noqa: ARG002
-        return []
-
     def step(
-        self,
-        state: list[Rows],
-        rows: Rows,
-        *,
-        trace: bool = False,  # noqa: ARG002
+        self, state: list[Rows], rows: Rows, *, trace: bool = False
     ) -> tuple[list[Rows], Array]:
         if rows.reference is None:
             raise UsageFault("iv needs the reference that the robot followed: columns q1_ref, ...")
-        return [*state, rows], np.empty((0, rows.W.shape[2]))
+        return super().step(state, rows, trace=trace)
 
     def fit(self, state: list[Rows]) -> Fit:
         rows = joined(state)

@@ -8,34 +8,18 @@ No settings.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows, joined
-from scarid_cli.algorithms.statistics.information import Fit, absorb, empty, solve
+from scarid_cli.algorithms.regression import Held, Rows, joined
+from scarid_cli.algorithms.statistics.information import Fit, least_squares
 from scarid_cli.arrays import Array
 
 ITERATIONS = 100
 
 
 @dataclass(frozen=True)
-class Estimator:
-    RECURSIVE: ClassVar[bool] = False
-    HOLDS: ClassVar[bool] = True
-
-    def init(self, prior: Array) -> list[Rows]:  # noqa: ARG002
-        return []
-
-    def step(
-        self,
-        state: list[Rows],
-        rows: Rows,
-        *,
-        trace: bool = False,  # noqa: ARG002
-    ) -> tuple[list[Rows], Array]:
-        return [*state, rows], np.empty((0, rows.W.shape[2]))
-
+class Estimator(Held):
     def fit(self, state: list[Rows]) -> Fit:
         rows = joined(state)
         whole = (rows.scales > 0.0).all(axis=1)
@@ -55,6 +39,4 @@ class Estimator:
 
 
 def _solved(W: Array, y: Array, whitening: Array) -> Fit:
-    white = np.ascontiguousarray(np.einsum("ij,kjp->kip", whitening, W))
-    state, _ = absorb(empty(W.shape[2]), white, np.ascontiguousarray(y @ whitening.T))
-    return solve(state)
+    return least_squares(np.einsum("ij,kjp->kip", whitening, W), y @ whitening.T)

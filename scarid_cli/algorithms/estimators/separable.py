@@ -9,15 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows, joined
+from scarid_cli.algorithms.regression import Held, Rows, joined
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.terms import stribeck
 from scarid_cli.algorithms.settings import GIVEN
-from scarid_cli.algorithms.statistics.information import Fit, absorb, empty, solve
+from scarid_cli.algorithms.statistics.information import Fit, least_squares
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
@@ -26,28 +25,13 @@ RANGE = (0.01, 1.0)  # of the velocities, in parts of the root-mean-square veloc
 
 
 @dataclass(frozen=True)
-class Estimator:
+class Estimator(Held):
     robot: Robot | None = field(default=None, metadata=GIVEN)
-
-    RECURSIVE: ClassVar[bool] = False
-    HOLDS: ClassVar[bool] = True
 
     def for_robot(self, robot: Robot, h: float) -> Estimator:  # noqa: ARG002
         if not any(p.term == "coulomb" for p in robot.parameters):
             raise UsageFault(f"separable: robot {robot.name} has no joint with dry friction")
         return replace(self, robot=robot)
-
-    def init(self, prior: Array) -> list[Rows]:  # noqa: ARG002
-        return []
-
-    def step(
-        self,
-        state: list[Rows],
-        rows: Rows,
-        *,
-        trace: bool = False,  # noqa: ARG002
-    ) -> tuple[list[Rows], Array]:
-        return [*state, rows], np.empty((0, rows.W.shape[2]))
 
     def fit(self, state: list[Rows]) -> Fit:
         assert self.robot is not None
@@ -56,7 +40,7 @@ class Estimator:
         inverse = _inverse_deviations(rows)
         velocities = _searched(rows, joints, inverse)
         linear = _with_columns(rows, [_column(rows, j, v) for j, v in velocities.items()])
-        theta = _solved(linear, inverse).estimates
+        theta = least_squares(linear.W, linear.y, rows.scales * inverse).estimates
         # Linear in the velocities as well at the solution: errors and residuals are then as usual.
         peaks = theta[-len(joints) :]
         slopes = [
@@ -71,7 +55,7 @@ class Estimator:
         whole = replace(_with_columns(linear, slopes), y=y)
         units = [self.robot.joints[j - 1] for j in joints]
         return replace(
-            _solved(whole, inverse),
+            least_squares(whole.W, whole.y, rows.scales * inverse),
             estimates=np.concatenate((theta, found)),
             whitening=np.diag(inverse),
             rows=whole,
@@ -103,17 +87,10 @@ def _with_columns(rows: Rows, columns: list[tuple[int, Array]]) -> Rows:
     return replace(rows, W=np.ascontiguousarray(np.concatenate((rows.W, added), axis=2)))
 
 
-def _solved(rows: Rows, inverse: Array) -> Fit:
-    state, _ = absorb(
-        empty(rows.W.shape[2]), rows.W, rows.y, np.ascontiguousarray(rows.scales * inverse)
-    )
-    return solve(state)
-
-
 def _inverse_deviations(rows: Rows) -> Array:
     """Of the residual of each joint without the new friction."""
-    state, _ = absorb(empty(rows.W.shape[2]), rows.W, rows.y, rows.scales)
-    residual = (rows.y - rows.W @ solve(state).estimates) * rows.scales
+    theta = least_squares(rows.W, rows.y, rows.scales).estimates
+    residual = (rows.y - rows.W @ theta) * rows.scales
     rms = np.sqrt((residual**2).sum(axis=0) / np.maximum((rows.scales > 0.0).sum(axis=0), 1))
     inverse: Array = 1.0 / np.maximum(rms, 1e-6 * rms.max())
     return inverse

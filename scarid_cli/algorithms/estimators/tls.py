@@ -8,33 +8,15 @@ Its covariance is the first-order one of Van Huffel and Vandewalle (1991, sectio
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows
-from scarid_cli.algorithms.statistics.information import Fit, Information, absorb, empty, solve
-from scarid_cli.arrays import Array
+from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.statistics.information import Fit, Information, solve
 
 
 @dataclass(frozen=True)
-class Estimator:
-    RECURSIVE: ClassVar[bool] = False
-    HOLDS: ClassVar[bool] = False
-
-    def init(self, prior: Array) -> Information:
-        """Of the initial parameters only their number counts."""
-        return empty(len(prior))
-
-    def step(
-        self,
-        state: Information,
-        rows: Rows,
-        *,
-        trace: bool = False,  # noqa: ARG002
-    ) -> tuple[Information, Array]:
-        return absorb(state, rows.W, rows.y, rows.scales)
-
+class Estimator(ls.Estimator):
     def fit(self, state: Information) -> Fit:
         plain = solve(state)  # refuses what is not identifiable
         p = state.parameters

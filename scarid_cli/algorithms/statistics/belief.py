@@ -11,13 +11,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows, runs, with_delay
+from scarid_cli.algorithms.regression import Rows, runs, with_delay, without_slow
 from scarid_cli.algorithms.statistics.information import (
     Fit,
     NotIdentifiableError,
-    absorb,
-    empty,
-    solve,
+    least_squares,
 )
 from scarid_cli.arrays import Array, Marks, Numbers
 
@@ -76,7 +74,7 @@ def believe(rows: Rows, fit: Fit, h: float, total: float, parameters: int) -> Be
     share = rows.samples / total if total > rows.samples else 1.0
     errors: Array = np.sqrt(share * np.diag(covariance))
     slow = SLOW * np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
-    fast = replace(rows, scales=rows.scales * (np.abs(rows.motion[1].T) >= slow))
+    fast = without_slow(rows, slow)
     other = with_delay_fitted(fast, fit, h, joints, parameters)
     return Belief(
         errors=errors,
@@ -95,10 +93,9 @@ def with_delay_fitted(
     own = replace(rows, W=rows.W[:, :, :parameters])
     wide = with_delay(own, fit.estimates[:parameters], h)
     weights = np.array([1.0 / j.deviation if j.deviation > 0.0 else 0.0 for j in joints])
-    scales = np.ascontiguousarray(rows.scales * weights)
-    state, _ = absorb(empty(parameters + 1), wide.W, wide.y, scales)
     try:
-        return solve(state).estimates[:parameters]
+        fitted = least_squares(wide.W, wide.y, rows.scales * weights)
+        return fitted.estimates[:parameters]
     except NotIdentifiableError:
         return np.full(parameters, np.nan)
 

@@ -162,6 +162,13 @@ def solve(state: Information) -> Fit:
     )
 
 
+def least_squares(W: Array, y: Array, scales: Array | None = None) -> Fit:
+    """Of rows that are all there, each times its scale."""
+    whole = (None if x is None else np.ascontiguousarray(x) for x in (W, y, scales))
+    state, _ = absorb(empty(W.shape[2]), *whole)  # type: ignore[arg-type]
+    return solve(state)
+
+
 def residual_deviation(state: Information) -> float:
     """Of a part of the rows, by the parameters that fit it best; 0 if they fit it exactly."""
     R = state.triangle[:, :-1]
