@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from scarid_cli.algorithms.regression import Rows, joined
 
 SAMPLES = 16_384  # held of a streamed record, at most
@@ -17,13 +19,15 @@ SEGMENTS = 8  # that these are in, at most
 class Witness:
     """Every `stride`-th segment of a record, by the numbers of its samples.
 
-    `samples` are held at most. `total` counts the samples that went by.
+    `samples` are held at most. `total` counts the samples that went by, `counted` their rows that
+    count.
     """
 
     parts: tuple[Rows, ...] = ()
     samples: int = SAMPLES
     stride: int = 1
     total: int = 0
+    counted: int = 0
 
     def add(self, rows: Rows) -> Witness:
         """Take in the next samples."""
@@ -42,7 +46,9 @@ class Witness:
                 stride *= 2
                 parts = [part for part in parts if int(part.at[0]) // segment % stride == 0]
             start = stop
-        return Witness(tuple(parts), self.samples, stride, self.total + rows.samples)
+        total = self.total + rows.samples
+        counted = self.counted + int(np.count_nonzero(rows.scales))
+        return Witness(tuple(parts), self.samples, stride, total, counted)
 
     def rows(self) -> Rows:
         """What was kept, as one."""

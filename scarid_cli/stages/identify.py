@@ -22,7 +22,7 @@ from scarid_cli.algorithms.statistics.information import (
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 from scarid_cli.algorithms.witness import ALL, Witness
 from scarid_cli.arrays import Array
-from scarid_cli.errors import BadData
+from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, doubles, number
 from scarid_cli.stages import Sink
@@ -86,6 +86,7 @@ def identify(
         if trace and batch is not None:
             arrays = [batch.column("t"), *(doubles(e) for e in estimates.T)]
             trace.write(pa.RecordBatch.from_arrays(arrays, schema=schema))
+    _check_enough(table, robot, progress.witness.counted)
     try:
         found = _found(estimator, initial, progress, treatment, period)
     except NotIdentifiableError as error:
@@ -98,6 +99,16 @@ def identify(
     if keep:
         keep(progress)
     return _parameters(found, robot, meta, variance=variance)
+
+
+def _check_enough(table: Table, robot: Robot, counted: int) -> None:
+    if counted <= len(robot.names):
+        raise bad_data(
+            table.name,
+            f"{counted} rows that count",
+            expected=f"more than the {len(robot.names)} parameters of {robot.name}",
+            remedy="take a longer log, or leave out fewer rows",
+        )
 
 
 def _stepped(

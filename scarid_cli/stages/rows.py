@@ -12,6 +12,7 @@ import pyarrow as pa
 from scarid_cli.algorithms.regression import Rows, joined, rows_of, without_slow
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
+from scarid_cli.errors import bad_data
 from scarid_cli.io.table import Table, matrix, settled_runs
 
 
@@ -79,6 +80,22 @@ def treated(
 
     `seen` is the number of the first sample.
     """
+    counted = 0
+    for batch, rows in _treated(table, robot, treatment, seen):
+        counted += int(np.count_nonzero(rows.scales))
+        yield batch, rows
+    if not counted:
+        raise bad_data(
+            table.name,
+            "no rows that count",
+            expected="some that are settled and left in",
+            remedy="take a longer log, or leave out fewer rows",
+        )
+
+
+def _treated(
+    table: Table, robot: Robot, treatment: Treatment, seen: int
+) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     columns = Columns(robot)
     slow = np.array(treatment.slow) if treatment.slow else None
     late = None if treatment.decimate else slow

@@ -89,7 +89,7 @@ def _metrics(table: Table, robot: Robot, qualities: list[Quality]) -> Table:
         [
             pa.array(range(1, len(qualities) + 1), pa.int64()),
             known(np.array([quality.r2 for quality in qualities])),
-            pa.array([quality.rmse for quality in qualities]),
+            known(np.array([quality.rmse for quality in qualities])),
             pa.array([joint.torque_unit for joint in robot.joints]),
             known(np.array([quality.relative_error for quality in qualities])),
             pa.array([quality.samples for quality in qualities], pa.int64()),

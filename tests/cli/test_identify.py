@@ -137,3 +137,24 @@ def test_the_metadata_hold_the_verdict_and_its_numbers(shell: Shell) -> None:
     assert {"verdict", "delay", "lag_share", "excitation", "scaled_condition_number"} <= keys
     assert "7 of 8 parameters known" in lines[lines.index("reasons") + 1]
     assert "autocorrelation" in lines[lines.index("joints") + 1]
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ("identify --skip 10000", "no rows that count"),
+        ("identify --skip 10000 --estimator ml", "no rows that count"),
+        ("identify --skip 10000 --decimate 10", "no rows that count"),
+        ("identify --drop-slow 1000", "no rows that count"),
+        ("identify --decimate 100 --skip 0,300", "4 rows that count"),
+        ("identify --estimator wls --align --skip 0,480", "8 rows that count"),
+        ("validate --parameters $SAMPLES/scara2.parameters.csv --skip 10000", "no rows that count"),
+    ],
+)
+def test_too_few_rows_are_told_in_one_line(options: str, told: str, shell: Shell) -> None:
+    result = shell(f"{MOTION}; scarid {options} motion.csv -o out.csv; s=$?; ls; exit $s")
+    assert result.status == 65
+    assert told in result.err
+    assert "leave out fewer rows" in result.err
+    assert len(result.err.splitlines()) == 1
+    assert "out.csv" not in result.out
