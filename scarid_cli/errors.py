@@ -27,6 +27,10 @@ class BadData(ScaridError):
     status = BAD_DATA
 
 
+class TooShort(BadData):
+    """A method needs more rows than a record, or a segment of it, has."""
+
+
 class OutputFailure(ScaridError):
     """Reading or writing failed (exit 74)."""
 

@@ -2,11 +2,12 @@
 
 Values between samples lie on straight lines. Where the rate is lowered they are means over one new
 period of these lines, against aliasing. A row needs the samples up to it, or half a period beyond.
+Nothing is laid across a gap.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +16,10 @@ from scarid_cli.arrays import Array
 
 @dataclass(frozen=True)
 class Clock:
-    """What a log's clock did: intervals in all, their sum and extremes [s], rows left out."""
+    """What a log's clock did: intervals in all, their sum and extremes [s], rows left out.
+
+    `gaps` split the record, `missing` is their time [s]; the intervals are without them.
+    """
 
     intervals: int = 0
     total: float = 0.0
@@ -23,20 +27,28 @@ class Clock:
     shortest: float = np.inf
     longest: float = 0.0
     repeated: int = 0
+    gaps: int = 0
+    missing: float = 0.0
 
-    def after(self, steps: Array, repeated: int) -> Clock:
-        """The clock after more intervals."""
+    def after(self, steps: Array) -> Clock:
+        """The clock after more intervals; one of 0 s repeats a row."""
+        steps, repeated = steps[steps > 0.0], int((steps == 0.0).sum())
+        counted = replace(self, repeated=self.repeated + repeated)
         if not len(steps):
-            return replace(self, repeated=self.repeated + repeated)
-        return Clock(
-            self.intervals + len(steps),
+            return counted
+        return replace(
+            counted,
+            intervals=self.intervals + len(steps),
             # Summed one by one, so that batches do not change a bit.
-            float(np.cumsum(np.append(self.total, steps))[-1]),
-            float(np.cumsum(np.append(self.squares, steps * steps))[-1]),
-            min(self.shortest, float(steps.min())),
-            max(self.longest, float(steps.max())),
-            self.repeated + repeated,
+            total=float(np.cumsum(np.append(self.total, steps))[-1]),
+            squares=float(np.cumsum(np.append(self.squares, steps * steps))[-1]),
+            shortest=min(self.shortest, float(steps.min())),
+            longest=max(self.longest, float(steps.max())),
         )
+
+    def after_gap(self, length: float) -> Clock:
+        """The clock after an interval [s] that splits the record."""
+        return replace(self, gaps=self.gaps + 1, missing=self.missing + length)
 
     @property
     def mean(self) -> float:
@@ -62,7 +74,6 @@ class State:
     integral: Array
     start: float
     row: int = 0
-    clock: Clock = field(default_factory=Clock)
 
 
 @dataclass(frozen=True)
@@ -75,6 +86,12 @@ class Resampler:
     def init(self, t: float, x: Array) -> State:
         """At the first sample: its time [s] and values (columns)."""
         return State(np.array([t]), x[:, None], np.zeros((len(x), 1)), t)
+
+    def after_gap(self, state: State, t: float, x: Array) -> State:
+        """At the first sample after a gap; rows go on at the times they would have had."""
+        row = max(state.row, int(np.ceil((t - state.start) / self.period - 1e-9)))
+        begun = self.init(t, x)
+        return replace(begun, start=state.start, row=row)
 
     def step(self, state: State, t: Array, x: Array) -> tuple[State, Array, Array]:
         """Take samples in, later ones than before; the rows that they settle: times and values."""

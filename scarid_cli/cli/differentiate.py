@@ -82,6 +82,6 @@ def command(
         if match is None:
             match = joints_of(table.columns, "tau") > 0
         if match:
-            run.write(stage.matched(table, methods), out)
+            run.write(stage.matched(table, methods, run.left_out), out)
         else:
-            run.write(stage.differentiate(table, methods), out)
+            run.write(stage.differentiate(table, methods, run.left_out), out)

@@ -70,7 +70,7 @@ def command(
         table = run.read(file, "measurement")
         chosen = select(columns, table.columns) if columns else measured(table.columns)
         table = run.recorded(table)
-        run.write(stage.filtered(table, dict.fromkeys(chosen, lowpass)), out)
+        run.write(stage.filtered(table, dict.fromkeys(chosen, lowpass), run.left_out), out)
 
 
 def measured(names: list[str]) -> list[str]:

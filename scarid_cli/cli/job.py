@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from scarid_cli import __version__
-from scarid_cli.errors import UsageFault
+from scarid_cli.errors import TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import checked, open_table, require
@@ -35,6 +35,7 @@ class Job:
         self._inputs: dict[str, str | None] = {}
         self.outputs: list[Output | Document] = []
         self.sources: list[ByteSource] = []
+        self.left_out: list[TooShort] = []  # segments of a record
 
     def output(self, path: str, wanted: str | None = None) -> Output:
         """Where a table will go; opened before anything is read."""
@@ -95,8 +96,11 @@ class Job:
         return table, arm
 
     def write(self, table: Table, output: Output) -> None:
-        """Send a table out."""
+        """Send a table out, and tell which segments of it were left out."""
         write_table(table, output)
+        if self.left_out:
+            count = len(self.left_out)
+            self.say(f"{count} segment{'s' if count > 1 else ''} left out: {self.left_out[0]}")
 
     def recorded(self, table: Table) -> Table:
         """The table with this command at the end of its history."""

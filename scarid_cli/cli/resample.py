@@ -15,13 +15,13 @@ from scarid_cli.cli import options
 @click.option(
     "--max-gap",
     type=float,
-    default=0.1,
-    show_default=True,
-    help="Longest interval [s] that is bridged; a longer one is an error.",
+    metavar="S",
+    help="Longest interval [s] that is bridged; a longer one splits the record.  [default: 5 "
+    "periods of the log, or one of the new rate if that is longer]",
 )
 @options.table_output
 @options.common
-def command(file: str, rate: float, max_gap: float, **rest: Any) -> None:
+def command(file: str, rate: float, max_gap: float | None, **rest: Any) -> None:
     """Put a log with a jittered clock on a regular one.
 
     \b
@@ -31,15 +31,18 @@ def command(file: str, rate: float, max_gap: float, **rest: Any) -> None:
     Numbers lie on straight lines between the samples, or, where the rate becomes lower, are means
     over a new period, against aliasing; other columns have the value of the row before. Rows that
     repeat the time before them are left out. What the clock did is told on standard error: mean
-    rate, jitter, longest interval, repeated rows. Streaming, in memory that does not grow; without
-    delay, but a row waits for the sample after it.
+    rate, jitter, longest interval, repeated rows, gaps. Streaming, in memory that does not grow;
+    without delay, but a row waits for the sample after it.
+
+    Nothing is laid across a gap: after it the column segment is one higher, filter and
+    differentiate begin anew, and identify leaves out the rows that have not settled.
     """
     from scarid_cli.cli.job import job
     from scarid_cli.errors import UsageFault
     from scarid_cli.stages import resample as stage
 
     for name, value in (("--rate", rate), ("--max-gap", max_gap)):
-        if not 0.0 < value < float("inf"):
+        if value is not None and not 0.0 < value < float("inf"):
             raise UsageFault(f"{name} must be positive, not {value:g}")
     with job(rest) as run:
         out = run.output(rest["output"], rest["format"])
@@ -48,7 +51,8 @@ def command(file: str, rate: float, max_gap: float, **rest: Any) -> None:
         def told(clock: Any) -> None:
             run.say(
                 f"{1.0 / clock.mean:.6g} Hz on average, jitter {1e3 * clock.jitter:.3g} ms, "
-                f"longest interval {1e3 * clock.longest:.3g} ms, {clock.repeated} repeated rows"
+                f"longest interval {1e3 * clock.longest:.3g} ms, {clock.repeated} repeated rows, "
+                + (f"{clock.gaps} gaps of {clock.missing:.3g} s in all" if clock.gaps else "no gap")
             )
 
         run.write(stage.resample(table, rate, max_gap, told), out)

@@ -43,7 +43,8 @@ def command(
     positions most likely, each joint for itself. The others come as near as they can to the
     derivatives of a Kalman smoother that tuned itself in this way: it has seen the future of each
     sample. With --robot the settings are one for all joints, and judged by the torques predicted
-    for held-out segments with parameters identified from the rest. Holds the whole log.
+    for held-out segments with parameters identified from the rest. Holds the whole log; of one
+    with gaps, the longest segment counts.
 
     Writes the table of what was tried. The same seed gives the same settings.
     """

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import ByteSource
-from scarid_cli.io.table import Table
+from scarid_cli.io.table import SEGMENT, Table, segments_of
 
 # A clock may jitter by this part of its period, and its mean rate be off by that part; beyond,
 # a derivative would be wrong by as much.
@@ -48,19 +49,19 @@ def checked(table: Table, kind: str, *, regular: bool = True) -> Table:
     batches = _finite(table, schema)
     meta = replace(table.meta, kind=table.meta.kind or kind)
     if schema.sampled:
-        batches = _together(batches, rows=2)
+        batches = _begun(batches)
         first = next(batches, None)
-        if first is None or first.num_rows < 2:
+        interval = _first_interval(first) if first else None
+        if first is None or interval is None:
             raise bad_data(
                 table.name,
                 f"{first.num_rows if first else 0} rows",
                 expected="at least 2 samples",
                 remedy="give a longer log",
             )
-        t = first.column("t")
-        batches = _chained(first, batches)
+        batches = chain([first], batches)
         if regular:
-            meta = replace(meta, period=nominal_period(t[1].as_py() - t[0].as_py()))
+            meta = replace(meta, period=nominal_period(interval))
             batches = _regular(batches, table.name, meta.period or 0.0)
     return replace(table, meta=meta, batches=batches)
 
@@ -180,47 +181,72 @@ def _check_values(column: pa.Array, name: str, column_name: str, row: int) -> No
         )
 
 
-def _together(batches: Iterator[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
-    """Hold the first batches back until they have this many rows; drop empty ones."""
+def _begun(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+    """Hold the first batches back until they tell the interval; drop empty ones."""
     held: list[pa.RecordBatch] = []
     for batch in batches:
         if not batch.num_rows:
             continue
-        held.append(batch)
-        if sum(b.num_rows for b in held) >= rows:
+        held = [pa.Table.from_batches([*held, batch]).combine_chunks().to_batches()[0]]
+        if _first_interval(held[0]) is not None:
             break
-    if held:
-        yield pa.Table.from_batches(held).combine_chunks().to_batches()[0]
+    yield from held
     yield from (batch for batch in batches if batch.num_rows)
 
 
-def _chained(first: pa.RecordBatch, rest: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-    yield first
-    yield from rest
+def _first_interval(batch: pa.RecordBatch) -> float | None:
+    """Between the first two samples [s] that no gap separates."""
+    together = np.flatnonzero(np.diff(segments_of(batch)) == 0)
+    if not len(together):
+        return None
+    at = int(together[0])
+    t = batch.column("t")
+    return float(t[at + 1].as_py() - t[at].as_py())
 
 
 def _regular(
     batches: Iterator[pa.RecordBatch], name: str, period: float
 ) -> Iterator[pa.RecordBatch]:
-    """Pass batches on; time that does not go on, or not at the nominal rate, is an error."""
-    row = 0
-    start = last = float("nan")
+    """Pass batches on; time that does not go on, or not at the nominal rate, is an error.
+
+    At a gap (see segments_of) time may go on by any interval.
+    """
+    row = gaps = 0
+    start = missing = float("nan")
+    last: tuple[float, int] | None = None  # time and segment of the row before
     for batch in batches:
         t = batch.column("t").to_numpy()
-        if row == 0:
-            start = float(t[0])
-            _check_steps(t[1:] - t[:-1], t[1:], name, period, row=2)
-        else:
-            _check_steps(np.diff(t, prepend=last), t, name, period, row=row + 1)
-        last = float(t[-1])
+        segment = segments_of(batch)
+        time, before = last or (t[0], segment[0])
+        steps, jumps = np.diff(t, prepend=time), np.diff(segment, prepend=before)
+        if last is None:
+            start, missing, steps[0] = float(t[0]), 0.0, period
+        _check_segments(jumps, name, row + 1)
+        after_gap = (jumps > 0) & (steps > 0.0)
+        _check_steps(np.where(after_gap, period, steps), t, name, period, row + 1)
+        missing += float(steps[after_gap].sum())
+        gaps += int(after_gap.sum())
         row += batch.num_rows
+        last = (float(t[-1]), int(segment[-1]))
         yield batch
-    mean = (last - start) / (row - 1)
+    mean = (last[0] - start - missing) / (row - 1 - gaps) if last else period
     if abs(mean - period) > DRIFT * period:
         raise BadData(
             f"{name}, column t: found a mean interval of {mean:.9g} s over {row} rows, expected "
             f"{period:.9g} s like the first; put it on a constant rate with `scarid resample "
             "--rate`"
+        )
+
+
+def _check_segments(jumps: Numbers, name: str, row: int) -> None:
+    if np.any(jumps < 0):
+        raise bad_data(
+            name,
+            "a number that goes back",
+            expected="segments to be numbered in order",
+            remedy="sort the log",
+            row=row + int(np.argmax(jumps < 0)),
+            column=SEGMENT,
         )
 
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from itertools import groupby, pairwise
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, Numbers
 
 METADATA_KEY = b"scarid"
 UNIT_KEY = b"unit"
+SEGMENT = "segment"  # the column that tells the parts of a record between its gaps apart
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,13 @@ def integers(values: Any) -> pa.Array:
     return pa.Array.from_buffers(pa.int64(), len(data), [None, pa.py_buffer(data)])
 
 
+def without(table: Table, column: str) -> Table:
+    """The table without a column."""
+    kept = [name for name in table.columns if name != column]
+    schema = pa.schema([table.schema.field(name) for name in kept])
+    return replace(table, schema=schema, batches=(batch.select(kept) for batch in table.batches))
+
+
 def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any]) -> pa.RecordBatch:
     """The batch with some columns replaced or added, in the order of the schema."""
 
@@ -103,20 +112,58 @@ def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any]) 
     return pa.RecordBatch.from_arrays([column(name) for name in schema.names], schema=schema)
 
 
+def segments_of(batch: pa.RecordBatch) -> Numbers:
+    """The number of the segment that each row belongs to; 0 where the table has none."""
+    if SEGMENT not in batch.schema.names:
+        return np.zeros(batch.num_rows, dtype=np.int64)
+    numbers: Numbers = batch.column(SEGMENT).to_numpy(zero_copy_only=False)
+    return numbers
+
+
+def segment_field(table: Table) -> list[pa.Field]:
+    """That of the column `segment`, if the table has it."""
+    return [table.schema.field(SEGMENT)] if SEGMENT in table.columns else []
+
+
+def segments(table: Table) -> Iterator[Table]:
+    """Each segment as a table of its own, to be used up before the next."""
+    pieces = (piece for batch in table.batches for piece in _pieces(batch))
+    for number, group in groupby(pieces, lambda piece: piece[0]):
+        batches = (batch for _, batch in group)
+        yield replace(table, name=f"{table.name}, segment {number}", batches=batches)
+
+
+def _pieces(batch: pa.RecordBatch) -> Iterator[tuple[int, pa.RecordBatch]]:
+    numbers = segments_of(batch)
+    edges = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), batch.num_rows]
+    for start, end in pairwise(edges):
+        if end > start:
+            yield int(numbers[start]), batch.slice(start, end - start)
+
+
 def settled(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
     """Only the rows that a soft sensor has marked as settled; all where there is no such mark."""
     return (batch for _, batch in settled_runs(batches))
 
 
 def settled_runs(batches: Iterator[pa.RecordBatch]) -> Iterator[tuple[int, pa.RecordBatch]]:
-    """The same, with the number of the first row of each part in the table."""
+    """The same, with the number of the first row of each part in the table.
+
+    No part is on both sides of a gap.
+    """
     first = 0
     for batch in batches:
-        if "settled" not in batch.schema.names:
-            yield first, batch
-        else:
-            marks = batch.column("settled").to_numpy(zero_copy_only=False) != 0
-            ends = np.flatnonzero(np.diff(marks, prepend=False, append=False))
-            for start, end in ends.reshape(-1, 2):
-                yield first + int(start), batch.slice(int(start), int(end - start))
-        first += batch.num_rows
+        for _, piece in _pieces(batch):
+            for start, end in _settled(piece):
+                yield first + start, piece.slice(start, end - start)
+            first += piece.num_rows
+
+
+def _settled(batch: pa.RecordBatch) -> Iterator[tuple[int, int]]:
+    """The runs of settled rows: first row, and the one after the last."""
+    if "settled" not in batch.schema.names:
+        yield 0, batch.num_rows
+        return
+    marks = batch.column("settled").to_numpy(zero_copy_only=False) != 0
+    ends = np.flatnonzero(np.diff(marks, prepend=False, append=False))
+    yield from map(tuple, ends.reshape(-1, 2).tolist())

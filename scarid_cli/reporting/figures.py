@@ -10,10 +10,12 @@ from math import ceil, isfinite
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from scarid_cli.arrays import Array
 from scarid_cli.reporting.parts import Bars, Line, Panels, Plot, Section
 
 # Okabe and Ito's palette, told apart by colour-blind readers, the ones that print best first.
@@ -22,6 +24,7 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f
 DASHES = ("-", "-.", ":", (0, (1, 4)))  # of the second, third, ... turn through the palette
 INK = "#222222"
 BEYOND = 10.0  # times the doubt, where the axis of bars ends
+GAP = 5.0  # times the mean step: the points of a curve lie up to 4 apart
 WIDTH = 6.7  # inches: the text width of an A4 page
 
 STYLE = {
@@ -129,7 +132,7 @@ def _panels(plot: Panels) -> Figure:
     for axes, panel in zip(grid, plot.panels, strict=False):
         for k, line in enumerate(panel.lines):  # the first above the others
             below = 0 if line.colour is None else 1 + (len(panel.lines) - k) / len(panel.lines)
-            axes.plot(*line.points, **_style(line), zorder=1.0 + below)
+            axes.plot(*_broken(line.points), **_style(line), zorder=1.0 + below)
         if panel.level is not None:
             axes.axhline(panel.level, color=INK, linestyle="--", linewidth=0.9)
         if panel.limits:
@@ -140,6 +143,13 @@ def _panels(plot: Panels) -> Figure:
     figure.align_ylabels()
     _legend(figure, plot)
     return figure
+
+
+def _broken(points: Array) -> Array:
+    """The curve without a line across the gaps of the record."""
+    steps = np.diff(points[0])
+    mean = steps.sum() / max(len(steps), 1)
+    return np.insert(points, np.flatnonzero(steps > GAP * mean) + 1, np.nan, axis=1)
 
 
 def _style(line: Line) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from math import inf
 from typing import Any
@@ -13,8 +13,8 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.process import Process
 from scarid_cli.arrays import Array
-from scarid_cli.errors import UsageFault, bad_data
-from scarid_cli.io.table import Table, integers, matrix, with_columns
+from scarid_cli.errors import TooShort, bad_data
+from scarid_cli.io.table import SEGMENT, Table, integers, matrix, segments, with_columns
 
 
 @dataclass(frozen=True)
@@ -69,40 +69,92 @@ class Edges:
         return integers((at >= self.start) & (at < total - self.end))
 
 
-def processed(
-    table: Table, tasks: list[Task], schema: pa.Schema, edges: Edges | None = None
-) -> Table:
-    """The table with the columns that the tasks write, and with edges the column `settled`.
+@dataclass(frozen=True)
+class Plan:
+    """The tasks of a record, and the rows at its ends that they leave unsettled."""
 
-    A row keeps its time: a process that looks ahead delays all other columns with its own.
+    tasks: list[Task]
+    edges: Edges = field(default_factory=Edges)
+
+    def lag(self, period: float) -> float:
+        """By how many rows the output of the slowest waits; inf for the whole record."""
+        return max((task.process.lag(period) for task in self.tasks), default=0)
+
+    def check(self, period: float) -> None:
+        """Refuse settings before anything is written."""
+        for task in self.tasks:
+            task.process.init(0.0, period)
+
+
+def processed(
+    table: Table,
+    schema: pa.Schema,
+    planned: Callable[[Table], tuple[Table, Plan]],
+    left_out: list[TooShort] | None = None,
+) -> Table:
+    """The table with the columns that tasks write, and the column `settled` if the schema has it.
+
+    A row keeps its time: a process that looks ahead delays all other columns with its own. Each
+    segment between gaps is a record of its own, with its own plan; those too short for it are
+    left out, and `left_out` receives why.
     """
-    period = table.meta.period or 0.0
-    for task in tasks:
-        task.process.init(0.0, period)  # refuses settings before anything is written
-    batches = _rows(table, tasks, schema, edges or Edges())
+    batches = _segments(table, schema, planned, [] if left_out is None else left_out)
     return replace(table, schema=schema, batches=batches)
 
 
-def lag(tasks: list[Task], period: float) -> float:
-    """By how many rows the output of the slowest waits; inf for the whole record."""
-    return max((task.process.lag(period) for task in tasks), default=0)
-
-
-def _rows(
-    table: Table, tasks: list[Task], schema: pa.Schema, edges: Edges
+def _segments(
+    table: Table,
+    schema: pa.Schema,
+    planned: Callable[[Table], tuple[Table, Plan]],
+    left_out: list[TooShort],
 ) -> Iterator[pa.RecordBatch]:
+    first = rows = 0
+    if SEGMENT not in table.columns:
+        yield from _rows(*planned(table), schema, first)
+        return
+    for segment in segments(table):
+        counted = Counted(segment.batches)
+        try:
+            for batch in _rows(*planned(replace(segment, batches=counted)), schema, first):
+                rows += batch.num_rows
+                yield batch
+        except TooShort as reason:
+            left_out.append(reason)
+        first += counted.rows
+    if not rows and left_out:
+        raise left_out[0]
+
+
+class Counted:
+    """Batches, and how many rows they had so far."""
+
+    def __init__(self, batches: Iterator[pa.RecordBatch]) -> None:
+        self._batches = batches
+        self.rows = 0
+
+    def __iter__(self) -> Counted:
+        return self
+
+    def __next__(self) -> pa.RecordBatch:
+        batch = next(self._batches)
+        self.rows += batch.num_rows
+        return batch
+
+
+def _rows(table: Table, plan: Plan, schema: pa.Schema, first: int) -> Iterator[pa.RecordBatch]:
+    """Of a record whose first row has this number in the table."""
     period = table.meta.period or 0.0
-    running = [Running(task) for task in tasks]
-    waiting = Waiting(table.name, schema, edges)
+    running = [Running(task) for task in plan.tasks]
+    waiting = Waiting(table.name, schema, plan.edges, before=first)
     for batch in table.batches:
-        for run, x in zip(running, matrix(batch, [t.source for t in tasks]), strict=True):
+        for run, x in zip(running, matrix(batch, [t.source for t in plan.tasks]), strict=True):
             run.step(x, period)
         waiting.append(batch)
         yield from waiting.joined(running, inf)
     rows = waiting.first + waiting.rows
-    longest = lag(tasks, period)
+    longest = plan.lag(period)
     if rows <= longest < inf:
-        raise UsageFault(
+        raise TooShort(
             f"{table.name}: a lag of {longest:g} samples is longer than the log of {rows} rows; "
             "shorten the window or the delay"
         )
@@ -113,11 +165,15 @@ def _rows(
 
 @dataclass
 class Waiting:
-    """The rows whose outputs are not all there yet; `first` is the number of the first."""
+    """The rows of a record whose outputs are not all there yet; `first` numbers the first.
+
+    `before` rows of the table came before this record.
+    """
 
     name: str
     schema: pa.Schema
     edges: Edges
+    before: int = 0
     first: int = 0
     rows: int = 0
     batches: deque[pa.RecordBatch] = field(default_factory=deque)
@@ -132,7 +188,7 @@ class Waiting:
         values: dict[str, Array] = {}
         for run in running if rows else ():
             values |= run.take(rows)
-        _check(values, self.name, self.first)
+        _check(values, self.name, self.before + self.first)
         done = 0
         while done < rows:
             batch = self.batches.popleft()

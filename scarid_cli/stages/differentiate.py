@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 from typing import Any
@@ -11,49 +12,99 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.matching import spread
 from scarid_cli.algorithms.process import Matched, Method
-from scarid_cli.io.table import Table, matrix, number
-from scarid_cli.stages.columns import Edges, Task, lag, processed
+from scarid_cli.errors import TooShort
+from scarid_cli.io.table import SEGMENT, Table, matrix, number, without
+from scarid_cli.stages.columns import Edges, Plan, Task, processed
 
 
-def differentiate(table: Table, methods: list[Method]) -> Table:
-    """A motion: the table with dq and ddq columns, one method per joint, in their order."""
-    table, methods = _fitted(table, methods)
+def differentiate(
+    table: Table, methods: list[Method], left_out: list[TooShort] | None = None
+) -> Table:
+    """A motion: the table with dq and ddq columns, one method per joint, in their order.
+
+    Each segment between gaps by itself; `left_out` receives why one was, and then the column
+    `settled` is 0 where an end of a segment still shows.
+    """
+    return _motion(table, methods, _plain, left_out, marked=SEGMENT in table.columns)
+
+
+def matched(table: Table, methods: list[Method], left_out: list[TooShort] | None = None) -> Table:
+    """A motion whose positions and torques belong to the instant of the derivatives.
+
+    The column `settled` is 0 where an end of the record, or of a segment, still shows.
+    """
+    return _motion(table, methods, _matching, left_out, marked=True)
+
+
+Planner = Callable[[Table, list[Method]], Plan]
+
+
+def _motion(
+    table: Table,
+    methods: list[Method],
+    planner: Planner,
+    left_out: list[TooShort] | None,
+    *,
+    marked: bool,
+) -> Table:
+    """The table as a motion, with the lag of its rows [s] in the metadata."""
+    period = table.meta.period or 0.0
+    schema = _schema(table, len(methods), [pa.field("settled", pa.int64())] if marked else [])
+    if any(hasattr(method, "fitted") for method in methods):  # these need to see the record first
+        rows = inf
+
+        def planned(segment: Table) -> tuple[Table, Plan]:
+            segment, fitted = _fitted(segment, methods)
+            return segment, planner(segment, fitted)
+    else:
+        plan = planner(table, methods)
+        plan.check(period)
+        rows = plan.lag(period)
+
+        def planned(segment: Table) -> tuple[Table, Plan]:
+            return segment, plan
+
+    extra = dict(table.meta.extra)
+    if rows:
+        extra["lag"] = "whole record" if rows == inf else rows * period
+    if marked and "settled" in table.columns:
+        table = without(table, "settled")
+    meta = replace(table.meta, kind="motion", extra=extra)
+    return processed(replace(table, meta=meta), schema, planned, left_out)
+
+
+def _plain(table: Table, methods: list[Method]) -> Plan:
     tasks = [
         Task(f"q{i}", method, (f"dq{i}", f"ddq{i}")) for i, method in enumerate(methods, start=1)
     ]
-    return processed(_motion(table, tasks, []), tasks, _schema(table, len(methods), []))
+    if SEGMENT not in table.columns:
+        return Plan(tasks)
+    forms = [method.matched() for method in methods]
+    return Plan(tasks, _edges(forms, table.meta.period or 0.0))
 
 
-def matched(table: Table, methods: list[Method]) -> Table:
-    """A motion whose positions and torques belong to the instant of the derivatives.
-
-    The column `settled` is 0 where the start or the end of the record still shows.
-    """
-    table, methods = _fitted(table, methods)
-    period = table.meta.period or 0.0
-    tasks, spreads = [], [(0, 0)]
-    for i, form in enumerate((method.matched() for method in methods), start=1):
+def _matching(table: Table, methods: list[Method]) -> Plan:
+    forms = [method.matched() for method in methods]
+    tasks = []
+    for i, form in enumerate(forms, start=1):
         tasks.append(Task(f"q{i}", form, (f"q{i}", f"dq{i}", f"ddq{i}")))
-        if form.companion is None:
-            continue
-        spreads.append(_spread(form, period))
-        if f"tau{i}" in table.columns:
+        if form.companion and f"tau{i}" in table.columns:
             tasks.append(Task(f"tau{i}", form.companion, (f"tau{i}",)))
+    return Plan(tasks, _edges(forms, table.meta.period or 0.0))
+
+
+def _edges(forms: list[Matched], period: float) -> Edges:
+    spreads = [(0, 0)]
+    for form in forms:
+        form.init(0.0, period)  # refuses settings
+        if form.companion:
+            spreads.append(spread(form.companion, period))
     before, after = (max(sides) for sides in zip(*spreads, strict=True))
-    marks = [pa.field("settled", pa.int64())]
-    schema = _schema(table, len(methods), marks)
-    return processed(_motion(table, tasks, marks), tasks, schema, Edges(after, before))
-
-
-def _spread(form: Matched, period: float) -> tuple[int, int]:
-    form.init(0.0, period)  # refuses settings
-    return spread(form.companion, period) if form.companion else (0, 0)
+    return Edges(after, before)
 
 
 def _fitted(table: Table, methods: list[Method]) -> tuple[Table, list[Method]]:
-    """Methods that tune themselves see the whole record first."""
-    if not any(hasattr(method, "fitted") for method in methods):
-        return table, methods
+    """Methods that tune themselves, by the whole record."""
     batches = list(table.batches)
     columns = [f"q{i}" for i in range(1, len(methods) + 1)]
     positions = np.concatenate([matrix(batch, columns) for batch in batches], axis=1)
@@ -63,20 +114,6 @@ def _fitted(table: Table, methods: list[Method]) -> tuple[Table, list[Method]]:
         for method, q in zip(methods, positions, strict=True)
     ]
     return replace(table, batches=iter(batches)), fitted
-
-
-def _motion(table: Table, tasks: list[Task], marks: list[pa.Field]) -> Table:
-    """The table as a motion, with the lag of its rows [s] in the metadata."""
-    period = table.meta.period or 0.0
-    rows = lag(tasks, period)
-    extra = dict(table.meta.extra)
-    if rows:
-        extra["lag"] = "whole record" if rows == inf else rows * period
-    batches = table.batches
-    if marks and "settled" in table.columns:
-        kept = [name for name in table.columns if name != "settled"]
-        batches = (batch.select(kept) for batch in batches)
-    return replace(table, meta=replace(table.meta, kind="motion", extra=extra), batches=batches)
 
 
 def _schema(table: Table, joints: int, marks: list[pa.Field]) -> pa.Schema:

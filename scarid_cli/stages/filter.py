@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from scarid_cli.algorithms.process import Process
+from scarid_cli.errors import TooShort
 from scarid_cli.io.table import Table
-from scarid_cli.stages.columns import Task, processed
+from scarid_cli.stages.columns import Plan, Task, processed
 
 
-def filtered(table: Table, filters: dict[str, Process]) -> Table:
-    """The table with some columns filtered, each by its own process."""
-    tasks = [Task(name, lowpass, (name,)) for name, lowpass in filters.items()]
-    return processed(table, tasks, table.schema)
+def filtered(
+    table: Table, filters: dict[str, Process], left_out: list[TooShort] | None = None
+) -> Table:
+    """The table with some columns filtered, each by its own process, between gaps.
+
+    `left_out` receives why a segment was.
+    """
+    plan = Plan([Task(name, lowpass, (name,)) for name, lowpass in filters.items()])
+    plan.check(table.meta.period or 0.0)
+    return processed(table, table.schema, lambda segment: (segment, plan), left_out)

@@ -24,7 +24,7 @@ from scarid_cli.algorithms.witness import ALL, Witness
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Metadata, Table, doubles, number
+from scarid_cli.io.table import Metadata, Table, doubles, number, segment_field, with_columns
 from scarid_cli.stages import Sink
 from scarid_cli.stages.rows import Treatment, treated
 
@@ -76,7 +76,7 @@ def identify(
     if hasattr(estimator, "for_robot"):
         estimator = estimator.for_robot(robot, period)
     if trace:
-        schema = _trace_schema(robot)
+        schema = _trace_schema(robot, table)
         meta = replace(table.meta, kind="trace", robot=robot.name)
         trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
     witness = Witness(samples=ALL) if treatment.holds or estimator.HOLDS else Witness()
@@ -84,8 +84,8 @@ def identify(
     for batch, rows in treated(table, robot, treatment, progress.seen):
         progress, estimates = _stepped(estimator, progress, rows, trace=trace is not None)
         if trace and batch is not None:
-            arrays = [batch.column("t"), *(doubles(e) for e in estimates.T)]
-            trace.write(pa.RecordBatch.from_arrays(arrays, schema=schema))
+            new = dict(zip(robot.names, estimates.T, strict=True))
+            trace.write(with_columns(batch, schema, new))
     _check_enough(table, robot, progress.witness.counted)
     try:
         found = _found(estimator, initial, progress, treatment, period)
@@ -182,8 +182,9 @@ def _without_nuisance(fit: Fit, belief: Belief, own: int) -> tuple[Fit, Belief]:
     )
 
 
-def _trace_schema(robot: Robot) -> pa.Schema:
-    return pa.schema([number("t", "s"), *(number(p.name, p.unit) for p in robot.parameters)])
+def _trace_schema(robot: Robot, table: Table) -> pa.Schema:
+    parameters = (number(p.name, p.unit) for p in robot.parameters)
+    return pa.schema([number("t", "s"), *parameters, *segment_field(table)])
 
 
 def _parameters(found: Found, robot: Robot, meta: Metadata, *, variance: str) -> Table:

@@ -13,7 +13,7 @@ from scarid_cli.algorithms.regression import Rows, joined, rows_of, without_slow
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
-from scarid_cli.io.table import Table, matrix, settled_runs
+from scarid_cli.io.table import Table, matrix, segments_of, settled_runs
 
 
 @dataclass(frozen=True)
@@ -99,15 +99,29 @@ def _treated(
     columns = Columns(robot)
     slow = np.array(treatment.slow) if treatment.slow else None
     late = None if treatment.decimate else slow
-    held = []
+    held, gaps = [], Gaps()
     for first, kept in _within(settled_runs(table.batches), *treatment.skip):
-        rows = columns.rows(table.columns, kept, seen + first, late)
+        rows = columns.rows(table.columns, kept, seen + first + gaps.before(kept), late)
         if treatment.holds:
             held.append(rows)
         else:
             yield kept, rows
     if held:
         yield None, _decimated(joined(held), treatment.decimate, slow)
+
+
+class Gaps:
+    """Counts the gaps of a record, so that the numbers of samples jump there."""
+
+    def __init__(self) -> None:
+        self._first: int | None = None
+
+    def before(self, batch: pa.RecordBatch) -> int:
+        """How many there are before this part of a segment."""
+        segment = int(segments_of(batch)[0])
+        if self._first is None:
+            self._first = segment
+        return segment - self._first
 
 
 def _within(

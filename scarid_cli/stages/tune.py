@@ -17,7 +17,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, matrix
+from scarid_cli.io.table import Table, matrix, segments
 
 Settings = dict[str, list[float]]
 LIKELIHOOD, SMOOTHER, TORQUES = "likelihood", "smoother", "torques"
@@ -40,7 +40,10 @@ class Tried:
 
 @dataclass(frozen=True)
 class Record:
-    """Positions and torques of a whole log (joints, rows), sampled every h [s]."""
+    """Positions and torques of a whole log (joints, rows), sampled every h [s].
+
+    Of one with gaps, the longest segment.
+    """
 
     q: Array
     tau: Array | None
@@ -50,7 +53,11 @@ class Record:
     def of(cls, table: Table, joints: int, *, torques: bool) -> Record:
         numbers = range(1, joints + 1)
         names = [f"{s}{i}" for s in ("q", "tau")[: 1 + torques] for i in numbers]
-        rows = np.concatenate([matrix(batch, names) for batch in table.batches], axis=1)
+        parts = (
+            np.concatenate([matrix(batch, names) for batch in segment.batches], axis=1)
+            for segment in segments(table)
+        )
+        rows = max(parts, key=lambda part: part.shape[1])
         tau = np.ascontiguousarray(rows[joints:]) if torques else None
         return cls(np.ascontiguousarray(rows[:joints]), tau, table.meta.period or 0.0)
 

@@ -12,7 +12,7 @@ from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, emp
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, doubles, number
+from scarid_cli.io.table import Table, number, segment_field, with_columns
 from scarid_cli.stages import Sink
 from scarid_cli.stages.identify import known
 from scarid_cli.stages.rows import Treatment, treated
@@ -55,7 +55,7 @@ def validate(
     `predictions` receives the measured and predicted torques of every sample (Fig. 7-8).
     """
     sums = [empty() for _ in robot.joints]
-    schema = _prediction_schema(robot)
+    schema = _prediction_schema(robot, table)
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
@@ -68,19 +68,19 @@ def validate(
             for s, x, y, at in zip(sums, tau, predicted, counts, strict=True)
         ]
         if predictions and batch is not None:
-            arrays = [batch.column("t"), *(doubles(x) for x in (*tau, *predicted))]
-            predictions.write(pa.RecordBatch.from_arrays(arrays, schema=schema))
+            new = dict(zip(schema.names[1:], (*tau, *predicted), strict=False))
+            predictions.write(with_columns(batch, schema, new))
     return _metrics(table, robot, [Quality.of(s) for s in sums])
 
 
-def _prediction_schema(robot: Robot) -> pa.Schema:
+def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
     fields = [number("t", "s")]
     for suffix in ("", "_pred"):
         fields += [
             number(f"tau{i}{suffix}", joint.torque_unit)
             for i, joint in enumerate(robot.joints, start=1)
         ]
-    return pa.schema(fields)
+    return pa.schema([*fields, *segment_field(table)])
 
 
 def _metrics(table: Table, robot: Robot, qualities: list[Quality]) -> Table:

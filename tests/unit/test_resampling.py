@@ -96,16 +96,9 @@ def test_other_columns_have_the_value_of_the_row_before() -> None:
     assert found.column("note").to_pylist() == ["a", "a", "b", "b", "c"]
 
 
-@pytest.mark.parametrize(
-    ("t", "told"),
-    [
-        ([0.0, 0.1, 0.05, 0.2], "row 3, column t: found time that goes back by 0.05 s"),
-        ([0.0, 0.1, 0.5, 0.6], "row 3, column t: found a gap of 0.4 s"),
-    ],
-    ids=["backwards", "gap"],
-)
 @pytest.mark.parametrize("sizes", [(), (1,), (2,)])
-def test_a_clock_beyond_mending_is_told(t: list[float], told: str, sizes: tuple[int, ...]) -> None:
-    source = table({"t": np.array(t), "q1": np.zeros(len(t))}, sizes)
-    with pytest.raises(BadData, match=told.replace("(", r"\(")):
+def test_a_clock_that_goes_back_is_told(sizes: tuple[int, ...]) -> None:
+    source = table({"t": np.array([0.0, 0.1, 0.05, 0.2]), "q1": np.zeros(4)}, sizes)
+    told = r"row 3, column t: found time that goes back by 0\.05 s"
+    with pytest.raises(BadData, match=told):
         Kept().batches.extend(resample(source, 10.0, 0.2).batches)

@@ -20,7 +20,7 @@ from scarid_cli.algorithms.filters.polynomials import derivative_taps, require_w
 from scarid_cli.algorithms.ranges import Range
 from scarid_cli.algorithms.settings import require_odd
 from scarid_cli.arrays import Array
-from scarid_cli.errors import UsageFault
+from scarid_cli.errors import TooShort
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Differentiator(FirMethod):
 
     def finish(self, state: State) -> tuple[Array, ...]:  # type: ignore[override]
         if len(state.samples) < self.window:
-            raise UsageFault(
+            raise TooShort(
                 f"window of {self.window:g} samples is longer than the log of "
                 f"{len(state.samples)} rows"
             )

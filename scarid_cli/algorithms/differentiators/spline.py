@@ -17,7 +17,7 @@ from scarid_cli.algorithms.filters.likelihood import noise_of
 from scarid_cli.algorithms.process import Whole
 from scarid_cli.algorithms.settings import require_not_negative
 from scarid_cli.arrays import Array
-from scarid_cli.errors import UsageFault
+from scarid_cli.errors import TooShort
 
 DEGREE = 5
 
@@ -87,7 +87,7 @@ class Projection(Whole):
 def times(x: Array, h: float) -> Array:
     """From zero on [s]."""
     if len(x) <= DEGREE:
-        raise UsageFault(f"spline needs a log of more than {DEGREE} rows, not {len(x)}")
+        raise TooShort(f"spline needs a log of more than {DEGREE} rows, not {len(x)}")
     return np.arange(float(len(x))) * h
 
 

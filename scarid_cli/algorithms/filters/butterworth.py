@@ -14,7 +14,7 @@ from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_re
 from scarid_cli.algorithms.process import Causal, Record, Whole
 from scarid_cli.algorithms.settings import require_below_nyquist, require_positive, require_whole
 from scarid_cli.arrays import Array
-from scarid_cli.errors import bad_data
+from scarid_cli.errors import TooShort
 
 
 @dataclass(frozen=True)
@@ -66,11 +66,9 @@ class ZeroPhase(Whole):
 
         padding = 3 * int(self.order)
         if len(x) <= padding:
-            raise bad_data(
-                "the log",
-                f"{len(x)} rows",
-                expected=f"more than {padding} for a zero-phase filter of this order",
-                remedy="give a longer log",
+            raise TooShort(
+                f"a zero-phase filter of this order needs a log of more than {padding} rows, not "
+                f"{len(x)}"
             )
         sections = np.insert(self._sections(h), 3, 1.0, axis=1)
         return (signal.sosfiltfilt(sections, x, padtype="odd", padlen=padding),)
