@@ -17,6 +17,8 @@ import numpy as np
 from scarid_cli.algorithms.process import Process
 from scarid_cli.arrays import Array
 
+POSITION, ACCELERATION = 0.01, 0.005  # see spread
+
 
 @dataclass(frozen=True)
 class Behind:
@@ -113,9 +115,11 @@ class WithPosition:
 
 
 def spread(process: Process, h: float) -> tuple[int, int]:
-    """Rows before and after a step over which the response is more than 1 % off.
+    """Rows before and after a step over which the response is off, or still moves.
 
-    So many rows at the end and at the start of a record are not what they would be in the middle.
+    So many rows at the end and at the start of a record are not what they would be in the middle:
+    the position by more than 1 % of a step, or, where the record begins in motion, the acceleration
+    by more than .5 % of what a step of the velocity does to it.
     """
     return _spread(process, h)  # type: ignore[arg-type]  # processes are frozen dataclasses
 
@@ -128,7 +132,11 @@ def _spread(process: Process, h: float) -> tuple[int, int]:
     half = 64
     while True:
         step = np.repeat([0.0, 1.0], half)
-        off = np.flatnonzero(np.abs(over(process, step, h)[0] - step) > 0.01)
+        response = over(process, step, h)[0]
+        moves = np.abs(np.diff(response, prepend=0.0))
+        off = np.flatnonzero(
+            (np.abs(response - step) > POSITION) | (moves > ACCELERATION * moves.max())
+        )
         if not len(off):
             return 0, 0
         before, after = max(half - int(off[0]), 0), max(int(off[-1]) + 1 - half, 0)

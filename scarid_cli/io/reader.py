@@ -219,11 +219,13 @@ def _regular(
         segment = segments_of(batch)
         time, before = last or (t[0], segment[0])
         steps, jumps = np.diff(t, prepend=time), np.diff(segment, prepend=before)
-        if last is None:
-            start, missing, steps[0] = float(t[0]), 0.0, period
+        first = last is None
+        if first:
+            start, missing = float(t[0]), 0.0
         _check_segments(jumps, name, row + 1)
         after_gap = (jumps > 0) & (steps > 0.0)
-        _check_steps(np.where(after_gap, period, steps), t, name, period, row + 1)
+        inner = np.where(after_gap, period, steps)[first:]
+        _check_steps(inner, t[first:], name, period, row + 1 + first)
         missing += float(steps[after_gap].sum())
         gaps += int(after_gap.sum())
         row += batch.num_rows

@@ -147,7 +147,7 @@ def test_the_metadata_hold_the_verdict_and_its_numbers(shell: Shell) -> None:
         ("identify --skip 10000 --decimate 10", "no rows that count"),
         ("identify --drop-slow 1000", "no rows that count"),
         ("identify --decimate 100 --skip 0,300", "4 rows that count"),
-        ("identify --estimator wls --align --skip 0,480", "8 rows that count"),
+        ("identify --estimator wls --align --skip 0,473", "8 rows that count"),
         ("validate --parameters $SAMPLES/scara2.parameters.csv --skip 10000", "no rows that count"),
     ],
 )
