@@ -28,6 +28,11 @@ from scarid_cli.cli import options
 @click.option(
     "--rate", type=float, help="Give a log without a time column t one, at this rate [Hz]."
 )
+@click.option(
+    "--robot",
+    metavar="FILE",
+    help="A robot whose description says what its logs hold (columns, units, motors or joints).",
+)
 @click.option("--separator", metavar="CHAR", default="", help="Of the values of a CSV, such as ;.")
 @click.option("--decimal-comma", is_flag=True, help="A CSV whose numbers have a comma for a point.")
 @click.option(
@@ -40,6 +45,7 @@ def command(
     mapping: str | None,
     units: tuple[str, ...],
     rate: float | None,
+    robot: str | None,
     separator: str,
     decimal_comma: bool,
     header: str,
@@ -53,16 +59,21 @@ def command(
       scarid convert --map 'q1=joint_1_pos,tau1=effort_1' --unit 'q*=deg' robot.csv -o log.parquet
       scarid convert --separator ';' --decimal-comma --header t,q1,tau1 export.txt
       scarid convert --rate 500 measured.mat -o log.parquet
+      scarid convert --robot mine.toml motors.csv | scarid differentiate
 
     CSV, Parquet, Arrow stream and Arrow file, in and out; in only: NumPy's .npz and MATLAB's .mat
     (before version 7.3), whose matrices become q1, q2, ... Numbers are kept exactly. CSV carries no
     metadata: units and history end there.
+
+    With --robot, columns, units and rate are those of [log] in the robot's TOML file, unless they
+    are given here too, and angles, torques or currents of motors become positions and torques of
+    joints, by the gear ratios, couplings and torque constants there: see docs/robots.md.
     """
-    from scarid_cli.cli.job import job
+    from scarid_cli.cli.job import job, robot_of
     from scarid_cli.cli.pairs import pair
     from scarid_cli.errors import UsageFault
     from scarid_cli.io.foreign import ARCHIVES, Customs, read_archive
-    from scarid_cli.stages.adapt import adapted
+    from scarid_cli.stages.adapt import adapted, as_described
 
     if rate is not None and not 0.0 < rate < float("inf"):
         raise UsageFault(f"--rate must be positive, not {rate:g}")
@@ -76,11 +87,15 @@ def command(
     with job(rest) as run:
         out = run.output(rest["output"], rest["format"])
         if file.endswith(ARCHIVES):
-            table = read_archive(file)
+            table = read_archive(run.noted(file))
         elif foreign:
             comma = "," if decimal_comma else ""
             mark = "\t" if separator == "\\t" else separator
             table = run.read(file, None, through=lambda s: Customs(s, mark, comma, header))
         else:
             table = run.read(file, None)
-        run.write(run.recorded(adapted(table, dict(pairs), wanted, rate)), out)
+        if robot:
+            table = as_described(table, robot_of(robot), dict(pairs), wanted, rate)
+        else:
+            table = adapted(table, dict(pairs), wanted, rate)
+        run.write(run.recorded(table), out)

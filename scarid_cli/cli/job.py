@@ -82,6 +82,13 @@ class Job:
             self.say(f"{source.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
         return _counted(table, self._quiet)
 
+    def noted(self, path: str) -> str:
+        """The path of an input that is no table, for the history."""
+        source = ByteSource.open(path)
+        self.sources.append(source)
+        self._inputs[source.name] = source.sha256() if self._history else None
+        return path
+
     def read_for(
         self, path: str, kind: str, robot: str | None, *, torques: bool = False
     ) -> tuple[Table, Robot]:

@@ -12,6 +12,7 @@ from scarid_cli.cli import options
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
+    from scarid_cli.algorithms.robots.logs import Log
 
 
 @click.group(name="robot")
@@ -34,13 +35,26 @@ def check(robot: str, **_rest: Any) -> None:
       scarid robot check planar2-gravity
       scarid robot check mine.toml
 
-    Joints with their limits, and the parameters that identify estimates: name, unit, a priori
-    value, and, for a URDF, the standard parameters that each base parameter stands for.
+    What its logs hold (see convert --robot), joints with their limits, and the parameters that
+    identify estimates: name, unit, a priori value, and, for a URDF, the standard parameters that
+    each base parameter stands for.
     """
     from scarid_cli.algorithms.robots.reading import load
 
     for line in described(load(robot)):
         click.echo(line)
+
+
+def _told(log: Log) -> str:
+    """What the robot's logs hold."""
+    from scarid_cli.algorithms.robots.logs import CURRENT
+
+    parts = [f"positions of {log.positions}s"]
+    parts.append("currents of motors" if log.torques == CURRENT else f"torques of {log.torques}s")
+    parts += [f"{new} is {old}" for new, old in log.columns.items()]
+    parts += [f"{pattern} in {unit}" for pattern, unit in log.units]
+    parts += [f"{log.rate:g} Hz"] if log.rate else []
+    return ", ".join(parts)
 
 
 def described(robot: Robot) -> Iterator[str]:
@@ -49,6 +63,10 @@ def described(robot: Robot) -> Iterator[str]:
     yield f"robot       {robot.name}: {robot.title}"
     yield f"freedom     {joints} joint{'s' if joints > 1 else ''}, {parameters} parameters"
     yield f"controller  {'described' if robot.control else 'none: it cannot be simulated'}"
+    if robot.body:
+        yield f"gravity     {' '.join(f'{x:g}' for x in robot.body.gravity)} m/s2"
+    if robot.log:
+        yield f"logs        {_told(robot.log)}"
     yield "joints"
     for i, joint in enumerate(robot.joints, start=1):
         limits = (

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.errors import BadData, UsageFault, bad_data
+from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.table import Metadata, Table, doubles
 
@@ -39,8 +39,6 @@ def read_archive(path: str) -> Table:
     """The arrays of an .npz or .mat file as columns; a matrix `q` becomes q1, q2, ..."""
     try:
         arrays = _arrays(path)
-    except FileNotFoundError:
-        raise UsageFault(f"{path}: no such file") from None
     except (OSError, ValueError, TypeError, NotImplementedError) as error:
         told = " ".join(str(error).split())
         raise BadData(f"{path}: not a readable {Path(path).suffix} file: {told}") from None

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from fnmatch import fnmatchcase
-from math import pi
+from math import inf, pi
 
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table, doubles, matrix, number
+from scarid_cli.stages.joints import at_joints
 
 # Unit of a log: what to multiply with, and the unit that comes out.
 UNITS = {
@@ -27,6 +29,7 @@ UNITS = {
     "kN m": (1e3, "N m"),
     "mN": (1e-3, "N"),
     "kN": (1e3, "N"),
+    "mA": (1e-3, "A"),
     "ms": (1e-3, "s"),
     "us": (1e-6, "s"),
     "ns": (1e-9, "s"),
@@ -51,10 +54,33 @@ def adapted(
     return replace(table, schema=schema, batches=_rows(table, schema, new, scales, rate))
 
 
+def as_described(
+    table: Table,
+    robot: Robot,
+    names: dict[str, str],
+    units: list[tuple[str, str]],
+    rate: float | None,
+) -> Table:
+    """The same with what a robot's description says of its logs; what is given goes before that."""
+    log = robot.log
+    if log is None:
+        raise UsageFault(f"{robot.name}: its description has no [log] that says what logs hold")
+    clocked = "t" in table.columns or "t" in {**log.columns, **names}
+    table = adapted(
+        table,
+        {**log.columns, **names},
+        [*log.units, *units],
+        rate if rate or clocked else log.rate,
+    )
+    return at_joints(table, robot, log)
+
+
 def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:
     for old in names.values():
         if old not in table.columns:
-            raise UsageFault(f"--map: no column {old!r}; the table has {', '.join(table.columns)}")
+            raise UsageFault(
+                f"{table.name}: no column {old!r} to rename; it has {', '.join(table.columns)}"
+            )
     to = {old: new for new, old in names.items()}
     fields = [f.with_name(to.get(f.name, f.name)) for f in table.schema]
     twice = next((f.name for f in fields if [g.name for g in fields].count(f.name) > 1), None)
@@ -65,14 +91,31 @@ def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:
 
 def _scales(names: list[str], units: list[tuple[str, str]]) -> dict[str, tuple[float, str]]:
     scales: dict[str, tuple[float, str]] = {}
-    for pattern, unit in units:
-        if unit not in UNITS:
-            raise UsageFault(f"--unit {pattern}={unit}: unknown unit; there are {', '.join(UNITS)}")
+    for pattern, text in units:
+        scale = _scale(text)
+        if scale is None:
+            raise UsageFault(
+                f"--unit {pattern}={text}: unknown unit; there are {', '.join(UNITS)}, rad, ..., "
+                "also with a number before"
+            )
         found = [name for name in names if fnmatchcase(name, pattern)]
         if not found:
             raise UsageFault(f"--unit: no column {pattern!r}; the table has {', '.join(names)}")
-        scales |= dict.fromkeys(found, UNITS[unit])
+        scales |= dict.fromkeys(found, scale)
     return scales
+
+
+def _scale(text: str) -> tuple[float, str] | None:
+    """Of `deg`, or of a count of an encoder: `0.001534 rad`."""
+    first, _, rest = text.partition(" ")
+    try:
+        factor, unit = float(first), rest
+    except ValueError:
+        factor, unit = 1.0, text
+    known = {**UNITS, **{si: (1.0, si) for _, si in UNITS.values()}}
+    if unit not in known or not 0.0 < abs(factor) < inf:
+        return None
+    return factor * known[unit][0], known[unit][1]
 
 
 def _rows(

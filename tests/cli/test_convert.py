@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -78,3 +79,92 @@ def test_what_cannot_be_is_told(
     assert result.status == status
     assert told in result.err
     assert len(result.err.splitlines()) == 1
+
+
+ROBOT = """
+title = "two axes, the motor of the second turns with the first"
+[log]
+rate = 100.0
+positions = "motor"
+torques = "current"
+columns = { q1 = "enc1", q2 = "enc2", tau1 = "amp1", tau2 = "amp2" }
+units = { "q?" = "0.001 rad", "tau?" = "mA" }
+[[joint]]
+type = "revolute"
+gear_ratio = 50.0
+torque_constant = 0.1
+zero = 0.3
+[[joint]]
+type = "revolute"
+gear_ratio = -20.0
+torque_constant = 0.2
+[[coupling]]
+joints = [1, 2]
+ratio = 4.0
+[[parameter]]
+name = "Fv1"
+term = "viscous"
+joint = 1
+unit = "N m s/rad"
+apriori = 0.0
+"""
+
+
+def test_a_log_of_motors_becomes_one_of_joints(shell: Shell, tmp_path: Path) -> None:
+    """Forwards by hand: motor 1 turns 50 q1, motor 2 turns 4 q1 - 20 q2; work is the same."""
+    (tmp_path / "robot.toml").write_text(ROBOT)
+    q = np.array([[0.1, -0.2, 0.7], [0.5, 0.0, -1.0]])
+    motors = np.array([50.0 * (q[0] - 0.3), 4.0 * (q[0] - 0.3) - 20.0 * q[1]])
+    amperes = np.array([[1.0, -2.0, 0.5], [3.0, 0.0, 1.0]])
+    m1, m2 = 0.1 * amperes[0], 0.2 * amperes[1]
+    tau = np.array([50.0 * m1 + 4.0 * m2, -20.0 * m2])
+    columns = (*(motors / 0.001), *(1000.0 * amperes))
+    np.savetxt(
+        tmp_path / "log.csv",
+        np.transpose(columns),
+        fmt="%.17g",
+        delimiter=",",
+        header="enc1,enc2,amp1,amp2",
+        comments="",
+    )
+    result = shell("scarid convert --robot robot.toml log.csv")
+    assert result.status == 0, result.err
+    header, *rows = result.out.splitlines()
+    assert header == "t,q1,q2,tau1,tau2"
+    found = np.array([[float(x) for x in row.split(",")] for row in rows]).T
+    np.testing.assert_allclose(found, [[0.0, 0.01, 0.02], *q, *tau], rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("command", "status", "told"),
+    [
+        ("--robot emps log.csv", 2, "its description has no [log]"),
+        ("--robot robot.toml log.csv", 2, "no column 'enc2' to rename; it has enc1"),
+        ("--robot robot.toml --map q2=other log.csv", 65, "name them all"),
+    ],
+)
+def test_a_log_that_does_not_fit_its_robot_is_told(
+    command: str, status: int, told: str, shell: Shell, tmp_path: Path
+) -> None:
+    robot = (
+        ROBOT
+        if "other" not in command
+        else ROBOT.replace(', q2 = "enc2"', "").replace(', tau2 = "amp2"', "")
+    )
+    (tmp_path / "robot.toml").write_text(robot)
+    (tmp_path / "log.csv").write_text("enc1,amp1,other\n1,2,3\n4,5,6\n")
+    result = shell(f"scarid convert {command}")
+    assert (result.status, result.out) == (status, "")
+    assert told in result.err
+    assert len(result.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("extension", ["npz", "mat"])
+def test_the_history_tells_the_digest_of_an_archive(
+    extension: str, shell: Shell, tmp_path: Path
+) -> None:
+    path = tmp_path / f"log.{extension}"
+    arrays = {"t": np.arange(3) * 0.01, "q1": np.arange(3.0)}
+    np.savez(path, **arrays) if extension == "npz" else scipy.io.savemat(path, arrays)
+    result = shell(f"scarid convert {path} -o log.parquet && scarid info log.parquet")
+    assert hashlib.sha256(path.read_bytes()).hexdigest() in result.out

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from scarid_cli.algorithms.robots.base import independent
+from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.robots.terms import TERMS
 from scarid_cli.cli.robot import described
 from scarid_cli.errors import UsageFault
 
@@ -47,6 +50,7 @@ def test_the_regressor_gives_the_torques_of_inverse_dynamics(urdf: str) -> None:
         values = zip(order, inertia.toDynamicParameters(), strict=True)
         standard |= {f"{symbol}{i}": x for symbol, x in values}
     theta = np.array([written_out(p.stands_for, standard) for p in robot.parameters])
+    np.testing.assert_allclose(robot.apriori, theta, atol=1e-12)
     rng = np.random.default_rng(1)
     q, dq, ddq = rng.standard_normal((3, 2, 20))
     torques = robot.torques(robot.regressor(q, dq, ddq), theta)
@@ -90,9 +94,9 @@ def test_dependent_columns_are_counted_to_those_before_them() -> None:
     ("content", "told"),
     [
         ("<robot", "not a URDF"),
-        (URDF.replace("TYPE", "continuous"), "only revolute and prismatic"),
+        (URDF.replace("TYPE", "floating"), "only revolute, continuous and prismatic"),
     ],
-    ids=["broken", "continuous"],
+    ids=["broken", "floating"],
 )
 def test_what_is_no_arm_is_told(content: str, told: str, tmp_path: Path) -> None:
     path = tmp_path / "x.urdf"
@@ -113,9 +117,19 @@ def test_a_prismatic_joint_is_known_by_its_type(tmp_path: Path) -> None:
         ("[[joint]]", "1 joints for the 2"),
         ("[[joint]]\n[[joint]]\nterms = ['magic']", "term 'magic' of an axis"),
         ("[[coupling]]\njoints = [1, 3]", "joints 1 and 3 cannot be coupled"),
+        ("[[joint]]\nname = 'a'\n[[joint]]", "some joints have a name"),
+        (
+            "[[joint]]\nname = 'b'\n[[joint]]\nname = 'a'",
+            "no joints b, a in this order; it has a, b",
+        ),
+        ("[[joint]]\nmass = 3.0\n[[joint]]", "mass is not of [[joint]]"),
+        ("gravity = [0.0, 9.81]", "not a list of 3 numbers"),
+        ("[log]\ntorques = 'amps'", "torques 'amps'; choose joint or motor or current"),
+        ("[log]\nrate = -1.0", "rate is not positive"),
+        ("[log]\n[[joint]]\ngear_ratio = 0.0\n[[joint]]", "gear_ratio is 0"),
         ("", "no such file"),
     ],
-    ids=["joints", "term", "coupling", "urdf"],
+    ids=lambda value: value.replace("\n", " ") if "[" in value else "",
 )
 def test_a_description_that_does_not_fit_is_told(
     lines: str, told: str, urdf: str, tmp_path: Path
@@ -123,7 +137,7 @@ def test_a_description_that_does_not_fit_is_told(
     path = tmp_path / "robot.toml"
     place = urdf if lines else "nowhere.urdf"
     path.write_text(f"title = 'two'\nurdf = '{place}'\n{lines}\n")
-    with pytest.raises(UsageFault, match=told):
+    with pytest.raises(UsageFault, match=re.escape(told)):
         load(str(path))
 
 
@@ -131,5 +145,81 @@ def test_a_check_writes_the_base_parameters_out(urdf: str) -> None:
     lines = list(described(load(urdf)))
     assert "freedom     2 joints, 13 parameters" in lines
     assert "controller  none: it cannot be simulated" in lines
-    assert "  Iyy1  kg m2      0  = Iyy1 + 1 Ia1 + 0.09 m2" in lines
-    assert "  mx2   kg m       0" in lines
+    assert "  1  revolute   position 3 rad, velocity 9 rad/s, torque 9 N m" in lines
+    assert "  Iyy1  kg m2      0.31  = Iyy1 + 1 Ia1 + 0.09 m2" in lines
+    assert "  mx2   kg m       0.1" in lines
+
+
+def described_arm(urdf: str, tmp_path: Path, lines: str) -> Robot:
+    path = tmp_path / "robot.toml"
+    path.write_text(f"title = 'two'\nurdf = '{urdf}'\n{lines}\n")
+    return load(str(path))
+
+
+def test_a_joint_without_end_is_an_angle(urdf: str, tmp_path: Path) -> None:
+    path = tmp_path / "turning.urdf"
+    path.write_text(URDF.replace("TYPE", "continuous"))
+    turning, limited = load(str(path)), load(urdf)
+    motion = np.random.default_rng(0).standard_normal((3, 2, 5))
+    np.testing.assert_array_equal(turning.regressor(*motion), limited.regressor(*motion))
+    assert turning.joints[1].position_limit == np.inf
+
+
+def test_joints_without_an_entry_are_locked(urdf: str, tmp_path: Path) -> None:
+    """Joint a alone: link two turns with it as one body, by Steiner's theorem."""
+    lines = "[[joint]]\nname = 'a'\nterms = { viscous = 2.0 }"
+    robot = described_arm(urdf, tmp_path, lines)
+    values = dict(zip(robot.names, robot.apriori, strict=True))
+    assert list(values) == ["Iyy1", "mx1", "mz1", "fv1"]
+    assert values["fv1"] == 2.0
+    own = 0.2 + 2.0 * 0.1**2  # link one about its joint
+    assert values["Iyy1"] == pytest.approx(own + 0.02 + (0.4**2 + 0.05**2))
+    assert values["mx1"] == pytest.approx(2.0 * 0.1 + 0.4)
+
+
+def test_gravity_pulls_where_the_description_says(urdf: str, tmp_path: Path) -> None:
+    """Along y, the axis of both joints: nothing is felt at rest."""
+    q = np.array([[0.3], [0.4]])
+    rest = np.zeros((2, 1))
+    upright = described_arm(urdf, tmp_path, "")
+    lying = described_arm(urdf, tmp_path, "gravity = [0.0, 9.81, 0.0]")
+    assert np.abs(upright.regressor(q, rest, rest)[:, :, :6]).max() > 1.0
+    bodies = [i for i, p in enumerate(lying.parameters) if p.column >= 0]
+    np.testing.assert_allclose(lying.regressor(q, rest, rest)[:, :, bodies], 0.0, atol=1e-12)
+
+
+def test_friction_may_differ_between_directions(urdf: str, tmp_path: Path) -> None:
+    terms = "terms = ['viscous-forward', 'viscous-backward', 'coulomb-forward', 'coulomb-backward']"
+    robot = described_arm(urdf, tmp_path, f"[[joint]]\n{terms}\n[[joint]]\nterms = []")
+    dq = np.array([[2.0, -3.0], [0.0, 0.0]])
+    W = robot.regressor(np.zeros((2, 2)), dq, np.zeros((2, 2)))
+    columns = {name: W[:, 0, i].tolist() for i, name in enumerate(robot.names)}
+    friction = {name: column for name, column in columns.items() if name[-1] in "+-"}
+    assert friction == {
+        "fv1+": [2.0, 0.0],
+        "fv1-": [0.0, -3.0],
+        "fs1+": [1.0, 0.0],
+        "fs1-": [0.0, -1.0],
+    }
+
+
+def test_a_coupled_motor_is_felt_by_both_joints(urdf: str, tmp_path: Path) -> None:
+    """Virtual work: motor 2 turns by N (k q1 + q2); its torques are the slopes of that angle."""
+    N, k = 30.0, 0.5
+    robot = described_arm(
+        urdf,
+        tmp_path,
+        f"[[joint]]\n[[joint]]\ngear_ratio = {N}\n[[coupling]]\njoints = [1, 2]\nratio = {k * N}",
+    )
+    dq, ddq = np.random.default_rng(0).standard_normal((2, 2, 9))
+    W = robot.regressor(np.zeros((2, 9)), dq, ddq)
+    column = {name: W[:, :, i].T for i, name in enumerate(robot.names)}
+    slopes = np.array([[k], [1.0]])
+    angle_rate = k * dq[0] + dq[1]
+    np.testing.assert_allclose(column["fsm2"], slopes * np.sign(angle_rate))
+    own = np.array([k * k * dq[0], dq[1]])  # what the axes' own columns have
+    np.testing.assert_allclose(column["fvm2"], slopes * angle_rate - own)
+    inertia = Parameter("Iam2", "coupled-inertia", "kg m2", 0.0, joint=1, other=2, ratio=k)
+    both = TERMS["coupled-inertia"](dq, dq, ddq, inertia)
+    own = np.array([k * k * ddq[0], ddq[1]])
+    np.testing.assert_allclose([both[0], both[1]], slopes * (k * ddq[0] + ddq[1]) - own)

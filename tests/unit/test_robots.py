@@ -177,7 +177,7 @@ def test_unknown_robot_is_refused_with_the_choice(name: str) -> None:
     ("text", "instead", "complaint"),
     [
         ('title = "EMPS, one prismatic axis"', "", "missing 'title'"),
-        ("[[joint]]", "[[axis]]", "missing 'joint'"),
+        ("[[joint]]", "[[axis]]", "axis is not of a robot; it has title, joint"),
         ("apriori = 95.1089", "", "apriori"),
         ("apriori = 95.1089", 'apriori = "heavy"', "apriori"),
         ("kp = [1370725.0]", "", "missing 'kp'"),

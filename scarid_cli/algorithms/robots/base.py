@@ -2,7 +2,7 @@
 
 Columns of the regressor along random motions, one after the other: one that the columns before it
 make up is left out, and its parameter counted to theirs. The motions are always the same, so the
-set is too.
+set is too. Its a priori values are those of the same torques.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ def with_base_parameters(robot: Robot) -> Robot:
     names = robot.names
     parameters = []
     for row, i in enumerate(kept):
-        others = zip(parts[row], names, strict=True)
-        rest = "".join(
-            f" {'-' if x < 0.0 else '+'} {abs(x):.6g} {name}"
-            for x, name in others
-            if abs(x) > ABSENT
-        )
-        parameters.append(replace(robot.parameters[i], stands_for=f"{names[i]}{rest}"))
+        own = robot.parameters[i]
+        others = [
+            (x, p) for x, p in zip(parts[row], robot.parameters, strict=True) if abs(x) > ABSENT
+        ]
+        rest = "".join(f" {'-' if x < 0.0 else '+'} {abs(x):.6g} {p.name}" for x, p in others)
+        apriori = own.apriori + float(sum(x * p.apriori for x, p in others))
+        parameters.append(replace(own, apriori=apriori, stands_for=f"{names[i]}{rest}"))
     return replace(robot, parameters=tuple(parameters))
 
 

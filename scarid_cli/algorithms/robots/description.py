@@ -3,37 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf
 
 import numpy as np
 
+from scarid_cli.algorithms.robots.joints import Joint
+from scarid_cli.algorithms.robots.logs import Log
 from scarid_cli.algorithms.robots.rigid import Body
 from scarid_cli.algorithms.robots.terms import TERMS
 from scarid_cli.arrays import Array
-
-UNITS = {"revolute": ("rad", "N m"), "prismatic": ("m", "N")}
-
-
-@dataclass(frozen=True)
-class Joint:
-    """One joint: limits in its own units (rad or m, N m or N); infinite where not given."""
-
-    type: str
-    position_limit: float = inf
-    velocity_limit: float = inf
-    acceleration_limit: float = inf
-    torque_limit: float = inf
-    encoder_resolution: float = 0.0
-    torque_noise: float = 0.0
-
-    @property
-    def unit(self) -> str:
-        """Of the position."""
-        return UNITS[self.type][0]
-
-    @property
-    def torque_unit(self) -> str:
-        return UNITS[self.type][1]
 
 
 @dataclass(frozen=True)
@@ -41,7 +18,7 @@ class Parameter:
     """One base parameter: its term of the regressor, the joint (from 1) of a friction term.
 
     `stands_for` writes it out in the parameters counted to it; `column` is its place among the
-    standard parameters of a URDF, `other` the joint that a coupled term is coupled to.
+    standard parameters of a URDF, `other` the joint that a coupled term is coupled to by `ratio`.
     `velocity` [rad/s or m/s], `length` [m] and `gravity` [m/s2] shape the term: see terms.py.
     """
 
@@ -54,6 +31,7 @@ class Parameter:
     length: float = 0.0
     gravity: float = 0.0
     other: int = 0
+    ratio: float = 1.0
     column: int = -1
     stands_for: str = ""
 
@@ -78,6 +56,7 @@ class Robot:
     parameters: tuple[Parameter, ...]
     control: Control | None
     body: Body | None = None
+    log: Log | None = None
 
     @property
     def names(self) -> list[str]:

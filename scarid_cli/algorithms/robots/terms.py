@@ -4,7 +4,7 @@ Each term maps positions, velocities and accelerations, arrays (joints, samples)
 per unit of its parameter: a dict from joint (from 0) to samples. Joints that are left out feel
 nothing. The last argument has the constants of the term: the joint it is on (from 1), a velocity
 [rad/s or m/s] that shapes dry friction, a length [m], the acceleration of gravity
-[m/s2], and the joint that a coupled term is coupled to.
+[m/s2], and the joint that a coupled term is coupled to, with the ratio.
 """
 
 from __future__ import annotations
@@ -32,6 +32,8 @@ class Constants(Protocol):
     def gravity(self) -> float: ...
     @property
     def other(self) -> int: ...
+    @property
+    def ratio(self) -> float: ...
 
 
 Term = Callable[[Array, Array, Array, Constants], Column]
@@ -93,22 +95,25 @@ def mass(_q: Array, _dq: Array, ddq: Array, its: Constants) -> Column:
 
 
 def coupled_inertia(_q: Array, _dq: Array, ddq: Array, its: Constants) -> Column:
-    """Inertia of a motor that turns with both of two coupled joints [kg m2]."""
+    """Inertia of a motor that turns with joint `other`, and `ratio` as much with another [kg m2].
+
+    What it does between the two: its own column is that of an axis.
+    """
     one, two = its.joint - 1, its.other - 1
-    return {one: ddq[two], two: ddq[one]}
+    return {one: its.ratio * ddq[two], two: its.ratio * ddq[one]}
 
 
 def coupled_viscous(_q: Array, dq: Array, _ddq: Array, its: Constants) -> Column:
-    """Viscous friction of such a motor [N m s/rad]."""
+    """Viscous friction of such a motor, likewise [N m s/rad]."""
     one, two = its.joint - 1, its.other - 1
-    return {one: dq[two], two: dq[one]}
+    return {one: its.ratio * dq[two], two: its.ratio * dq[one]}
 
 
 def coupled_coulomb(_q: Array, dq: Array, _ddq: Array, its: Constants) -> Column:
     """Dry friction of such a motor [N m]."""
     one, two = its.joint - 1, its.other - 1
-    both = np.sign(dq[one] + dq[two])
-    return {one: both, two: both}
+    direction = np.sign(its.ratio * dq[one] + dq[two])
+    return {one: its.ratio * direction, two: direction}
 
 
 def zz1r(_q: Array, _dq: Array, ddq: Array, _its: Constants) -> Column:

@@ -1,0 +1,134 @@
+"""What the logs of a robot hold, where that is not the joints' positions and torques in SI units.
+
+    [log]
+    rate = 1000               # Hz, of a log without a time column
+    positions = "motor"       # angles of motors: q of the motors = R (q of the joints - zero)
+    torques = "current"       # of motors [A]; or "motor": torques of motors
+    columns = { q1 = "enc_1", tau1 = "amp_1" }
+    units = { "q*" = "deg" }
+
+    [[joint]]
+    gear_ratio = -48.0        # turns of the motor in one of the joint, negative if it turns back
+    torque_constant = 0.05    # N m/A
+    zero = 1.5708             # rad or m: the joint where its motor is at 0
+
+    [[coupling]]
+    joints = [5, 6]           # the motor of joint 6 turns with joint 5 as well,
+    ratio = 32.0              # so much; by default as much as with joint 6
+
+Power is the same on both sides: torques of the joints = R' torques of the motors.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from scarid_cli.algorithms.robots import values
+from scarid_cli.arrays import Array
+
+JOINT, MOTOR, CURRENT = "joint", "motor", "current"
+AXIS = ("gear_ratio", "torque_constant", "zero")  # of [[joint]]
+
+
+@dataclass(frozen=True)
+class Log:
+    """Names and units as `convert` takes them, and the motors behind the joints.
+
+    `ratios` is R above (joints, joints), `constants` (joints) [N m/A], `zero` (joints) [rad or m].
+    """
+
+    columns: dict[str, str] = field(default_factory=dict)
+    units: tuple[tuple[str, str], ...] = ()
+    rate: float | None = None
+    positions: str = JOINT
+    torques: str = JOINT
+    ratios: tuple[tuple[float, ...], ...] = ()
+    constants: tuple[float, ...] = ()
+    zero: tuple[float, ...] = ()
+
+    def positions_of_joints(self, q: Array) -> Array:
+        """Positions (joints, samples) from angles of motors."""
+        positions: Array = self.velocities_of_joints(q) + np.array(self.zero)[:, None]
+        return positions
+
+    def velocities_of_joints(self, dq: Array) -> Array:
+        """Velocities or accelerations likewise."""
+        return _mixed(np.linalg.inv(np.array(self.ratios)), dq)
+
+    def torques_of_joints(self, tau: Array) -> Array:
+        """Torques (joints, samples) from torques or currents of motors."""
+        constants = np.array(self.constants) if self.torques == CURRENT else 1.0
+        return _mixed(np.transpose(self.ratios) * constants, tau)
+
+
+def _mixed(matrix: Array, x: Array) -> Array:
+    """Their product, summed in the same order for any number of samples."""
+    total = matrix[:, :1] * x[0]
+    for k in range(1, len(x)):
+        total = total + matrix[:, k : k + 1] * x[k]
+    return np.asarray(total, dtype=np.float64)
+
+
+def log_of(document: dict[str, Any], joints: int) -> Log | None:
+    """What a description says of its logs."""
+    axes = document.get("joint") or [{}] * joints
+    couplings = document.get("coupling", [])
+    if "log" not in document:
+        return None
+    entry = values.table("log", document["log"])
+    values.only("[log]", entry, ("rate", "positions", "torques", "columns", "units"))
+    columns = values.table("columns", entry.get("columns", {}))
+    units = values.table("units", entry.get("units", {}))
+    rate = values.number("rate", entry["rate"]) if "rate" in entry else None
+    if rate is not None and rate <= 0.0:
+        raise ValueError("rate is not positive")
+    return Log(
+        columns={new: values.text(new, old) for new, old in columns.items()},
+        units=tuple((pattern, values.text(pattern, unit)) for pattern, unit in units.items()),
+        rate=rate,
+        positions=values.choice("positions", entry.get("positions", JOINT), (JOINT, MOTOR)),
+        torques=values.choice("torques", entry.get("torques", JOINT), (JOINT, MOTOR, CURRENT)),
+        ratios=_ratios(axes, couplings),
+        constants=_numbers(axes, "torque_constant", 1.0),
+        zero=_numbers(axes, "zero", 0.0),
+    )
+
+
+def _numbers(axes: list[dict[str, Any]], key: str, otherwise: float) -> tuple[float, ...]:
+    return tuple(values.number(key, axis.get(key, otherwise)) for axis in axes)
+
+
+def _ratios(
+    axes: list[dict[str, Any]], couplings: list[dict[str, Any]]
+) -> tuple[tuple[float, ...], ...]:
+    R = np.diag([gear_ratio(axis) for axis in axes])
+    for entry in couplings:
+        one, two = coupled(entry, axes)
+        R[two, one] = ratio_of(entry, axes)
+    return tuple(tuple(line) for line in R.tolist())
+
+
+def gear_ratio(axis: dict[str, Any]) -> float:
+    """Of a [[joint]]."""
+    ratio = values.number("gear_ratio", axis.get("gear_ratio", 1.0))
+    if not ratio:
+        raise ValueError("gear_ratio is 0")
+    return ratio
+
+
+def coupled(entry: dict[str, Any], axes: list[dict[str, Any]]) -> tuple[int, int]:
+    """The two joints of a [[coupling]], from 0."""
+    values.only("[[coupling]]", entry, ("joints", "ratio"))
+    one, two = (values.whole("coupling", x) for x in entry["joints"])
+    if not {one, two} <= set(range(1, len(axes) + 1)) or one == two:
+        raise ValueError(f"joints {one} and {two} cannot be coupled")
+    return one - 1, two - 1
+
+
+def ratio_of(entry: dict[str, Any], axes: list[dict[str, Any]]) -> float:
+    """By how much the motor of a coupling's second joint turns with the first."""
+    _, two = coupled(entry, axes)
+    return values.number("ratio", entry.get("ratio", gear_ratio(axes[two])))

@@ -1,0 +1,65 @@
+"""Values of a robot description, each checked: a mistake is told with its name."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from math import isfinite
+from typing import Any
+
+
+def text(key: str, value: Any) -> str:
+    """A text that is not empty."""
+    if not isinstance(value, str) or not value:
+        raise TypeError(f"{key} is {value!r}, not a text")
+    return value
+
+
+def number(key: str, value: Any) -> float:
+    """A finite number."""
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise TypeError(f"{key} is {value!r}, not a number")
+    if abs(value) > 1e300 or not isfinite(value):
+        raise ValueError(f"{key} is not a finite number")
+    return float(value)
+
+
+def whole(key: str, value: Any) -> int:
+    """A whole number."""
+    if not isinstance(value, int) or isinstance(value, bool):
+        raise TypeError(f"{key} is {value!r}, not a whole number")
+    return value
+
+
+def row(key: str, value: Any, length: int) -> tuple[float, ...]:
+    """So many numbers."""
+    if not isinstance(value, list) or len(value) != length:
+        raise TypeError(f"{key} is {value!r}, not a list of {length} numbers")
+    return tuple(number(key, x) for x in value)
+
+
+def table(key: str, value: Any) -> dict[str, Any]:
+    """A table of the file."""
+    if not isinstance(value, dict):
+        raise TypeError(f"{key} is {value!r}, not a table")
+    return value
+
+
+def choice(key: str, value: Any, known: Collection[str]) -> str:
+    """One of some words."""
+    if value not in known:
+        raise ValueError(f"{key} {value!r}; choose {' or '.join(known)}")
+    return str(value)
+
+
+def only(what: str, entry: dict[str, Any], known: Collection[str]) -> None:
+    """No other keys than these."""
+    for key in entry:
+        if key not in known:
+            raise ValueError(f"{key} is not of {what}; it has {', '.join(known)}")
+
+
+def distinct(what: str, values: list[Any]) -> None:
+    """No value twice."""
+    twice = next((value for value in values if values.count(value) > 1), None)
+    if twice is not None:
+        raise ValueError(f"the {what} {twice!r} stands twice")
