@@ -19,6 +19,7 @@ COMMANDS = {
     "identify": "Estimate a robot's dynamic parameters from a motion.",
     "validate": "Predict torques with identified parameters, and measure how well.",
     "report": "Tables and figures of parameters, traces, metrics and predictions.",
+    "urdf": "Put identified parameters into a URDF, as bodies that can exist.",
     "robot": "Tell what was understood of a robot description.",
     "convert": "Change the format of a table.",
     "info": "Show what a table is: kind, columns, units, sampling, history.",

@@ -79,7 +79,6 @@ def described(robot: Robot) -> Iterator[str]:
     yield "parameters"
     width = max(len(parameter.name) for parameter in robot.parameters)
     for parameter in robot.parameters:
-        more = parameter.stands_for
-        more = f"  = {more}" if more != parameter.name and more else ""
+        more = f"  = {parameter.stands_for}" if parameter.stands_for else ""
         line = f"  {parameter.name:<{width}}  {parameter.unit:<9}  {parameter.apriori:g}{more}"
         yield line.rstrip()

@@ -198,6 +198,10 @@ def _parameters(found: Found, robot: Robot, meta: Metadata, *, variance: str) ->
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = 100.0 * errors / np.abs(fit.estimates)
     schema = schemas.load("parameters").arrow()
+    written = [p.stands_for or p.name for p in robot.parameters] if robot.body else []
+    if not written:
+        schema = schema.remove(schema.get_field_index("stands_for"))
+    written += names[len(written) :]
     batch = pa.RecordBatch.from_arrays(
         [
             pa.array(names, pa.string()),
@@ -208,7 +212,8 @@ def _parameters(found: Found, robot: Robot, meta: Metadata, *, variance: str) ->
             known(robust),
             known(fit.estimates - half),
             known(fit.estimates + half),
-        ],
+            pa.array(written, pa.string()),
+        ][: len(schema)],
         schema=schema,
     )
     extra = _told(found, robot, names, robust if belief else errors)

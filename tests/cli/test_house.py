@@ -80,7 +80,7 @@ def test_what_the_program_imports_it_declares() -> None:
                 imported |= {alias.name.partition(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 imported.add((node.module or "").partition(".")[0])
-    extra = {"pinocchio"}  # of the extra `urdf`; its package is called pin
+    extra = {"cvxpy", "pinocchio"}  # of the extra `urdf`, where the latter is called pin
     assert imported - set(sys.stdlib_module_names) - {"scarid_cli"} == names | extra
 
 

@@ -7,29 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from unit.arms import URDF, described_arm
 
 from scarid_cli.algorithms.robots.base import independent
-from scarid_cli.algorithms.robots.description import Parameter, Robot
+from scarid_cli.algorithms.robots.description import Parameter
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.terms import TERMS
 from scarid_cli.cli.robot import described
 from scarid_cli.errors import UsageFault
 
 pinocchio = pytest.importorskip("pinocchio")
-
-URDF = """<robot name="two">
-  <link name="base"/>
-  <joint name="a" type="revolute"><parent link="base"/><child link="one"/>
-    <origin xyz="0 0 0.1"/><axis xyz="0 1 0"/>
-    <limit lower="-3" upper="3" effort="9" velocity="9"/></joint>
-  <link name="one"><inertial><origin xyz="0.1 0 0"/><mass value="2"/>
-    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.3"/></inertial></link>
-  <joint name="b" type="TYPE"><parent link="one"/><child link="two"/>
-    <origin xyz="0.3 0 0"/><axis xyz="0 1 0"/>
-    <limit lower="-3" upper="3" effort="9" velocity="9"/></joint>
-  <link name="two"><inertial><origin xyz="0.1 0 0.05"/><mass value="1"/>
-    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.03"/></inertial></link>
-</robot>"""
 
 
 @pytest.fixture
@@ -49,7 +36,7 @@ def test_the_regressor_gives_the_torques_of_inverse_dynamics(urdf: str) -> None:
     for i, inertia in enumerate(list(model.inertias)[1:], start=1):
         values = zip(order, inertia.toDynamicParameters(), strict=True)
         standard |= {f"{symbol}{i}": x for symbol, x in values}
-    theta = np.array([written_out(p.stands_for, standard) for p in robot.parameters])
+    theta = np.array([written_out(p.stands_for or p.name, standard) for p in robot.parameters])
     np.testing.assert_allclose(robot.apriori, theta, atol=1e-12)
     rng = np.random.default_rng(1)
     q, dq, ddq = rng.standard_normal((3, 2, 20))
@@ -148,12 +135,6 @@ def test_a_check_writes_the_base_parameters_out(urdf: str) -> None:
     assert "  1  revolute   position 3 rad, velocity 9 rad/s, torque 9 N m" in lines
     assert "  Iyy1  kg m2      0.31  = Iyy1 + 1 Ia1 + 0.09 m2" in lines
     assert "  mx2   kg m       0.1" in lines
-
-
-def described_arm(urdf: str, tmp_path: Path, lines: str) -> Robot:
-    path = tmp_path / "robot.toml"
-    path.write_text(f"title = 'two'\nurdf = '{urdf}'\n{lines}\n")
-    return load(str(path))
 
 
 def test_a_joint_without_end_is_an_angle(urdf: str, tmp_path: Path) -> None:

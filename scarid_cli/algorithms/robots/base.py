@@ -27,16 +27,15 @@ def with_base_parameters(robot: Robot) -> Robot:
     motion = rng.uniform(-REACH, REACH, (3, len(robot.joints), SAMPLES))
     W = robot.regressor(*motion).reshape(-1, len(robot.parameters))
     kept, parts = independent(W)
-    names = robot.names
     parameters = []
     for row, i in enumerate(kept):
         own = robot.parameters[i]
         others = [
             (x, p) for x, p in zip(parts[row], robot.parameters, strict=True) if abs(x) > ABSENT
         ]
-        rest = "".join(f" {'-' if x < 0.0 else '+'} {abs(x):.6g} {p.name}" for x, p in others)
         apriori = own.apriori + float(sum(x * p.apriori for x, p in others))
-        parameters.append(replace(own, apriori=apriori, stands_for=f"{names[i]}{rest}"))
+        counted = ((own.name, 1.0), *((p.name, float(x)) for x, p in others))
+        parameters.append(replace(own, apriori=apriori, parts=counted))
     return replace(robot, parameters=tuple(parameters))
 
 

@@ -17,7 +17,7 @@ from scarid_cli.arrays import Array
 class Parameter:
     """One base parameter: its term of the regressor, the joint (from 1) of a friction term.
 
-    `stands_for` writes it out in the parameters counted to it; `column` is its place among the
+    `parts` are the parameters it stands for, with their factors; `column` is its place among the
     standard parameters of a URDF, `other` the joint that a coupled term is coupled to by `ratio`.
     `velocity` [rad/s or m/s], `length` [m] and `gravity` [m/s2] shape the term: see terms.py.
     """
@@ -33,7 +33,17 @@ class Parameter:
     other: int = 0
     ratio: float = 1.0
     column: int = -1
-    stands_for: str = ""
+    parts: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def stands_for(self) -> str:
+        """What it is a combination of, written out; empty for a parameter of one name."""
+        rest = "".join(
+            f" {'-' if x < 0.0 else '+'} {abs(x):.6g} {name}"
+            for name, x in self.parts
+            if name != self.name
+        )
+        return f"{self.name}{rest}" if rest else ""
 
 
 @dataclass(frozen=True)

@@ -112,6 +112,27 @@ class Body:
         inertias = list(self.model.inertias)[1:]
         return [float(x) for own in inertias for x in own.toDynamicParameters()[PINOCCHIO]]
 
+    @property
+    def joint_names(self) -> list[str]:
+        """Of the URDF."""
+        return list(self.model.names)[1:]
+
+    @property
+    def links(self) -> list[tuple[str, list[str]]]:
+        """The link that each joint moves, and those fixed to it."""
+        tree = ElementTree.parse(self.path).getroot()
+        child = {j.get("name"): j.find("child") for j in tree.findall("joint")}
+        together: dict[int, list[str]] = {i: [] for i in range(1, self.model.njoints)}
+        for frame in self.model.frames:
+            if str(frame.type) == "BODY" and frame.parentJoint:
+                together[frame.parentJoint].append(frame.name)
+        found = []
+        for i, name in enumerate(self.joint_names, start=1):
+            element = child[name]
+            own = str(element.get("link")) if element is not None else together[i][0]
+            found.append((own, [link for link in together[i] if link != own]))
+        return found
+
     def columns(self, q: Array, dq: Array, ddq: Array) -> Array:
         """The regressor of the standard parameters (samples, joints, 10 joints)."""
         import pinocchio

@@ -1,0 +1,76 @@
+"""A URDF with other inertias and friction, and everything else as it was."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from xml.etree import ElementTree
+
+import numpy as np
+
+from scarid_cli.arrays import Array
+
+
+@dataclass(frozen=True)
+class Inertial:
+    """Mass [kg], centre of mass [m] and moments about it [kg m2], in the frame of the link."""
+
+    mass: float
+    centre: Array
+    inertia: Array
+
+    @classmethod
+    def of(cls, mass: float, moments: Array, inertia: Array) -> Inertial:
+        """From first moments [kg m] and moments of inertia about the link's frame."""
+        c = moments / mass
+        return cls(mass, c, inertia - mass * (c @ c * np.eye(3) - np.outer(c, c)))
+
+
+def rewritten(
+    text: str,
+    links: Mapping[str, Inertial | None],
+    friction: Mapping[str, tuple[float, float]],
+    remark: str,
+) -> str:
+    """Links with other inertias, or with none (None); damping and friction of joints; a comment."""
+    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
+    robot = ElementTree.fromstring(text, parser=parser)
+    robot.insert(0, ElementTree.Comment(f" {remark.replace('--', '- -')} "))
+    robot[0].tail = robot.text
+    for link in robot.iter("link"):
+        name = link.get("name", "")
+        if name in links:
+            _set_inertial(link, links[name])
+    for joint in robot.findall("joint"):
+        if joint.get("name") in friction:
+            damping, dry = friction[joint.get("name", "")]
+            _child(joint, "dynamics").attrib.update(damping=_text(damping), friction=_text(dry))
+    return ElementTree.tostring(robot, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _set_inertial(link: ElementTree.Element, inertial: Inertial | None) -> None:
+    if inertial is None:
+        for old in link.findall("inertial"):
+            link.remove(old)
+        return
+    element = _child(link, "inertial")
+    xyz = " ".join(_text(x) for x in inertial.centre)
+    _child(element, "origin").attrib.update(xyz=xyz, rpy="0 0 0")
+    _child(element, "mass").set("value", _text(inertial.mass))
+    axes = "xyz"
+    for row in range(3):
+        for column in range(row, 3):
+            key = f"i{axes[row]}{axes[column]}"
+            _child(element, "inertia").set(key, _text(inertial.inertia[row, column]))
+
+
+def _child(parent: ElementTree.Element, tag: str) -> ElementTree.Element:
+    found = parent.find(tag)
+    if found is None:
+        found = ElementTree.SubElement(parent, tag)
+        found.tail = "\n"
+    return found
+
+
+def _text(value: float) -> str:
+    return repr(float(value))
