@@ -45,6 +45,17 @@ class Rows:
             None if self.reference is None else self.reference[:, :, chosen],
         )
 
+    def taken(self, chosen: Numbers) -> Rows:
+        """Samples by their places."""
+        return Rows(
+            self.W[chosen],
+            self.y[chosen],
+            self.scales[chosen],
+            self.at[chosen],
+            np.ascontiguousarray(self.motion[:, :, chosen]),
+            None if self.reference is None else self.reference[:, :, chosen],
+        )
+
 
 class Held:
     """An estimator whose state is all rows so far: what it does with them is its `fit`."""
@@ -100,6 +111,8 @@ def without_slow(rows: Rows, slow: Array) -> Rows:
 
 def joined(parts: Sequence[Rows]) -> Rows:
     """Parts of a record as one."""
+    if len(parts) == 1:
+        return parts[0]
     references = [part.reference for part in parts if part.reference is not None]
     return Rows(
         np.concatenate([part.W for part in parts]),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,14 +17,16 @@ SEGMENTS = 8  # that these are in, at most
 
 @dataclass(frozen=True)
 class Witness:
-    """Every `stride`-th segment of a record, by the numbers of its samples.
+    """Samples by their numbers: every `thin`-th one of every `stride`-th segment of a record.
 
-    `samples` are held at most. `total` counts the samples that went by, `counted` their rows that
-    count.
+    `samples` are held at most. First they are thinned, up to every `thinnest`-th; then segments are
+    dropped. `total` counts the samples that went by, `counted` their rows that count.
     """
 
     parts: tuple[Rows, ...] = ()
     samples: int = SAMPLES
+    thinnest: int = 1
+    thin: int = 1
     stride: int = 1
     total: int = 0
     counted: int = 0
@@ -34,25 +36,46 @@ class Witness:
         limit = self.samples
         if limit < ALL:
             limit = min(limit, max(FEWEST, NUMBERS // _size(rows)))
-        segment = limit // SEGMENTS
-        parts, stride = list(self.parts), self.stride
+        parts, thin, stride = list(self.parts), self.thin, self.stride
         start = 0
         while start < rows.samples:
+            segment = limit // SEGMENTS * thin
             number = int(rows.at[start]) // segment
             stop = start + int((rows.at[start:] < (number + 1) * segment).sum())
             if number % stride == 0:
-                parts.append(_copied(rows.part(slice(start, stop))))
+                parts += _thinned([rows.part(slice(start, stop))], thin)
             while len({int(part.at[0]) // segment for part in parts}) > SEGMENTS:
-                stride *= 2
-                parts = [part for part in parts if int(part.at[0]) // segment % stride == 0]
+                if 2 * thin <= self.thinnest:
+                    thin, segment = 2 * thin, 2 * segment
+                    parts = _thinned(parts, thin)
+                else:
+                    stride *= 2
+                    parts = [part for part in parts if int(part.at[0]) // segment % stride == 0]
             start = stop
-        total = self.total + rows.samples
-        counted = self.counted + int(np.count_nonzero(rows.scales))
-        return Witness(tuple(parts), self.samples, stride, total, counted)
+        return replace(
+            self,
+            parts=tuple(parts),
+            thin=thin,
+            stride=stride,
+            total=self.total + rows.samples,
+            counted=self.counted + int(np.count_nonzero(rows.scales)),
+        )
+
+    @property
+    def complete(self) -> bool:
+        """Whether it has every sample."""
+        return self.thin == self.stride == 1
 
     def rows(self) -> Rows:
-        """What was kept, as one."""
-        return joined(self.parts)
+        """What was kept, as one, numbered by the samples that are as far apart."""
+        kept = joined(self.parts)
+        return replace(kept, at=kept.at // self.thin)
+
+
+def _thinned(parts: list[Rows], thin: int) -> list[Rows]:
+    """Every so many-th sample by its number, in copies that do not keep what they were cut from."""
+    chosen = [(part, np.flatnonzero(part.at % thin == 0)) for part in parts]
+    return [_copied(part.taken(at)) for part, at in chosen if len(at)]
 
 
 def _size(rows: Rows) -> int:

@@ -12,12 +12,13 @@ import numpy as np
 
 from scarid_cli.algorithms.estimators.ekf import State
 from scarid_cli.algorithms.regression import Rows
+from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.information import Information
 from scarid_cli.algorithms.witness import Witness
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.stages.identify import Progress
 
-KNOWN = {kind.__name__: kind for kind in (Information, Progress, Rows, State, Witness)}
+KNOWN = {kind.__name__: kind for kind in (Blocks, Information, Progress, Rows, State, Witness)}
 
 
 def saved(progress: Progress, settings: dict[str, Any]) -> bytes:

@@ -11,7 +11,8 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.regression import Rows, with_delay
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.belief import Belief, believe
+from scarid_cli.algorithms.statistics.belief import LAG, Belief, believe
+from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.essential import Essential, essential
 from scarid_cli.algorithms.statistics.information import (
     RESIDUAL,
@@ -28,6 +29,7 @@ from scarid_cli.io.table import Metadata, Table, doubles, number, segment_field,
 from scarid_cli.stages import Sink
 from scarid_cli.stages.rows import Treatment, treated
 
+LAGS = 5  # rows that the witness of a long record has at least in the lag that tells of bias
 ALIGNMENTS = 3  # times that the delay is fitted, each from the estimates before
 
 
@@ -46,12 +48,22 @@ class Estimator(Protocol):
 class Progress:
     """Where an estimation is: it can be saved, and go on with another log.
 
-    `witness` are rows for the statistics, `seen` the samples so far, left out ones included.
+    `witness` and `blocks` are for the statistics, the latter unless the former holds all rows.
+    `seen` are the samples so far, left out ones included.
     """
 
     state: Any
     witness: Witness
+    blocks: Blocks | None
     seen: int = 0
+
+    @classmethod
+    def begun(cls, state: Any, h: float, *, holds: bool) -> Progress:
+        """Before the first sample; samples are h [s] apart."""
+        if holds:
+            return cls(state, Witness(samples=ALL), None)
+        thinnest = int(LAG / LAGS / h + 1e-9) if h > 0.0 else 1
+        return cls(state, Witness(thinnest=max(1, thinnest)), Blocks.every(h))
 
 
 def identify(
@@ -79,8 +91,8 @@ def identify(
         schema = _trace_schema(robot, table)
         meta = replace(table.meta, kind="trace", robot=robot.name)
         trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    witness = Witness(samples=ALL) if treatment.holds or estimator.HOLDS else Witness()
-    progress = progress or Progress(estimator.init(initial), witness)
+    holds = treatment.holds or estimator.HOLDS
+    progress = progress or Progress.begun(estimator.init(initial), period, holds=holds)
     for batch, rows in treated(table, robot, treatment, progress.seen):
         progress, estimates = _stepped(estimator, progress, rows, trace=trace is not None)
         if trace and batch is not None:
@@ -116,7 +128,8 @@ def _stepped(
 ) -> tuple[Progress, Array]:
     state, estimates = estimator.step(progress.state, rows, trace=trace)
     seen = int(rows.at[-1]) + 1 if rows.samples else progress.seen
-    return Progress(state, progress.witness.add(rows), seen), estimates
+    blocks = progress.blocks.add(rows) if progress.blocks else None
+    return Progress(state, progress.witness.add(rows), blocks, seen), estimates
 
 
 @dataclass(frozen=True)
@@ -148,7 +161,11 @@ def _found(
     if treatment.align:
         fit, rows = _aligned(estimator, initial, rows, fit, period)
     rows = fit.rows or rows
-    belief = believe(rows, fit, period, progress.witness.total, own) if fit.robust else None
+    belief = None
+    if fit.robust:
+        blocks = progress.blocks.whole() if progress.blocks else None
+        record = None if progress.witness.complete else blocks
+        belief = believe(rows, fit, period * progress.witness.thin, own, record)
     delay = None
     if treatment.align and belief:
         delay = (float(fit.estimates[own]), float(belief.errors[own]))

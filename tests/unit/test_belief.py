@@ -14,6 +14,7 @@ from scarid_cli.algorithms.estimators import irls, iv, ls, ml, wls
 from scarid_cli.algorithms.regression import Rows, joined, plain, rows_of, runs, with_delay
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.belief import Belief, Joint, believe, jackknife, t95
+from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.essential import RATIO, essential, without
 from scarid_cli.algorithms.statistics.information import Fit, weakest
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
@@ -103,7 +104,7 @@ def test_quantiles_of_student_are_those_of_scipy(freedom: int) -> None:
 def test_residual_facts_are_those_of_numpy() -> None:
     rows = regression()
     fit = fitted(rows)
-    (joint,) = believe(rows, fit, H, rows.samples, P).joints
+    (joint,) = believe(rows, fit, H, P).joints
     residual = (rows.y - rows.W @ fit.estimates)[:, 0]
     y = rows.y[:, 0]
     assert joint.rows == len(y)
@@ -119,14 +120,14 @@ def test_residual_facts_are_those_of_numpy() -> None:
 
 def test_the_neighbours_explain_nothing_where_all_is_well() -> None:
     rows = regression(8000, coloured=False)
-    assert believe(rows, fitted(rows), H, rows.samples, P).lag_share < 0.01
+    assert believe(rows, fitted(rows), H, P).lag_share < 0.01
 
 
 @pytest.mark.parametrize("late", [-10, -3, 3, 10])
 def test_the_neighbours_explain_torques_of_another_instant(late: int) -> None:
     rows = regression(8000, coloured=False)
     shifted = plain(rows.W[20:-20], np.roll(rows.y, late, axis=0)[20:-20])
-    assert believe(shifted, fitted(shifted), H, shifted.samples, P).lag_share > 0.5
+    assert believe(shifted, fitted(shifted), H, P).lag_share > 0.5
 
 
 @given(lead=st.floats(-2e-3, 2e-3))
@@ -212,21 +213,76 @@ def test_runs_end_at_gaps() -> None:
     assert [at[run].tolist() for run in runs(at)] == [[0, 1, 2], [5, 6], [9]]
 
 
-@pytest.mark.parametrize("sizes", [(1000,), (7, 300), (8192,)])
-def test_a_witness_is_the_same_however_rows_arrive_and_stays_small(sizes: tuple[int, ...]) -> None:
-    W = np.arange(60_000.0).reshape(-1, 1, 1)
-    rows = plain(W, W[:, :, 0])
-    witness, start, turn = Witness(samples=5_000), 0, 0
+SIZES = [(1000,), (7, 300), (8192,)]
+
+
+def fed(state: Witness | Blocks, rows: Rows, sizes: tuple[int, ...]) -> Witness | Blocks:
+    """After rows in batches of these sizes, over and over."""
+    start = turn = 0
     while start < rows.samples:
         size = sizes[turn % len(sizes)]
-        witness = witness.add(rows.part(slice(start, start + size)))
+        state = state.add(rows.part(slice(start, start + size)))
         start, turn = start + size, turn + 1
+    return state
+
+
+@pytest.mark.parametrize("sizes", SIZES)
+@pytest.mark.parametrize("thinnest", [1, 5])
+def test_a_witness_is_the_same_however_rows_arrive_and_stays_small(
+    sizes: tuple[int, ...], thinnest: int
+) -> None:
+    W = np.arange(60_000.0).reshape(-1, 1, 1)
+    rows = plain(W, W[:, :, 0])
+    begun = Witness(samples=5_000, thinnest=thinnest)
+    witness = fed(begun, rows, sizes)
+    assert isinstance(witness, Witness)
     kept = witness.rows()
-    assert witness.total == rows.samples
+    assert witness.total == witness.counted == rows.samples
+    assert not witness.complete
     assert 1_250 <= kept.samples <= 5_000
-    np.testing.assert_array_equal(kept.W[:, 0, 0], kept.at)
-    whole = Witness(samples=5_000).add(rows).rows()
-    np.testing.assert_array_equal(kept.at, whole.at)
+    assert witness.thin == {1: 1, 5: 4}[thinnest]
+    np.testing.assert_array_equal(kept.W[:, 0, 0], kept.at * witness.thin)
+    np.testing.assert_array_equal(kept.at, begun.add(rows).rows().at)
+
+
+def test_a_witness_is_thinned_before_segments_are_dropped() -> None:
+    """So that it covers the whole of a record at a high rate."""
+    W = np.arange(18_000.0).reshape(-1, 1, 1)
+    witness = Witness(samples=5_000, thinnest=5).add(plain(W, W[:, :, 0]))
+    kept = witness.rows()
+    assert (witness.thin, witness.stride) == (4, 1)
+    np.testing.assert_array_equal(kept.at, np.arange(18_000 // 4))
+
+
+@pytest.mark.parametrize("sizes", SIZES)
+def test_blocks_have_the_same_bits_however_rows_arrive(sizes: tuple[int, ...]) -> None:
+    rows = regression(60_000)
+    gapped = rows.taken(np.flatnonzero((rows.at < 20_000) | (rows.at > 31_234)))
+    whole, cut = (fed(Blocks.every(H), gapped, s).whole() for s in ((10**6,), sizes))
+    assert isinstance(cut, Blocks)
+    assert isinstance(whole, Blocks)
+    assert (cut.numbers, cut.length) == (whole.numbers, whole.length)
+    np.testing.assert_array_equal(cut.products, whole.products)
+    assert len(cut.numbers) <= 128
+
+
+def test_blocks_hold_the_products_of_all_rows_that_count() -> None:
+    rows = regression(5_000)
+    rows = replace(rows, scales=np.where(np.arange(5_000)[:, None] % 3 == 0, 0.0, 2.0))
+    total = sum(Blocks.every(H).add(rows).whole().products)
+    both = np.concatenate((rows.W, rows.y[:, :, None]), axis=2) * rows.scales[:, :, None]
+    for joint, products in enumerate(total):
+        np.testing.assert_allclose(products, both[:, joint].T @ both[:, joint], rtol=1e-10)
+
+
+def test_errors_of_a_long_record_are_those_of_its_rows() -> None:
+    """By blocks, and by the rows themselves: blocks end elsewhere, so to a tenth."""
+    rows = regression(40_000)
+    fit = fitted(rows)
+    by_rows = believe(rows, fit, H, P)
+    by_blocks = believe(rows, fit, H, P, Blocks.every(H).add(rows).whole())
+    np.testing.assert_allclose(by_blocks.errors, by_rows.errors, rtol=0.3)
+    assert by_blocks.errors.mean() == pytest.approx(by_rows.errors.mean(), rel=0.1)
 
 
 def test_joined_parts_are_the_whole() -> None:

@@ -1,6 +1,6 @@
 """Whether to believe a fit: errors that autocorrelated residuals cannot shrink, and its residual.
 
-Everything is computed from rows of the record, all of them or a part that stands for them.
+The errors are from all rows, the rest from rows that stand for them where these are too many.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from scarid_cli.algorithms.regression import Rows, runs, with_delay, without_slow
+from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.information import (
     Fit,
     NotIdentifiableError,
@@ -64,15 +65,19 @@ class Belief:
     slow: Array
 
 
-def believe(rows: Rows, fit: Fit, h: float, total: float, parameters: int) -> Belief:
-    """From rows of a record that has `total` samples that count, every h [s].
+def believe(
+    rows: Rows, fit: Fit, h: float, parameters: int, record: Blocks | None = None
+) -> Belief:
+    """From rows every h [s], and the blocks of the `record` if there are more rows than these.
 
     `parameters`: how many of the columns are the robot's; the others are nuisances.
     """
     joints = _joints(rows, fit)
-    covariance, blocks = jackknife(rows, fit, h)
-    share = rows.samples / total if total > rows.samples else 1.0
-    errors: Array = np.sqrt(share * np.diag(covariance))
+    if record:
+        covariance, blocks = _scatter(_without_each(_parts_of(record, rows, fit, h)))
+    else:
+        covariance, blocks = jackknife(rows, fit, h)
+    errors: Array = np.sqrt(np.diag(covariance))
     slow = SLOW * np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
     fast = without_slow(rows, slow)
     other = with_delay_fitted(fast, fit, h, joints, parameters)
@@ -106,7 +111,10 @@ def jackknife(rows: Rows, fit: Fit, h: float) -> tuple[Array, int]:
     To first order in the scores of a block, with its leverage (the "CR3" of clustered errors; Bell
     and McCaffrey 2002), so that a few violent moves that carry an estimate widen its error.
     """
-    moved = shifts(rows, fit, h)
+    return _scatter(shifts(rows, fit, h))
+
+
+def _scatter(moved: Array) -> tuple[Array, int]:
     blocks, p = moved.shape
     if blocks < 2 or not np.isfinite(moved).all():
         return np.full((p, p), np.nan), max(blocks, 2)
@@ -115,12 +123,33 @@ def jackknife(rows: Rows, fit: Fit, h: float) -> tuple[Array, int]:
 
 def shifts(rows: Rows, fit: Fit, h: float) -> Array:
     """How far the estimates move without each block (blocks, parameters)."""
-    p = len(fit.estimates)
     first, last = rows.at[0], rows.at[-1] + 1
-    count = int(np.clip(round((last - first) * h / BLOCK), *BLOCKS))
+    count = _count((last - first) * h)
     block = (rows.at - first) * count // (last - first)
     edges = np.searchsorted(block, np.arange(count + 1))
-    parts = [products(rows, fit, slice(a, b)) for a, b in pairwise(edges) if b > a]
+    return _without_each([products(rows, fit, slice(a, b)) for a, b in pairwise(edges) if b > a])
+
+
+def _count(duration: float) -> int:
+    """Of the blocks of a record [s]."""
+    return int(np.clip(round(duration / BLOCK), *BLOCKS))
+
+
+def _parts_of(record: Blocks, rows: Rows, fit: Fit, h: float) -> list[tuple[Array, Array]]:
+    """W'W and W'rho of each block; `fit` whitens by weights of the joints, if at all."""
+    weights = np.ones(rows.y.shape[1])
+    if fit.whitening is not None:
+        weights = np.diag(fit.whitening) ** 2
+    parts = []
+    for products_of_joints in record.grouped(_count((rows.at[-1] - rows.at[0]) * h)):
+        total = np.tensordot(weights, products_of_joints, 1)
+        gram = total[:-1, :-1]
+        parts.append((gram, total[:-1, -1] - gram @ fit.estimates))
+    return parts
+
+
+def _without_each(parts: list[tuple[Array, Array]]) -> Array:
+    p = len(parts[0][1])
     total = sum((gram for gram, _ in parts), np.zeros((p, p)))
     moved = np.full((len(parts), p), np.inf)
     for i, (gram, score) in enumerate(parts):
