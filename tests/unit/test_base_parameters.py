@@ -204,3 +204,19 @@ def test_a_coupled_motor_is_felt_by_both_joints(urdf: str, tmp_path: Path) -> No
     both = TERMS["coupled-inertia"](dq, dq, ddq, inertia)
     own = np.array([k * k * ddq[0], ddq[1]])
     np.testing.assert_allclose([both[0], both[1]], slopes * (k * ddq[0] + ddq[1]) - own)
+
+
+def test_the_page_on_robots_shows_the_sample() -> None:
+    """And the sample is one that can be used: hanging links, a motor that turns with both."""
+    root = Path(__file__).parents[2]
+    sample = (root / "samples" / "arm.toml").read_text("utf-8")
+    _, described_in_it = sample.split("\n", 1)
+    assert described_in_it in (root / "docs" / "robots.md").read_text("utf-8")
+    robot = load(str(root / "samples" / "arm.toml"))
+    assert robot.log is not None
+    assert robot.log.ratios == ((80.0, 0.0), (50.0, -50.0))
+    values = dict(zip(robot.names, robot.apriori, strict=True))
+    upper, lower = 0.04 + 3.2 * 0.18**2, 0.012 + 1.4 * 0.15**2 + 0.0002 + 0.3 * 0.3**2
+    assert values["Iyy1"] == pytest.approx(upper + 0.1 + 1.7 * 0.4**2)
+    assert values["Iyy2"] == pytest.approx(lower)
+    assert values["mz2"] == pytest.approx(-1.4 * 0.15 - 0.3 * 0.3)
