@@ -83,3 +83,26 @@ def test_what_cannot_be_is_told_in_one_line(
     assert (result.status, result.out) == (status, "")
     assert told in result.err
     assert len(result.err.splitlines()) == 1
+
+
+def test_another_friction_model_needs_no_other_command(folder: Path, shell: Shell) -> None:
+    """The description alone says which; identify and validate follow it."""
+    commands = f"{IDENTIFY} && cut -d, -f1 p.csv | tail -n +2 | paste -sd ' ' &&" + (
+        " scarid validate --robot arm.toml --parameters p.csv motion.csv | cut -d, -f3 | tail -2"
+    )
+    description = folder / "arm.toml"
+    both = shell(commands)
+    assert both.status == 0, both.err
+    described = description.read_text()
+    description.write_text(described.replace("terms = { viscous = 2.0, coulomb = 0.5 }",
+                                             "terms = ['viscous']"))  # fmt: skip
+    less = shell(commands)
+    assert less.status == 0, less.err
+    names, *errors = both.out.splitlines()
+    fewer, *greater = less.out.splitlines()
+    assert set(names.split()) - set(fewer.split()) == {"fs1", "fs2"}
+    assert all(float(x) < 0.5 * float(y) for x, y in zip(errors, greater, strict=True))
+    description.write_text(described)
+    refused = shell("scarid validate --robot arm.toml --parameters p.csv motion.csv")
+    assert refused.status == 65
+    assert "choose the robot they were identified for" in refused.err

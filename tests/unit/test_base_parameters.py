@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -220,3 +221,13 @@ def test_the_page_on_robots_shows_the_sample() -> None:
     assert values["Iyy1"] == pytest.approx(upper + 0.1 + 1.7 * 0.4**2)
     assert values["Iyy2"] == pytest.approx(lower)
     assert values["mz2"] == pytest.approx(-1.4 * 0.15 - 0.3 * 0.3)
+
+
+def test_without_pinocchio_the_extra_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(URDF.replace("TYPE", "revolute"))
+    monkeypatch.setitem(sys.modules, "pinocchio", None)
+    with pytest.raises(UsageFault, match=r"arm\.urdf: .*pip install 'scarid\[urdf\]'"):
+        load(str(path))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -141,6 +142,6 @@ def test_everything_else_of_the_urdf_stays(robot: Robot) -> None:
 
 
 def test_without_cvxpy_the_extra_is_named(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "cvxpy", None)
+    monkeypatch.setitem(sys.modules, "cvxpy", None)
     with pytest.raises(UsageFault, match=r"pip install 'scarid\[urdf\]'"):
         nearest(robot, robot.apriori, np.ones(len(robot.parameters)))
