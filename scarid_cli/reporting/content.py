@@ -333,8 +333,10 @@ def _metrics_row(result: Metrics, units: Sequence[str]) -> list[str]:
 
 
 def _samples(result: Metrics) -> str:
-    """The joints of one motion have as many."""
-    return ", ".join(dict.fromkeys(number(q.samples or None) for q in result.qualities))
+    """The joints of one motion have as many, unless slow rows were left out."""
+    counts = [q.samples for q in result.qualities]
+    least, most = number(min(counts) or None), number(max(counts) or None)
+    return least if least == most else f"{least} to {most}"
 
 
 def _torque_panels(result: Prediction, name: str, colour: int) -> list[Panel]:

@@ -313,3 +313,16 @@ def test_many_parameters_are_drawn_in_figures_of_a_page() -> None:
     assert [len(p.panels) for p in plots if isinstance(p, Panels)] == [8, 8, 3]
     assert content.PANELS == 8
     assert element_of(plots[-1])
+
+
+def test_joints_with_different_numbers_of_samples_show_their_range() -> None:
+    qualities = tuple(Quality(0.9, 1.0, 1.0, samples=n) for n in (350, 348, 349))
+    (section,) = sections([Metrics(Name("m", ""), None, (1, 2, 3), ("N m",) * 3, qualities)])
+    assert section.rows[0][1] == "348 to 350"
+
+
+def test_a_curve_has_no_line_across_a_gap() -> None:
+    t = np.concatenate((np.arange(50.0), 90.0 + np.arange(50.0)))
+    drawn = figures._broken(np.array([t, np.sin(t)]))  # noqa: SLF001 (what is given to matplotlib)
+    assert np.flatnonzero(np.isnan(drawn[0])).tolist() == [50]
+    np.testing.assert_array_equal(drawn[0][~np.isnan(drawn[0])], t)

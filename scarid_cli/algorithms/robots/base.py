@@ -8,6 +8,7 @@ set is too. Its a priori values are those of the same torques.
 from __future__ import annotations
 
 from dataclasses import replace
+from math import fsum
 
 import numpy as np
 
@@ -18,6 +19,7 @@ SAMPLES = 400
 REACH = 3.0  # rad or m, and per s and s2
 DEPENDENT = 1e-8  # of a column of unit length
 NONE = 1e-12  # of the longest column: rounding alone
+ROUNDING = 1e-12
 ABSENT = 1e-6  # times its neighbour: not a part of a combination
 
 
@@ -33,10 +35,16 @@ def with_base_parameters(robot: Robot) -> Robot:
         others = [
             (x, p) for x, p in zip(parts[row], robot.parameters, strict=True) if abs(x) > ABSENT
         ]
-        apriori = own.apriori + float(sum(x * p.apriori for x, p in others))
+        apriori = _sum([own.apriori, *(float(x) * p.apriori for x, p in others)])
         counted = ((own.name, 1.0), *((p.name, float(x)) for x, p in others))
         parameters.append(replace(own, apriori=apriori, parts=counted))
     return replace(robot, parameters=tuple(parameters))
+
+
+def _sum(values: list[float]) -> float:
+    """Without the rounding that is left where all of it cancels."""
+    total = fsum(values)
+    return total if abs(total) > ROUNDING * fsum(map(abs, values)) else 0.0
 
 
 def independent(W: Array) -> tuple[list[int], Array]:

@@ -60,6 +60,8 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     ]
     most = 2 * len(unknown) > len(evidence.names)
     uncertain = [f"not {_listed(unknown)}"] if unknown and not most else []
+    if most and len(unknown) < len(evidence.names):
+        uncertain = ["--essential leaves out what is not known"]
     grade = DOUBTFUL if wrong or most else GOOD
     return Verdict(grade, (*wrong, *_summary(evidence), *uncertain))
 
