@@ -132,7 +132,7 @@ def _panels(plot: Panels) -> Figure:
     for axes, panel in zip(grid, plot.panels, strict=False):
         for k, line in enumerate(panel.lines):  # the first above the others
             below = 0 if line.colour is None else 1 + (len(panel.lines) - k) / len(panel.lines)
-            axes.plot(*_broken(line.points), **_style(line), zorder=1.0 + below)
+            axes.plot(*broken(line.points), **_style(line), zorder=1.0 + below)
         if panel.level is not None:
             axes.axhline(panel.level, color=INK, linestyle="--", linewidth=0.9)
         if panel.limits:
@@ -145,7 +145,7 @@ def _panels(plot: Panels) -> Figure:
     return figure
 
 
-def _broken(points: Array) -> Array:
+def broken(points: Array) -> Array:
     """The curve without a line across the gaps of the record."""
     steps = np.diff(points[0])
     mean = steps.sum() / max(len(steps), 1)

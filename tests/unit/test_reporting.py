@@ -323,6 +323,6 @@ def test_joints_with_different_numbers_of_samples_show_their_range() -> None:
 
 def test_a_curve_has_no_line_across_a_gap() -> None:
     t = np.concatenate((np.arange(50.0), 90.0 + np.arange(50.0)))
-    drawn = figures._broken(np.array([t, np.sin(t)]))  # noqa: SLF001 (what is given to matplotlib)
+    drawn = figures.broken(np.array([t, np.sin(t)]))
     assert np.flatnonzero(np.isnan(drawn[0])).tolist() == [50]
     np.testing.assert_array_equal(drawn[0][~np.isnan(drawn[0])], t)
