@@ -96,7 +96,6 @@ def command(
     from scarid_cli.cli.treatment import for_robot, treatment_of
     from scarid_cli.errors import UsageFault
     from scarid_cli.stages import identify as stage
-    from scarid_cli.stages.validate import estimates
 
     method = ESTIMATORS.load(estimator)
     given = _given(method, estimator, rest)
@@ -119,6 +118,8 @@ def command(
         if initial == "apriori":
             start = arm.apriori
         elif initial:
+            from scarid_cli.stages.validate import estimates
+
             _, start = estimates(run.read(initial, "parameters"), arm)
         else:
             start = np.zeros(len(arm.parameters))

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.logs import Log
-from scarid_cli.algorithms.robots.rigid import Body
 from scarid_cli.algorithms.robots.terms import TERMS
 from scarid_cli.arrays import Array
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.robots.rigid import Body
 
 
 @dataclass(frozen=True)

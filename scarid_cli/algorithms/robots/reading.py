@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from scarid_cli.algorithms.robots import values
-from scarid_cli.algorithms.robots.arms import arm
 from scarid_cli.algorithms.robots.description import Control, Parameter, Robot
 from scarid_cli.algorithms.robots.joints import joint_of
 from scarid_cli.algorithms.robots.logs import log_of
@@ -26,6 +25,8 @@ def built_in() -> list[str]:
 def load(name: str) -> Robot:
     """A built-in robot by name, or one described in a TOML file or a URDF."""
     if name.endswith(".urdf"):
+        from scarid_cli.algorithms.robots.arms import arm
+
         return arm(name, {"title": name, "urdf": name}, Path())
     path = Path(name) if name.endswith(".toml") else FOLDER / f"{name}.toml"
     if not path.is_file():
@@ -35,6 +36,8 @@ def load(name: str) -> Robot:
     try:
         document = tomllib.loads(path.read_text("utf-8"))
         if "urdf" in document:
+            from scarid_cli.algorithms.robots.arms import arm  # needs an XML parser
+
             return arm(name, document, path.parent)
         return _robot(name, document)
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
