@@ -68,7 +68,8 @@ def _child(parent: ElementTree.Element, tag: str) -> ElementTree.Element:
     found = parent.find(tag)
     if found is None:
         found = ElementTree.SubElement(parent, tag)
-        found.tail = "\n"
+        if len(parent) > 1:  # indented as its neighbours are
+            found.tail, parent[-2].tail = parent[-2].tail, parent.text
     return found
 
 

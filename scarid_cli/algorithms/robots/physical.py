@@ -24,6 +24,7 @@ LENGTH = 0.1  # m: with lengths in decimetres the entries of a pseudo-inertia ar
 MARGIN = 1e-4  # kg: smallest eigenvalue with such lengths
 PRICE = 1e-4  # squared errors for a kg2 away from the description's bodies: tells apart what the
 # base parameters leave open, and keeps masses finite where they would rather be endless
+ROUNDING = 1e-12  # kg m2: less is the solver's
 POSITIVE = re.compile(r"(Ia|fv|fs)\d+[+-]?")  # names of what an axis cannot have less than none of
 
 
@@ -64,6 +65,7 @@ def nearest(robot: Robot, estimates: Array, errors: Array) -> Physical:
     smallest = cvxpy.Minimize(cvxpy.sum_squares(away) + PRICE * beyond)
     _solved(cvxpy.Problem(smallest, [*bounds, *inside]))
     found = np.array([np.asarray(body.value, dtype=np.float64) for body in bodies])
+    found[np.abs(found) < ROUNDING] = 0.0
     values = np.asarray(beside.value, dtype=np.float64)
     theta = B @ found.ravel() + A @ values
     with np.errstate(invalid="ignore"):
