@@ -74,7 +74,7 @@ def told(robot: Robot, found: Physical) -> Iterator[str]:
     if not far:
         yield f"such bodies exist: no parameter had to move by more than {moved.max():.2g} errors"
     else:
-        names = ", ".join(f"{robot.names[i]} {moved[i]:.2g}" for i in far[:5])
+        names = ", ".join(f"{robot.names[i]} by {moved[i]:.2g}" for i in far[:5])
         more = ", ..." if len(far) > 5 else ""
         yield (
             f"{len(far)} of {len(moved)} parameters had to move by more than an error for bodies "
