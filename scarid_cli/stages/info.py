@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.arrays import Numbers
 from scarid_cli.io import schemas
 from scarid_cli.io.reader import nominal_period
-from scarid_cli.io.table import Table
+from scarid_cli.io.table import SEGMENT, Table, matrix, segments_of
 
 
 def described(table: Table) -> Iterator[str]:
@@ -18,10 +23,10 @@ def described(table: Table) -> Iterator[str]:
     yield f"table     {table.name}"
     yield f"kind      {f'{schema.kind} ({origin})' if schema else 'unknown'}"
     yield f"robot     {meta.robot or 'not stated'}"
-    rows, times = _read(table)
+    rows, clock = _read(table)
     yield f"rows      {rows:,}"
-    if times is not None:
-        yield f"time      {times[0]:.9g} s to {times[1]:.9g} s, {_rate(*times, rows)}"
+    if clock:
+        yield f"time      {clock.told(rows)}"
     for key, value in sorted(meta.extra.items()):
         yield from _told(key, value)
     yield "columns"
@@ -53,24 +58,55 @@ def _shown(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _read(table: Table) -> tuple[int, tuple[float, float, float] | None]:
-    """The number of rows; the first and last time and the first interval."""
-    timed = "t" in table.columns
+@dataclass
+class Clock:
+    """First and last time, first interval, and the time [s] in the gaps between segments."""
+
+    start: float
+    end: float
+    interval: float | None = None
+    gaps: int = 0
+    missing: float = 0.0
+
+    def told(self, rows: int) -> str:
+        text = f"{self.start:.9g} s to {self.end:.9g} s"
+        between = rows - 1 - self.gaps
+        if self.interval is None or between < 1:
+            return text
+        period = nominal_period(self.interval)
+        mean = (self.end - self.start - self.missing) / between
+        if period <= 0.0 or mean <= 0.0:
+            return f"{text}, time does not increase"
+        gaps = f", {self.gaps} gaps of {self.missing:.3g} s in all" if self.gaps else ""
+        return f"{text}, nominal {1.0 / period:.6g} Hz, mean {1.0 / mean:.6g} Hz{gaps}"
+
+
+def _read(table: Table) -> tuple[int, Clock | None]:
+    """The number of rows, and the clock where there is one."""
+    timed = "t" in table.columns and pa.types.is_floating(table.schema.field("t").type)
     rows = 0
-    times: list[float] = []
-    last = 0.0
+    clock: Clock | None = None
+    last = 0
     for batch in table.batches:
         rows += batch.num_rows
-        if timed and batch.num_rows:
-            column = batch.column("t")
-            times += column[: 2 - len(times)].to_pylist() if len(times) < 2 else []
-            last = column[-1].as_py()
-    return rows, (times[0], last, times[1] - times[0]) if len(times) == 2 else None
+        if not timed or not batch.num_rows:
+            continue
+        t, segment = matrix(batch, ["t"])[0], _segments(batch)
+        clock = clock or Clock(float(t[0]), float(t[0]))
+        first = rows == batch.num_rows
+        steps = np.diff(t, prepend=t[0] if first else clock.end)
+        gaps = np.diff(segment, prepend=segment[0] if first else last) != 0
+        within = steps[~gaps][1 if first else 0 :]
+        if clock.interval is None and len(within):
+            clock.interval = float(within[0])
+        clock.gaps += int(gaps.sum())
+        clock.missing += float(steps[gaps].sum())
+        clock.end, last = float(t[-1]), int(segment[-1])
+    return rows, clock
 
 
-def _rate(start: float, end: float, interval: float, rows: int) -> str:
-    period = nominal_period(interval)
-    mean = (end - start) / (rows - 1)
-    if period <= 0.0 or mean <= 0.0:
-        return "time does not increase"
-    return f"nominal {1.0 / period:.6g} Hz, mean {1.0 / mean:.6g} Hz"
+def _segments(batch: pa.RecordBatch) -> Numbers:
+    """As everywhere, unless the column is something else in this table."""
+    if SEGMENT in batch.schema.names and not pa.types.is_integer(batch.schema.field(SEGMENT).type):
+        return np.zeros(batch.num_rows, dtype=np.int64)
+    return segments_of(batch)

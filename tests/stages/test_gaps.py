@@ -182,3 +182,13 @@ def test_resampling_again_keeps_the_gaps() -> None:
     once = resample(measured(t), 1.0 / PERIOD)
     twice = collected(resample(once, 0.1 / PERIOD))
     assert set(twice.column("segment").to_pylist()) == {0, 1}
+
+
+@given(sizes=SIZES)
+@settings(max_examples=5, deadline=None)
+def test_estimates_have_the_same_bits_however_the_rows_of_segments_arrive(sizes: list[int]) -> None:
+    def identified(cuts: list[int] | None) -> pa.Table:
+        rls = ESTIMATORS.load("rls")()
+        return collected(identify(gapped(cuts), SCARA, rls, SCARA.apriori))
+
+    assert identified(sizes).equals(identified(None))
