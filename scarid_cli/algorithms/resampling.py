@@ -14,6 +14,9 @@ import numpy as np
 from scarid_cli.arrays import Array
 
 
+ROUNDING = 1e-12
+
+
 @dataclass(frozen=True)
 class Clock:
     """What a log's clock did: intervals in all, their sum and extremes [s], rows left out.
@@ -56,10 +59,11 @@ class Clock:
 
     @property
     def jitter(self) -> float:
-        """Standard deviation of the intervals [s]."""
+        """Standard deviation of the intervals [s]; 0 where it is lost in rounding."""
         if not self.intervals:
             return np.nan
-        return float(np.sqrt(max(self.squares / self.intervals - self.mean**2, 0.0)))
+        variance = self.squares / self.intervals - self.mean**2
+        return float(np.sqrt(variance)) if variance > ROUNDING * self.mean**2 else 0.0
 
 
 @dataclass(frozen=True)

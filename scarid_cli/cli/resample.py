@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from scarid_cli.cli import options
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.resampling import Clock
 
 
 @click.command(name="resample")
@@ -48,11 +51,17 @@ def command(file: str, rate: float, max_gap: float | None, **rest: Any) -> None:
         out = run.output(rest["output"], rest["format"])
         table = run.recorded(run.read(file, "measurement", regular=False))
 
-        def told(clock: Any) -> None:
+        def told(clock: Clock) -> None:
             run.say(
                 f"{1.0 / clock.mean:.6g} Hz on average, jitter {1e3 * clock.jitter:.3g} ms, "
                 f"longest interval {1e3 * clock.longest:.3g} ms, {clock.repeated} repeated rows, "
-                + (f"{clock.gaps} gaps of {clock.missing:.3g} s in all" if clock.gaps else "no gap")
+                + _gaps(clock)
             )
 
         run.write(stage.resample(table, rate, max_gap, told), out)
+
+
+def _gaps(clock: Clock) -> str:
+    if not clock.gaps:
+        return "no gap"
+    return f"{clock.gaps} gap{'s' if clock.gaps > 1 else ''} of {clock.missing:.3g} s in all"

@@ -77,7 +77,8 @@ class Clock:
         mean = (self.end - self.start - self.missing) / between
         if period <= 0.0 or mean <= 0.0:
             return f"{text}, time does not increase"
-        gaps = f", {self.gaps} gaps of {self.missing:.3g} s in all" if self.gaps else ""
+        plural = "s" if self.gaps > 1 else ""
+        gaps = f", {self.gaps} gap{plural} of {self.missing:.3g} s in all" if self.gaps else ""
         return f"{text}, nominal {1.0 / period:.6g} Hz, mean {1.0 / mean:.6g} Hz{gaps}"
 
 
