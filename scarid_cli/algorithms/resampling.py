@@ -13,7 +13,6 @@ import numpy as np
 
 from scarid_cli.arrays import Array
 
-
 ROUNDING = 1e-12
 
 
