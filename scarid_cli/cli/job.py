@@ -22,7 +22,18 @@ if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
 
 # Options that do not change what the table holds.
-SILENT = {"output", "save", "format", "no_history", "quiet", "verbose", "debug"}
+SILENT = {
+    "output",
+    "save",
+    "trace",
+    "predictions",
+    "base",
+    "format",
+    "no_history",
+    "quiet",
+    "verbose",
+    "debug",
+}
 
 
 class Job:

@@ -182,3 +182,13 @@ def test_the_extension_and_the_environment_tell_the_format(shell: Run, tmp_path:
     assert shell("scarid convert $SAMPLES/scara2.csv > d", SCARID_FORMAT="parquet").status == 0
     assert (tmp_path / "d").read_bytes().startswith(b"PAR1")
     assert shell("scarid convert $SAMPLES/scara2.csv", SCARID_FORMAT="json").status == 2
+
+
+def test_where_side_tables_go_is_not_part_of_the_history(shell: Callable[..., Result]) -> None:
+    """The same input gives the same bytes."""
+    result = shell(
+        "scarid differentiate $SAMPLES/scara2.csv -o m.parquet;"
+        " scarid identify -q m.parquet -o a.parquet; scarid identify -q m.parquet --trace t.parquet"
+        " --save s.npz -o b.parquet; cmp a.parquet b.parquet"
+    )
+    assert (result.status, result.out) == (0, "")
