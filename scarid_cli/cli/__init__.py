@@ -21,7 +21,7 @@ COMMANDS = {
     "report": "Tables and figures of parameters, traces, metrics and predictions.",
     "urdf": "Put identified parameters into a URDF, as bodies that can exist.",
     "robot": "Tell what was understood of a robot description.",
-    "convert": "Change the format of a table.",
+    "convert": "Change the format of a table, or make a table of a lab's log.",
     "info": "Show what a table is: kind, columns, units, sampling, history.",
 }
 
