@@ -1,8 +1,7 @@
 """A jittered log on a regular clock.
 
-Values between samples lie on straight lines. Where the rate is lowered they are means over one new
-period of these lines, against aliasing. A row needs the samples up to it, or half a period beyond.
-Nothing is laid across a gap.
+Values between samples lie on straight lines. Where the rate is lowered, these are taken at a
+multiple of it and decimated by a low-pass without delay. Nothing is laid across a gap.
 """
 
 from __future__ import annotations
@@ -10,8 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, Numbers
 
 ROUNDING = 1e-12
 
@@ -67,77 +67,128 @@ class Clock:
 
 @dataclass(frozen=True)
 class State:
-    """The samples from which the next rows are made: times, values (columns, samples), integrals.
+    """The samples from which the next rows are made: times and values (columns, samples).
 
     `row` is the number of the next row, `start` the time of row 0.
     """
 
     t: Array
     x: Array
-    integral: Array
     start: float
     row: int = 0
 
 
 @dataclass(frozen=True)
 class Resampler:
-    """Rows every `period` [s]; `smooth` where that is longer than the log's own."""
+    """Rows every `period` [s], on straight lines between the samples."""
 
     period: float
-    smooth: bool
 
     def init(self, t: float, x: Array) -> State:
         """At the first sample: its time [s] and values (columns)."""
-        return State(np.array([t]), x[:, None], np.zeros((len(x), 1)), t)
+        return State(np.array([t]), x[:, None], t)
 
     def after_gap(self, state: State, t: float, x: Array) -> State:
         """At the first sample after a gap; rows go on at the times they would have had."""
         row = max(state.row, int(np.ceil((t - state.start) / self.period - 1e-9)))
-        begun = self.init(t, x)
-        return replace(begun, start=state.start, row=row)
+        return State(np.array([t]), x[:, None], state.start, row)
 
     def step(self, state: State, t: Array, x: Array) -> tuple[State, Array, Array]:
         """Take samples in, later ones than before; the rows that they settle: times and values."""
         times = np.concatenate((state.t, t))
         values = np.concatenate((state.x, x), axis=1)
-        areas = 0.5 * (values[:, 1:] + values[:, :-1]) * np.diff(times)
-        known = state.integral.shape[1]
-        sums = np.concatenate((state.integral[:, -1:], areas[:, known - 1 :]), axis=1)
-        integral = np.concatenate((state.integral[:, :-1], np.cumsum(sums, axis=1)), axis=1)
-        reach = 0.5 * self.period if self.smooth else 0.0
-        last = int(np.floor((times[-1] - reach - state.start) / self.period + 1e-9))
+        last = int(np.floor((times[-1] - state.start) / self.period + 1e-9))
         numbers = np.arange(state.row, max(state.row, last + 1), dtype=np.float64)
         at: Array = state.start + numbers * self.period
-        rows = self._rows(at, times, values, integral, reach)
+        rows = np.array([np.interp(at, times, row) for row in values]).reshape(len(x), len(at))
         # What the next row needs stays.
-        following = state.start + (state.row + len(at)) * self.period - reach
-        kept = max(int(np.searchsorted(times, following, side="right")) - 1, 0)
-        kept = min(kept, len(times) - 1)
-        moved = replace(
-            state,
-            t=times[kept:],
-            x=values[:, kept:],
-            integral=integral[:, kept:],
-            row=state.row + len(at),
-        )
+        following = state.start + (state.row + len(at)) * self.period
+        kept = int(np.searchsorted(times, following, side="right")) - 1
+        kept = min(max(kept, 0), len(times) - 1)
+        moved = replace(state, t=times[kept:], x=values[:, kept:], row=state.row + len(at))
         return moved, at, rows
 
-    def _rows(self, at: Array, t: Array, x: Array, integral: Array, reach: float) -> Array:
-        if not reach:
-            return np.array([np.interp(at, t, row) for row in x]).reshape(len(x), len(at))
-        ends = [_integral(at + side, t, x, integral) for side in (-reach, reach)]
-        # At the start there is less than a period to take the mean of.
-        width = at + reach - np.maximum(at - reach, t[0])
-        means: Array = (ends[1] - ends[0]) / width
-        return means
+
+REACH = 8  # new periods on either side
+ATTENUATION = 60.0  # dB from half the new rate on
+# Kaiser's formulas: the transition is as wide as that takes, and ends at half the new rate.
+BETA = 0.1102 * (ATTENUATION - 8.7)
+CUTOFF = 0.5 - 0.5 * (ATTENUATION - 8.0) / (2.285 * 2.0 * np.pi * 2.0 * REACH)  # of the new rate
+WINDOWS = 256  # computed at once
 
 
-def _integral(at: Array, t: Array, x: Array, integral: Array) -> Array:
-    """Of the lines between samples, up to times within the samples (columns, times)."""
-    at = np.maximum(at, t[0])
-    left = np.clip(np.searchsorted(t, at, side="right") - 1, 0, len(t) - 2)
-    width = t[left + 1] - t[left]
-    part = at - t[left]
-    slope = (x[:, left + 1] - x[:, left]) / width
-    found: Array = integral[:, left] + part * (x[:, left] + 0.5 * slope * part)
-    return found
+@dataclass(frozen=True)
+class Run:
+    """Samples of a segment (columns, samples) from number `at` on, from which the next rows are.
+
+    `row` is the number of the next row. In the beginning nothing precedes the first sample.
+    """
+
+    x: Array
+    at: int
+    row: int
+    begun: bool = False
+
+
+@dataclass(frozen=True)
+class Decimator:
+    """Every `factor`-th sample by its number, low-passed against aliasing, without delay.
+
+    A sinc in a Kaiser window. At the ends of a segment it goes on with its samples turned around
+    the last one, as scipy's sosfiltfilt does.
+    """
+
+    factor: int
+
+    @property
+    def taps(self) -> Array:
+        half = REACH * self.factor
+        places = np.arange(-half, half + 1)
+        taps = np.sinc(2.0 * CUTOFF / self.factor * places) * np.kaiser(2 * half + 1, BETA)
+        normed: Array = taps / taps.sum()
+        return normed
+
+    def init(self, number: int, columns: int) -> Run:
+        """Before the sample of this number."""
+        return Run(np.empty((columns, 0)), number, -(-number // self.factor))
+
+    def step(self, state: Run, x: Array) -> tuple[Run, Numbers, Array]:
+        """Take samples in; the rows that they settle: their numbers and values."""
+        half = REACH * self.factor
+        state = replace(state, x=np.concatenate((state.x, x), axis=1))
+        if not state.begun and state.x.shape[1] > half:
+            state = replace(state, x=_turned(state.x, half, 0), at=state.at - half, begun=True)
+        return self._rows(state) if state.begun else (state, np.empty(0, int), x[:, :0])
+
+    def finish(self, state: Run) -> tuple[Numbers, Array]:
+        """The rows that are left at the end of a segment."""
+        half = REACH * self.factor
+        if not state.x.shape[1]:
+            return np.empty(0, int), state.x
+        before = 0 if state.begun else half
+        whole = replace(state, x=_turned(state.x, before, half), at=state.at - before, begun=True)
+        _, numbers, rows = self._rows(whole)
+        return numbers, rows
+
+    def _rows(self, state: Run) -> tuple[Run, Numbers, Array]:
+        half = REACH * self.factor
+        first = state.row * self.factor - half - state.at  # the first sample of the next window
+        room = state.x.shape[1] - (2 * half + 1) - first
+        count = room // self.factor + 1 if room >= 0 else 0
+        rows = np.empty((len(state.x), count))
+        taps = self.taps
+        for start in range(0, count, WINDOWS):
+            part = slice(start, min(start + WINDOWS, count))
+            for out, x in zip(rows, state.x, strict=True):
+                windows = sliding_window_view(x, len(taps))[first :: self.factor][part]
+                # Not a matrix product: it would round differently with the number of rows.
+                out[part] = (windows * taps).sum(axis=1)
+        numbers = np.arange(state.row, state.row + count)
+        kept = max(first + count * self.factor, 0)
+        after = replace(state, x=state.x[:, kept:], at=state.at + kept, row=state.row + count)
+        return after, numbers, rows
+
+
+def _turned(x: Array, before: int, after: int) -> Array:
+    """With samples before and after that are its own, turned around the first and the last."""
+    return np.pad(x, ((0, 0), (before, after)), mode="reflect", reflect_type="odd")

@@ -31,11 +31,11 @@ def command(file: str, rate: float, max_gap: float | None, **rest: Any) -> None:
       scarid resample --rate 500 log.csv | scarid differentiate
       scarid resample --rate 100 log.parquet -o slow.parquet
 
-    Numbers lie on straight lines between the samples, or, where the rate becomes lower, are means
-    over a new period, against aliasing; other columns have the value of the row before. Rows that
-    repeat the time before them are left out. What the clock did is told on standard error: mean
-    rate, jitter, longest interval, repeated rows, gaps. Streaming, in memory that does not grow;
-    without delay, but a row waits for the sample after it.
+    Numbers lie on straight lines between the samples. Where the rate becomes lower they pass a
+    low-pass without delay (a sinc in a Kaiser window, 60 dB from half the new rate on), and a row
+    waits for eight new periods. Other columns have the value of the row before. Rows that repeat
+    the time before them are left out. What the clock did is told on standard error: mean rate,
+    jitter, longest interval, repeated rows, gaps. Streaming, in memory that does not grow.
 
     Nothing is laid across a gap: after it the column segment is one higher, filter and
     differentiate begin anew, and identify leaves out the rows that have not settled.

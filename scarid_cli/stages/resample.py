@@ -9,12 +9,12 @@ from itertools import chain, pairwise
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.resampling import Clock, Resampler, State
+from scarid_cli.algorithms.resampling import Clock, Decimator, Resampler, Run, State
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import SEGMENT, Table, doubles, integers, matrix, segments_of
 
-SLOWER = 1.05  # times the log's own period: the rate is lowered
+SLOWER = 0.05  # of the log's own period: a new one that is longer by more lowers the rate
 FIRST = 33  # rows, whose intervals tell the rate of the log
 BRIDGED = 5.0  # periods of the log: a longer interval is a gap, unless it is within a new period
 
@@ -27,8 +27,8 @@ def resample(
 ) -> Table:
     """The table at a constant rate [Hz]; `told` hears of the clock once all rows have gone by.
 
-    Numbers are interpolated, or averaged over a new period if that is longer than the log's own;
-    other columns have the value of the row before. An interval longer than `max_gap` [s] (by
+    Numbers are interpolated, and low-passed if the new period is longer than the log's own; other
+    columns have the value of the row before. An interval longer than `max_gap` [s] (by
     default BRIDGED) is not bridged: after it the column `segment` is one higher.
     """
     fields = [field for field in table.schema if field.name != SEGMENT]
@@ -58,13 +58,21 @@ def _rows(
 ) -> Iterator[pa.RecordBatch]:
     own, batches = _begun(table.batches)
     splitting = Splitting(table.name, max_gap or max(BRIDGED * own, period))
+    factor = max(1, int(np.ceil(period / own - SLOWER)))
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]
-    laying = Laying(Resampler(period, smooth=period > SLOWER * own), schema, numbers)
+    laying = Laying(Resampler(period / factor), schema, numbers)
+    thinning = Thinning(Decimator(factor), schema, numbers, period) if factor > 1 else None
     for batch in batches:
         for begins, piece in splitting.pieces(batch):
+            if begins and thinning:
+                yield from thinning.finish()
             found = laying.rows(piece, splitting.segment, begins=begins)
+            if found and thinning:
+                found = thinning.rows(found, laying.first, laying.start)
             if found:
                 yield found
+    if thinning:
+        yield from thinning.finish()
     told(splitting.clock)
 
 
@@ -120,13 +128,22 @@ class Splitting:
 
 @dataclass
 class Laying:
-    """The new rows of a segment, and its last samples with all their columns."""
+    """The new rows of a segment, and its last samples with all their columns.
+
+    `first` is the number of the first row it gave last.
+    """
 
     resampler: Resampler
     schema: pa.Schema
     numbers: list[str]
     state: State | None = None
     held: pa.RecordBatch | None = None
+    first: int = 0
+
+    @property
+    def start(self) -> float:
+        """The time of row 0 [s]."""
+        return self.state.start if self.state else 0.0
 
     def rows(self, piece: pa.RecordBatch, segment: int, *, begins: bool) -> pa.RecordBatch | None:
         """What the samples of this piece settle."""
@@ -143,6 +160,7 @@ class Laying:
         self.held = together.slice(len(times) - len(self.state.t))
         if not len(at):
             return None
+        self.first = self.state.row - len(at)
         left = np.maximum(np.searchsorted(times, at + 1e-12, side="right") - 1, 0)
         new = {"t": at, **dict(zip(self.numbers, found, strict=True))}
         return self._joined(together, new, left, segment)
@@ -163,4 +181,59 @@ class Laying:
                 columns.append(doubles(new[name]))
             else:
                 columns.append(source.column(name).take(pa.array(left)))
+        return pa.RecordBatch.from_arrays(columns, schema=self.schema)
+
+
+@dataclass
+class Thinning:
+    """Every `factor`-th row, low-passed; rows that wait keep their other columns."""
+
+    decimator: Decimator
+    schema: pa.Schema
+    numbers: list[str]
+    period: float
+    state: Run | None = None
+    held: pa.RecordBatch | None = None
+    at: int = 0  # number of the first row held
+    start: float = 0.0  # time of row 0
+
+    def rows(self, batch: pa.RecordBatch, first: int, start: float) -> pa.RecordBatch | None:
+        """What the rows of this batch settle; its first has this number, row 0 this time [s]."""
+        x = matrix(batch, self.numbers)
+        if self.state is None:
+            self.state = self.decimator.init(first, len(self.numbers))
+            self.held, self.at = batch.slice(0, 0), first
+            self.start = start
+        self.held = pa.Table.from_batches([self.held, batch]).combine_chunks().to_batches()[0]
+        self.state, numbers, found = self.decimator.step(self.state, x)
+        return self._joined(numbers, found)
+
+    def finish(self) -> Iterator[pa.RecordBatch]:
+        """The rows that are left at the end of a segment."""
+        if self.state:
+            numbers, found = self.decimator.finish(self.state)
+            joined = self._joined(numbers, found)
+            if joined:
+                yield joined
+        self.state = None
+
+    def _joined(self, numbers: Numbers, found: Array) -> pa.RecordBatch | None:
+        if not len(numbers):
+            return None
+        assert self.held
+        places = numbers * self.decimator.factor - self.at
+        new = {
+            "t": self.start + numbers * self.period,
+            **dict(zip(self.numbers, found, strict=True)),
+        }
+        columns = []
+        for name in self.schema.names:
+            if name in new:
+                columns.append(doubles(new[name]))
+            elif name == SEGMENT:
+                columns.append(integers(segments_of(self.held)[places]))
+            else:
+                columns.append(self.held.column(name).take(pa.array(places)))
+        done = int(places[-1]) + 1
+        self.held, self.at = self.held.slice(done), self.at + done
         return pa.RecordBatch.from_arrays(columns, schema=self.schema)
