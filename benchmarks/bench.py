@@ -297,6 +297,7 @@ def stages(folder: Path) -> dict[str, list[str]]:
         identify = [SCARID, "identify", "-q", "-o", str(parameters)]
         subprocess.run(identify, stdin=source.stdout, check=True)
     return {
+        "resample": ["resample", "-q", "--rate", "60", "--format", "arrow"],
         "filter": ["filter", "--format", "arrow"],
         "differentiate": ["differentiate", "--format", "arrow"],
         "identify": ["identify", "-q"],

@@ -8,7 +8,7 @@ import pytest
 from bench import peak, stages
 
 
-@pytest.mark.parametrize("name", ["filter", "differentiate", "identify", "validate"])
+@pytest.mark.parametrize("name", ["resample", "filter", "differentiate", "identify", "validate"])
 def test_memory_does_not_grow_with_the_log(name: str, tmp_path: Path) -> None:
     words = stages(tmp_path)[name]
     short, _ = peak(words, 100_000)
