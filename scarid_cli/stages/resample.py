@@ -15,7 +15,7 @@ from scarid_cli.errors import bad_data
 from scarid_cli.io.table import SEGMENT, Table, doubles, integers, matrix, segments_of
 
 SLOWER = 0.05  # of the log's own period: a new one that is longer by more lowers the rate
-FIRST = 33  # rows, whose intervals tell the rate of the log
+FIRST = 32  # intervals, which tell the rate of the log
 BRIDGED = 5.0  # periods of the log: a longer interval is a gap, unless it is within a new period
 
 
@@ -38,15 +38,25 @@ def resample(
     return replace(table, schema=schema, meta=meta, batches=batches)
 
 
-def _begun(batches: Iterator[pa.RecordBatch]) -> tuple[float, Iterator[pa.RecordBatch]]:
+def _begun(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
     """The median of the first intervals [s], and all batches."""
     held: list[pa.RecordBatch] = []
-    for batch in batches:
+    steps = np.empty(0)
+    for batch in table.batches:
         held.append(batch)
-        if sum(b.num_rows for b in held) >= FIRST:
+        t = np.concatenate([matrix(part, ["t"])[0] for part in held])
+        steps = np.diff(t)[np.diff(t) > 0.0]
+        if len(steps) >= FIRST:
             break
-    t = np.concatenate([matrix(batch, ["t"])[0] for batch in held])[:FIRST]
-    return float(np.median(np.diff(t))), chain(held, batches)
+    if not len(steps):
+        raise bad_data(
+            table.name,
+            "time that never increases",
+            expected="time to increase",
+            remedy="give a log with a clock",
+            column="t",
+        )
+    return float(np.median(steps[:FIRST])), chain(held, table.batches)
 
 
 def _rows(
@@ -56,7 +66,7 @@ def _rows(
     max_gap: float | None,
     told: Callable[[Clock], None],
 ) -> Iterator[pa.RecordBatch]:
-    own, batches = _begun(table.batches)
+    own, batches = _begun(table)
     splitting = Splitting(table.name, max_gap or max(BRIDGED * own, period))
     factor = max(1, int(np.ceil(period / own - SLOWER)))
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]

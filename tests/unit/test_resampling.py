@@ -132,3 +132,16 @@ def test_a_clock_that_goes_back_is_told(sizes: tuple[int, ...]) -> None:
     told = r"row 3, column t: found time that goes back by 0\.05 s"
     with pytest.raises(BadData, match=told):
         Kept().batches.extend(resample(source, 10.0, 0.2).batches)
+
+
+def test_rows_that_are_each_there_twice_are_one_log() -> None:
+    t = np.repeat(np.arange(50) * 0.01, 2)
+    clocks: list[Clock] = []
+    result = collected(resample(table({"t": t, "q1": t}), 100.0, told=clocks.append))
+    np.testing.assert_allclose(result.column("q1"), np.arange(50) * 0.01)
+    assert clocks[0].repeated == 50
+
+
+def test_a_clock_that_stands_still_is_told() -> None:
+    with pytest.raises(BadData, match="column t: found time that never increases"):
+        collected(resample(table({"t": np.ones(5), "q1": np.ones(5)}), 100.0))

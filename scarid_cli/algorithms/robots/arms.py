@@ -50,7 +50,7 @@ KEYS = ("title", "urdf", "gravity", "joint", "coupling", "log")
 def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
     """The robot with its base parameters."""
     values.only("a robot with a URDF", document, KEYS)
-    entries = document.get("joint") or []
+    entries = values.tables("joint", document.get("joint", []))
     body = Body(
         str(folder / values.text("urdf", document["urdf"])),
         gravity=values.row("gravity", document.get("gravity", list(GRAVITY)), 3),
@@ -66,7 +66,7 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
         joints.append(joint_of({"type": joint.type, **own}, joint))
         parameters += _standard(i, body.standard)
         parameters += _terms(i, joint, entry.get("terms", list(DEFAULT)))
-    for entry in document.get("coupling", []):
+    for entry in values.tables("coupling", document.get("coupling", [])):
         parameters += _coupled(entry, entries)
     values.distinct("parameter", [parameter.name for parameter in parameters])
     return with_base_parameters(

@@ -74,10 +74,10 @@ def _mixed(matrix: Array, x: Array) -> Array:
 
 def log_of(document: dict[str, Any], joints: int) -> Log | None:
     """What a description says of its logs."""
-    axes = document.get("joint") or [{}] * joints
-    couplings = document.get("coupling", [])
     if "log" not in document:
         return None
+    axes = values.tables("joint", document.get("joint", [])) or [{}] * joints
+    couplings = values.tables("coupling", document.get("coupling", []))
     entry = values.table("log", document["log"])
     values.only("[log]", entry, ("rate", "positions", "torques", "columns", "units"))
     columns = values.table("columns", entry.get("columns", {}))

@@ -48,8 +48,9 @@ def load(name: str) -> Robot:
 
 def _robot(name: str, document: dict[str, Any]) -> Robot:
     values.only("a robot", document, ("title", "joint", "parameter", "control", "coupling", "log"))
-    joints = tuple(joint_of(entry) for entry in document["joint"])
-    parameters = tuple(_parameter(entry, len(joints)) for entry in document["parameter"])
+    joints = tuple(joint_of(entry) for entry in values.tables("joint", document["joint"]))
+    terms = values.tables("parameter", document["parameter"])
+    parameters = tuple(_parameter(entry, len(joints)) for entry in terms)
     if not joints or not parameters:
         raise ValueError("it needs at least one joint and one parameter")
     values.distinct("name", [parameter.name for parameter in parameters])

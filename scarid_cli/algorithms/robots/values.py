@@ -44,6 +44,13 @@ def table(key: str, value: Any) -> dict[str, Any]:
     return value
 
 
+def tables(key: str, value: Any) -> list[dict[str, Any]]:
+    """What [[key]] stands for."""
+    if not isinstance(value, list):
+        raise TypeError(f"{key} is {value!r}, not tables [[{key}]]")
+    return [table(key, entry) for entry in value]
+
+
 def choice(key: str, value: Any, known: Collection[str]) -> str:
     """One of some words."""
     if value not in known:
