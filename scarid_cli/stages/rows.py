@@ -15,6 +15,8 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import Table, matrix, segments_of, settled_runs
 
+GAP = 0.05  # s: more than the statistics of a long record leave between its samples
+
 
 @dataclass(frozen=True)
 class Treatment:
@@ -99,7 +101,7 @@ def _treated(
     columns = Columns(robot)
     slow = np.array(treatment.slow) if treatment.slow else None
     late = None if treatment.decimate else slow
-    held, gaps = [], Gaps()
+    held, gaps = [], Gaps(table.meta.period or 0.0)
     for first, kept in _within(settled_runs(table.batches), *treatment.skip):
         rows = columns.rows(table.columns, kept, seen + first + gaps.before(kept), late)
         if treatment.holds:
@@ -111,17 +113,18 @@ def _treated(
 
 
 class Gaps:
-    """Counts the gaps of a record, so that the numbers of samples jump there."""
+    """By how much the numbers of samples jump at the gaps of a record: as if each took GAP."""
 
-    def __init__(self) -> None:
+    def __init__(self, period: float) -> None:
         self._first: int | None = None
+        self._jump = max(1, round(GAP / period)) if period > 0.0 else 1
 
     def before(self, batch: pa.RecordBatch) -> int:
-        """How many there are before this part of a segment."""
+        """All jumps before this part of a segment."""
         segment = int(segments_of(batch)[0])
         if self._first is None:
             self._first = segment
-        return segment - self._first
+        return (segment - self._first) * self._jump
 
 
 def _within(
