@@ -189,6 +189,8 @@ def test_six_axes_are_identified_online(six_axes: Path, shell: Shell) -> None:
     assert far <= {"Ixy4", "Izz4", "Ixx5", "Ixx6", "Izz6", "my6", "fvm6"}
     assert quality(metrics)[0] >= 0.98
     assert "biased" not in result.err
+    weighted = shell(f"scarid identify -q --robot tx40.toml {SLOW} --estimator wls motion.parquet")
+    assert far_from_published(weighted.out, six_axes) <= {"Ixx5", "Izz6", "my6"}
 
 
 def test_six_axes_as_bodies_that_can_exist(six_axes: Path, shell: Shell) -> None:

@@ -15,6 +15,7 @@ from scarid_cli.algorithms.filters import kalman
 from scarid_cli.algorithms.filters.likelihood import (
     best_model,
     best_smoothing,
+    held_out_error,
     log_likelihood,
     most_likely,
     noise_of,
@@ -211,6 +212,14 @@ def test_the_noise_of_a_smooth_signal_is_that_of_its_differences() -> None:
     rng = np.random.default_rng(0)
     q = np.sin(3.0 * H * np.arange(4000)) + 1e-3 * rng.standard_normal(4000)
     assert noise_of(q) == pytest.approx(1e-3, rel=0.05)
+
+
+def test_a_smoother_that_repeats_its_samples_predicts_none_of_them() -> None:
+    """An infinite error, not a division by zero; and the search for an intensity goes on."""
+    q = encoder_readings(SHORT)
+    stiff = DIFFERENTIATORS.load("rts")(noise=1e-9, intensity=1e40)
+    assert held_out_error(stiff, q, H) == np.inf
+    assert np.isfinite(best_smoothing(stiff, q, H).intensity)
 
 
 @pytest.mark.usefixtures("narrow")

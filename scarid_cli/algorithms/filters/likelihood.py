@@ -98,9 +98,10 @@ def best_smoothing(settings: S, x: Array, h: float) -> S:
     tiny = np.finfo(float).tiny  # of a record at rest
     errors = np.log([held_out_error(at(point), x, h) + tiny for point in grid])
     least = int(np.argmin(errors))
-    if not 0 < least < len(grid) - 1:
+    around = errors[max(least - 1, 0) : least + 2]
+    if len(around) < 3 or not np.isfinite(around).all():
         return at(grid[least])
-    left, here, right = errors[least - 1 : least + 2]
+    left, here, right = around
     shift = 0.5 * (left - right) / (left - 2.0 * here + right)
     return at(grid[least] + shift * (grid[1] - grid[0]))
 
@@ -118,7 +119,9 @@ def held_out_error(settings: Settings, x: Array, h: float) -> float:
     weight = position(model, pulse)[REACH // 2] / settings.noise
     squares = np.minimum(residual**2, (settings.gate * settings.noise) ** 2)
     edge = len(x) // 20
-    return float(np.mean(squares[edge : len(x) - edge]) / (1.0 - weight) ** 2)
+    free = 1.0 - float(weight)
+    # A smoother that only repeats its samples predicts none of them.
+    return float(np.mean(squares[edge : len(x) - edge])) / free**2 if free > 0.0 else np.inf
 
 
 def position(model: Model, x: Array) -> Array:
