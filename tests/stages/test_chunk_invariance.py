@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -79,9 +81,16 @@ def references() -> dict[str, np.ndarray]:
 @given(sizes=SIZES)
 @settings(max_examples=8, deadline=None)
 def test_a_stage_gives_the_same_bits_however_its_rows_arrive(name: str, sizes: list[int]) -> None:
-    columns = references() if name == "simulate" else motion()
-    whole = collected(STAGES[name](table(columns)))
-    assert collected(STAGES[name](table(columns, sizes))).equals(whole)
+    assert collected(STAGES[name](table(source_of(name), sizes))).equals(at_once(name))
+
+
+def source_of(name: str) -> dict[str, np.ndarray]:
+    return references() if name == "simulate" else motion()
+
+
+@cache
+def at_once(name: str) -> pa.Table:
+    return collected(STAGES[name](table(source_of(name))))
 
 
 @given(sizes=SIZES)
