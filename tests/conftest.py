@@ -32,6 +32,15 @@ class Result:
     err: str
 
 
+def refused(result: Result, status: int, *told: str) -> None:
+    """A failure as users see it: its status, one line with these words, and no output."""
+    assert result.status == status
+    assert result.out == ""
+    assert result.err.count("\n") == 1
+    for words in told:
+        assert words in result.err
+
+
 @pytest.fixture
 def samples() -> Path:
     return ROOT / "samples"

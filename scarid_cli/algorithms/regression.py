@@ -46,7 +46,7 @@ class Rows:
         )
 
     def taken(self, chosen: Numbers) -> Rows:
-        """Samples by their places."""
+        """Samples by their places, as copies."""
         return Rows(
             self.W[chosen],
             self.y[chosen],

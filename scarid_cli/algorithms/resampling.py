@@ -7,6 +7,7 @@ multiple of it and decimated by a low-pass without delay. Nothing is laid across
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -140,7 +141,7 @@ class Decimator:
 
     factor: int
 
-    @property
+    @cached_property
     def taps(self) -> Array:
         half = REACH * self.factor
         places = np.arange(-half, half + 1)

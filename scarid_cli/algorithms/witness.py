@@ -75,22 +75,10 @@ class Witness:
 def _thinned(parts: list[Rows], thin: int) -> list[Rows]:
     """Every so many-th sample by its number, in copies that do not keep what they were cut from."""
     chosen = [(part, np.flatnonzero(part.at % thin == 0)) for part in parts]
-    return [_copied(part.taken(at)) for part, at in chosen if len(at)]
+    return [part.taken(at) for part, at in chosen if len(at)]
 
 
 def _size(rows: Rows) -> int:
     """Numbers of one sample."""
     arrays = (rows.W, rows.y, rows.scales, rows.motion)
     return max(1, sum(array.size for array in arrays) // max(1, rows.samples))
-
-
-def _copied(rows: Rows) -> Rows:
-    """A part that does not keep the whole it was cut from."""
-    return Rows(
-        rows.W.copy(),
-        rows.y.copy(),
-        rows.scales.copy(),
-        rows.at.copy(),
-        rows.motion.copy(),
-        None if rows.reference is None else rows.reference.copy(),
-    )

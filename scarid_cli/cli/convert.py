@@ -69,11 +69,11 @@ def command(
     are given here too, and angles, torques or currents of motors become positions and torques of
     joints, by the gear ratios, couplings and torque constants there: see docs/robots.md.
     """
-    from scarid_cli.cli.job import job, robot_of
+    from scarid_cli.cli.job import job
     from scarid_cli.cli.pairs import pair
     from scarid_cli.errors import UsageFault
     from scarid_cli.io.foreign import ARCHIVES, Customs, read_archive
-    from scarid_cli.stages.adapt import adapted, as_described
+    from scarid_cli.stages.adapt import adapted
 
     if rate is not None and not 0.0 < rate < float("inf"):
         raise UsageFault(f"--rate must be positive, not {rate:g}")
@@ -95,7 +95,10 @@ def command(
         else:
             table = run.read(file, None)
         if robot:
-            table = as_described(table, robot_of(robot), dict(pairs), wanted, rate)
+            from scarid_cli.algorithms.robots.reading import load
+            from scarid_cli.stages.joints import as_described
+
+            table = as_described(table, load(robot), dict(pairs), wanted, rate)
         else:
             table = adapted(table, dict(pairs), wanted, rate)
         run.write(run.recorded(table), out)

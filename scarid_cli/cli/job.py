@@ -82,9 +82,7 @@ class Job:
             raise UsageFault(
                 "standard input can be read only once; give a FILE for the other table"
             )
-        source = ByteSource.open(path)
-        self.sources.append(source)
-        self._inputs[source.name] = source.sha256() if self._history else None
+        source = self._opened(path)
         table = open_table(through(source) if through else source)
         if kind:
             table = checked(table, kind, regular=regular)
@@ -95,10 +93,14 @@ class Job:
 
     def noted(self, path: str) -> str:
         """The path of an input that is no table, for the history."""
+        self._opened(path)
+        return path
+
+    def _opened(self, path: str) -> ByteSource:
         source = ByteSource.open(path)
         self.sources.append(source)
         self._inputs[source.name] = source.sha256() if self._history else None
-        return path
+        return source
 
     def read_for(
         self, path: str, kind: str, robot: str | None, *, torques: bool = False

@@ -13,7 +13,7 @@ from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import ByteSource
-from scarid_cli.io.table import SEGMENT, Table, segments_of
+from scarid_cli.io.table import SEGMENT, Instant, Table, segments_of, steps_of
 
 # A clock may jitter by this part of its period, and its mean rate be off by that part; beyond,
 # a derivative would be wrong by as much.
@@ -213,15 +213,13 @@ def _regular(
     """
     row = gaps = 0
     start = missing = float("nan")
-    last: tuple[float, int] | None = None  # time and segment of the row before
+    last: Instant | None = None
     for batch in batches:
         t = batch.column("t").to_numpy()
-        segment = segments_of(batch)
-        time, before = last or (t[0], segment[0])
-        steps, jumps = np.diff(t, prepend=time), np.diff(segment, prepend=before)
         first = last is None
         if first:
             start, missing = float(t[0]), 0.0
+        steps, jumps, last = steps_of(batch, last)
         _check_segments(jumps, name, row + 1)
         after_gap = (jumps > 0) & (steps > 0.0)
         inner = np.where(after_gap, period, steps)[first:]
@@ -229,7 +227,6 @@ def _regular(
         missing += float(steps[after_gap].sum())
         gaps += int(after_gap.sum())
         row += batch.num_rows
-        last = (float(t[-1]), int(segment[-1]))
         yield batch
     mean = (last[0] - start - missing) / (row - 1 - gaps) if last else period
     if abs(mean - period) > DRIFT * period:

@@ -120,6 +120,20 @@ def segments_of(batch: pa.RecordBatch) -> Numbers:
     return numbers
 
 
+Instant = tuple[float, int]  # time [s] and segment of a row
+
+
+def steps_of(batch: pa.RecordBatch, last: Instant | None) -> tuple[Array, Numbers, Instant]:
+    """What time [s] and segment go on by into each row, and where the last row is.
+
+    `last` is the row before the batch; into the first row of all both are 0.
+    """
+    t, segment = matrix(batch, ["t"])[0], segments_of(batch)
+    time, number = last or (t[0], segment[0])
+    steps, jumps = np.diff(t, prepend=time), np.diff(segment, prepend=number)
+    return steps, jumps, (float(t[-1]), int(segment[-1]))
+
+
 def segment_field(table: Table) -> list[pa.Field]:
     """That of the column `segment`, if the table has it."""
     return [table.schema.field(SEGMENT)] if SEGMENT in table.columns else []

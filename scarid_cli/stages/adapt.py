@@ -10,10 +10,8 @@ from math import inf, pi
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table, doubles, matrix, number
-from scarid_cli.stages.joints import at_joints
 
 # Unit of a log: what to multiply with, and the unit that comes out.
 UNITS = {
@@ -52,27 +50,6 @@ def adapted(
     clock = [number("t", "s")] if rate is not None else []
     schema = pa.schema([*clock, *out])
     return replace(table, schema=schema, batches=_rows(table, schema, new, scales, rate))
-
-
-def as_described(
-    table: Table,
-    robot: Robot,
-    names: dict[str, str],
-    units: list[tuple[str, str]],
-    rate: float | None,
-) -> Table:
-    """The same with what a robot's description says of its logs; what is given goes before that."""
-    log = robot.log
-    if log is None:
-        raise UsageFault(f"{robot.name}: its description has no [log] that says what logs hold")
-    clocked = "t" in table.columns or "t" in {**log.columns, **names}
-    table = adapted(
-        table,
-        {**log.columns, **names},
-        [*log.units, *units],
-        rate if rate or clocked else log.rate,
-    )
-    return at_joints(table, robot, log)
 
 
 def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:

@@ -163,8 +163,9 @@ def _found(
     rows = fit.rows or rows
     belief = None
     if fit.robust:
-        blocks = progress.blocks.whole() if progress.blocks else None
-        record = None if progress.witness.complete else blocks
+        record = None
+        if progress.blocks and not progress.witness.complete:
+            record = progress.blocks.whole()
         belief = believe(rows, fit, period * progress.witness.thin, own, record)
     delay = None
     if treatment.align and belief:
@@ -215,24 +216,22 @@ def _parameters(found: Found, robot: Robot, meta: Metadata, *, variance: str) ->
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = 100.0 * errors / np.abs(fit.estimates)
     schema = schemas.load("parameters").arrow()
-    written = [p.stands_for or p.name for p in robot.parameters] if robot.body else []
-    if not written:
+    columns = [
+        pa.array(names, pa.string()),
+        pa.array(units, pa.string()),
+        doubles(fit.estimates),
+        known(errors),
+        known(relative),
+        known(robust),
+        known(fit.estimates - half),
+        known(fit.estimates + half),
+    ]
+    if robot.body:
+        written = [p.stands_for or p.name for p in robot.parameters]
+        columns.append(pa.array([*written, *names[len(written) :]], pa.string()))
+    else:
         schema = schema.remove(schema.get_field_index("stands_for"))
-    written += names[len(written) :]
-    batch = pa.RecordBatch.from_arrays(
-        [
-            pa.array(names, pa.string()),
-            pa.array(units, pa.string()),
-            doubles(fit.estimates),
-            known(errors),
-            known(relative),
-            known(robust),
-            known(fit.estimates - half),
-            known(fit.estimates + half),
-            pa.array(written, pa.string()),
-        ][: len(schema)],
-        schema=schema,
-    )
+    batch = pa.RecordBatch.from_arrays(columns, schema=schema)
     extra = _told(found, robot, names, robust if belief else errors)
     return Table("identify", schema, replace(meta, extra=extra), iter([batch]))
 

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.arrays import Numbers
 from scarid_cli.io import schemas
 from scarid_cli.io.reader import nominal_period
-from scarid_cli.io.table import SEGMENT, Table, matrix, segments_of
+from scarid_cli.io.table import SEGMENT, Instant, Table, steps_of
 
 
 def described(table: Table) -> Iterator[str]:
@@ -84,30 +83,26 @@ class Clock:
 
 def _read(table: Table) -> tuple[int, Clock | None]:
     """The number of rows, and the clock where there is one."""
-    timed = "t" in table.columns and pa.types.is_floating(table.schema.field("t").type)
+    types = {field.name: field.type for field in table.schema}
+    timed = pa.types.is_floating(types.get("t", pa.null()))
+    # In a table of another kind the column may be something else.
+    marked = pa.types.is_integer(types.get(SEGMENT, pa.null()))
     rows = 0
     clock: Clock | None = None
-    last = 0
+    last: Instant | None = None
     for batch in table.batches:
         rows += batch.num_rows
         if not timed or not batch.num_rows:
             continue
-        t, segment = matrix(batch, ["t"])[0], _segments(batch)
-        clock = clock or Clock(float(t[0]), float(t[0]))
-        first = rows == batch.num_rows
-        steps = np.diff(t, prepend=t[0] if first else clock.end)
-        gaps = np.diff(segment, prepend=segment[0] if first else last) != 0
-        within = steps[~gaps][1 if first else 0 :]
+        first = last is None
+        steps, jumps, last = steps_of(batch.select(["t", SEGMENT] if marked else ["t"]), last)
+        if clock is None:
+            start = batch.column("t")[0].as_py()
+            clock = Clock(start, start)
+        within = steps[jumps == 0][first:]
         if clock.interval is None and len(within):
             clock.interval = float(within[0])
-        clock.gaps += int(gaps.sum())
-        clock.missing += float(steps[gaps].sum())
-        clock.end, last = float(t[-1]), int(segment[-1])
+        clock.gaps += int(np.count_nonzero(jumps))
+        clock.missing += float(steps[jumps != 0].sum())
+        clock.end = last[0]
     return rows, clock
-
-
-def _segments(batch: pa.RecordBatch) -> Numbers:
-    """As everywhere, unless the column is something else in this table."""
-    if SEGMENT in batch.schema.names and not pa.types.is_integer(batch.schema.field(SEGMENT).type):
-        return np.zeros(batch.num_rows, dtype=np.int64)
-    return segments_of(batch)

@@ -1,4 +1,4 @@
-"""Logs of motors as logs of the joints that they drive."""
+"""Logs as a robot's description tells them: columns, units, motors that drive its joints."""
 
 from __future__ import annotations
 
@@ -10,10 +10,32 @@ import pyarrow as pa
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.logs import JOINT, Log
 from scarid_cli.arrays import Array
-from scarid_cli.errors import bad_data
+from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.table import Table, matrix, number, with_columns
+from scarid_cli.stages.adapt import adapted
 
 Way = Callable[[Array], Array]
+
+
+def as_described(
+    table: Table,
+    robot: Robot,
+    names: dict[str, str],
+    units: list[tuple[str, str]],
+    rate: float | None,
+) -> Table:
+    """`adapted` by what a robot's description says of its logs; what is given goes before that."""
+    log = robot.log
+    if log is None:
+        raise UsageFault(f"{robot.name}: its description has no [log] that says what logs hold")
+    clocked = "t" in table.columns or "t" in {**log.columns, **names}
+    table = adapted(
+        table,
+        {**log.columns, **names},
+        [*log.units, *units],
+        rate if rate or clocked else log.rate,
+    )
+    return at_joints(table, robot, log)
 
 
 def at_joints(table: Table, robot: Robot, log: Log) -> Table:

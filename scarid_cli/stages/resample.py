@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -12,7 +13,16 @@ import pyarrow as pa
 from scarid_cli.algorithms.resampling import Clock, Decimator, Resampler, Run, State
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import bad_data
-from scarid_cli.io.table import SEGMENT, Table, doubles, integers, matrix, segments_of
+from scarid_cli.io.table import (
+    SEGMENT,
+    Instant,
+    Table,
+    integers,
+    matrix,
+    segments_of,
+    steps_of,
+    with_columns,
+)
 
 SLOWER = 0.05  # of the log's own period: a new one that is longer by more lowers the rate
 FIRST = 32  # intervals, which tell the rate of the log
@@ -45,7 +55,8 @@ def _begun(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
     for batch in table.batches:
         held.append(batch)
         t = np.concatenate([matrix(part, ["t"])[0] for part in held])
-        steps = np.diff(t)[np.diff(t) > 0.0]
+        steps = np.diff(t)
+        steps = steps[steps > 0.0]
         if len(steps) >= FIRST:
             break
     if not len(steps):
@@ -93,19 +104,17 @@ class Splitting:
         self._name = name
         self._limit = limit
         self._row = 0
-        self._last: tuple[float, int] | None = None  # time and segment of the row before
+        self._last: Instant | None = None
         self.segment = -1
         self.clock = Clock()
 
     def pieces(self, batch: pa.RecordBatch) -> Iterator[tuple[bool, pa.RecordBatch]]:
         """Each with whether it begins a segment."""
-        t = matrix(batch, ["t"])[0]
-        marks = segments_of(batch)
-        time, mark = self._last or (-np.inf, int(marks[0]))
-        steps = np.diff(t, prepend=time)
+        steps, jumps, last = steps_of(batch, self._last)
         self._check(steps)
-        begins = (steps > self._limit) | (np.diff(marks, prepend=mark) != 0)
-        for start, end in pairwise(sorted({0, *np.flatnonzero(begins).tolist(), len(t)})):
+        begins = (steps > self._limit) | (jumps != 0)
+        begins[0] |= self._last is None
+        for start, end in pairwise(sorted({0, *np.flatnonzero(begins).tolist(), len(steps)})):
             first = bool(begins[start])
             if first:
                 self._begin(float(steps[start]))
@@ -115,8 +124,8 @@ class Splitting:
                 yield first, batch.slice(start, end - start)
             elif len(kept):
                 yield first, batch.take(pa.array(kept))  # imports pyarrow.compute, 40 ms
-        self._row += len(t)
-        self._last = (float(t[-1]), int(marks[-1]))
+        self._row += len(steps)
+        self._last = last
 
     def _begin(self, gap: float) -> None:
         self.segment += 1
@@ -172,26 +181,14 @@ class Laying:
             return None
         self.first = self.state.row - len(at)
         left = np.maximum(np.searchsorted(times, at + 1e-12, side="right") - 1, 0)
-        new = {"t": at, **dict(zip(self.numbers, found, strict=True))}
-        return self._joined(together, new, left, segment)
+        mark = integers(np.full(len(at), segment))
+        new = {"t": at, SEGMENT: mark, **dict(zip(self.numbers, found, strict=True))}
+        return _made(together, self.schema, new, left)
 
     def _at(self, t: float, x: Array) -> State:
         if self.state is None:
             return self.resampler.init(t, x)
         return self.resampler.after_gap(self.state, t, x)
-
-    def _joined(
-        self, source: pa.RecordBatch, new: dict[str, Array], left: Numbers, segment: int
-    ) -> pa.RecordBatch:
-        columns = []
-        for name in self.schema.names:
-            if name == SEGMENT:
-                columns.append(integers(np.full(len(left), segment)))
-            elif name in new:
-                columns.append(doubles(new[name]))
-            else:
-                columns.append(source.column(name).take(pa.array(left)))
-        return pa.RecordBatch.from_arrays(columns, schema=self.schema)
 
 
 @dataclass
@@ -232,18 +229,20 @@ class Thinning:
             return None
         assert self.held
         places = numbers * self.decimator.factor - self.at
-        new = {
-            "t": self.start + numbers * self.period,
-            **dict(zip(self.numbers, found, strict=True)),
-        }
-        columns = []
-        for name in self.schema.names:
-            if name in new:
-                columns.append(doubles(new[name]))
-            elif name == SEGMENT:
-                columns.append(integers(segments_of(self.held)[places]))
-            else:
-                columns.append(self.held.column(name).take(pa.array(places)))
+        t = self.start + numbers * self.period
+        mark = integers(segments_of(self.held)[places])
+        new = {"t": t, SEGMENT: mark, **dict(zip(self.numbers, found, strict=True))}
+        made = _made(self.held, self.schema, new, places)
         done = int(places[-1]) + 1
         self.held, self.at = self.held.slice(done), self.at + done
-        return pa.RecordBatch.from_arrays(columns, schema=self.schema)
+        return made
+
+
+def _made(
+    source: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any], places: Numbers
+) -> pa.RecordBatch:
+    """New columns, and the others as they are at these places of the source."""
+    others = {
+        name: source.column(name).take(pa.array(places)) for name in schema.names if name not in new
+    }
+    return with_columns(source, schema, {**others, **new})

@@ -9,10 +9,11 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.physical import Physical, nearest
+from scarid_cli.algorithms.robots.physical import Physical, inertia_of, nearest
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table, doubles, number
 from scarid_cli.io.urdf import Inertial, rewritten
+from scarid_cli.stages.identify import known
 from scarid_cli.stages.validate import estimates
 
 
@@ -38,9 +39,7 @@ def document(text: str, robot: Robot, found: Physical, command: str) -> str:
     assert robot.body
     links: dict[str, Inertial | None] = {}
     for body, (own, fixed) in zip(found.bodies, robot.body.links, strict=True):
-        Ixx, Ixy, Ixz, Iyy, Iyz, Izz = body[:6]
-        inertia = np.array([[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]])
-        links[own] = Inertial.of(body[9], body[6:9], inertia)
+        links[own] = Inertial.of(body[9], body[6:9], inertia_of(body))
         links |= dict.fromkeys(fixed)
     friction, written = {}, set()
     for i, name in enumerate(robot.body.joint_names, start=1):
@@ -60,7 +59,7 @@ def base_table(table: Table, robot: Robot, found: Physical) -> Table:
         pa.array(robot.names, pa.string()),
         pa.array([p.unit for p in robot.parameters], pa.string()),
         doubles(found.base),
-        pa.array([x if np.isfinite(x) else None for x in found.moved.tolist()], pa.float64()),
+        known(found.moved),
     ]
     batch = pa.RecordBatch.from_arrays(arrays, schema=schema)
     meta = replace(table.meta, kind="parameters", robot=robot.name, extra={})

@@ -15,7 +15,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from conftest import Result
+from conftest import Result, refused
 
 from scarid_cli.algorithms.robots import reading
 from scarid_cli.io.table import METADATA_KEY, Metadata
@@ -269,14 +269,6 @@ def test_a_long_record_makes_a_small_page(tmp_path: Path, scarid: Run) -> None:
 
 
 # --- failures -----------------------------------------------------------------------------------
-
-
-def refused(result: Result, status: int, *told: str) -> None:
-    assert result.status == status
-    assert result.out == ""
-    assert result.err.count("\n") == 1
-    for words in told:
-        assert words in result.err
 
 
 def test_a_trajectory_is_no_result(tmp_path: Path, scarid: Run) -> None:

@@ -21,7 +21,7 @@ from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.base import with_base_parameters
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.joints import Joint, joint_of
-from scarid_cli.algorithms.robots.logs import coupled, gear_ratio, log_of, ratio_of
+from scarid_cli.algorithms.robots.logs import coupled, gear_ratio, log_of
 from scarid_cli.algorithms.robots.rigid import GRAVITY, SYMBOLS, Body
 from scarid_cli.algorithms.robots.rigid import UNITS as STANDARD_UNITS
 
@@ -60,11 +60,12 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
     entries = entries or [{} for _ in found]
     if len(entries) != len(found):
         raise ValueError(f"{len(entries)} joints for the {len(found)} of {body.path}")
+    standard = body.standard
     joints, parameters = [], []
     for i, (joint, entry) in enumerate(zip(found, entries, strict=True), start=1):
         own = {key: value for key, value in entry.items() if key not in ("name", "terms")}
         joints.append(joint_of({"type": joint.type, **own}, joint))
-        parameters += _standard(i, body.standard)
+        parameters += _standard(i, standard)
         parameters += _terms(i, joint, entry.get("terms", list(DEFAULT)))
     for entry in values.tables("coupling", document.get("coupling", [])):
         parameters += _coupled(entry, entries)
@@ -115,8 +116,8 @@ def _terms(i: int, joint: Joint, wanted: Any) -> list[Parameter]:
 
 
 def _coupled(entry: dict[str, Any], axes: list[dict[str, Any]]) -> list[Parameter]:
-    one, two = coupled(entry, axes)
-    ratio = ratio_of(entry, axes) / gear_ratio(axes[two])
+    one, two, turns = coupled(entry, axes)
+    ratio = turns / gear_ratio(axes[two])
     return [
         Parameter(
             symbol.format(i=two + 1), term, unit, 0.0, joint=one + 1, other=two + 1, ratio=ratio

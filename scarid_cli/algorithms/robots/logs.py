@@ -106,8 +106,8 @@ def _ratios(
 ) -> tuple[tuple[float, ...], ...]:
     R = np.diag([gear_ratio(axis) for axis in axes])
     for entry in couplings:
-        one, two = coupled(entry, axes)
-        R[two, one] = ratio_of(entry, axes)
+        one, two, ratio = coupled(entry, axes)
+        R[two, one] = ratio
     return tuple(tuple(line) for line in R.tolist())
 
 
@@ -119,16 +119,11 @@ def gear_ratio(axis: dict[str, Any]) -> float:
     return ratio
 
 
-def coupled(entry: dict[str, Any], axes: list[dict[str, Any]]) -> tuple[int, int]:
-    """The two joints of a [[coupling]], from 0."""
+def coupled(entry: dict[str, Any], axes: list[dict[str, Any]]) -> tuple[int, int, float]:
+    """The joints of a [[coupling]], from 0, and the ratio of the second's motor to the first."""
     values.only("[[coupling]]", entry, ("joints", "ratio"))
     one, two = (values.whole("coupling", x) for x in entry["joints"])
     if not {one, two} <= set(range(1, len(axes) + 1)) or one == two:
         raise ValueError(f"joints {one} and {two} cannot be coupled")
-    return one - 1, two - 1
-
-
-def ratio_of(entry: dict[str, Any], axes: list[dict[str, Any]]) -> float:
-    """By how much the motor of a coupling's second joint turns with the first."""
-    _, two = coupled(entry, axes)
-    return values.number("ratio", entry.get("ratio", gear_ratio(axes[two])))
+    ratio = entry.get("ratio", gear_ratio(axes[two - 1]))
+    return one - 1, two - 1, values.number("ratio", ratio)

@@ -48,7 +48,8 @@ def nearest(robot: Robot, estimates: Array, errors: Array) -> Physical:
     assert robot.body
     joints = len(robot.joints)
     standard = [f"{symbol}{i}" for i in range(1, joints + 1) for symbol in SYMBOLS]
-    axes = [name for p in robot.parameters for name, _ in p.parts if name not in standard]
+    names = dict.fromkeys(name for p in robot.parameters for name, _ in p.parts)
+    axes = [name for name in names if name not in standard]
     B, A = _combinations(robot, standard), _combinations(robot, axes)
     weights = 1.0 / np.where(np.isfinite(errors), errors, np.inf)
     weights = weights if weights.any() else np.ones(len(estimates))
@@ -73,13 +74,18 @@ def nearest(robot: Robot, estimates: Array, errors: Array) -> Physical:
     return Physical(found, dict(zip(axes, values.tolist(), strict=True)), theta, moved)
 
 
+def inertia_of(body: Array) -> Array:
+    """The inertia tensor of standard parameters in the order of SYMBOLS [kg m2]."""
+    Ixx, Ixy, Ixz, Iyy, Iyz, Izz = body[:6]
+    return np.array([[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]])
+
+
 def pseudo_inertia(body: Array) -> Array:
     """Of standard parameters in the order of SYMBOLS, with lengths in LENGTH [kg]."""
-    Ixx, Ixy, Ixz, Iyy, Iyz, Izz, *h, m = body
-    inertia = np.array([[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]])
+    inertia, h, m = inertia_of(body), body[6:9], body[9]
     pseudo = np.empty((4, 4))
     pseudo[:3, :3] = (0.5 * np.trace(inertia) * np.eye(3) - inertia) / LENGTH**2
-    pseudo[:3, 3] = pseudo[3, :3] = np.array(h) / LENGTH
+    pseudo[:3, 3] = pseudo[3, :3] = h / LENGTH
     pseudo[3, 3] = m
     return pseudo
 

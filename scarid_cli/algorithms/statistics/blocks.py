@@ -5,6 +5,7 @@ For errors that autocorrelated residuals cannot shrink (`belief.py`), without ho
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -77,21 +78,23 @@ class Blocks:
     def grouped(self, count: int) -> list[Array]:
         """The products of at most so many parts of the record, of equal length."""
         first, last = self.numbers[0], self.numbers[-1] + 1
-        sums: dict[int, Array] = {}
-        for number, product in zip(self.numbers, self.products, strict=True):
-            part = (number - first) * count // (last - first)
-            sums[part] = sums[part] + product if part in sums else product
-        return list(sums.values())
+        parts = ((number - first) * count // (last - first) for number in self.numbers)
+        return list(_summed(parts, self.products).values())
 
 
 def _halved(blocks: Blocks) -> Blocks:
     """Each two as one."""
-    merged: dict[int, Array] = {}
-    for number, product in zip(blocks.numbers, blocks.products, strict=True):
-        half = number // 2
-        merged[half] = merged[half] + product if half in merged else product
+    merged = _summed((number // 2 for number in blocks.numbers), blocks.products)
     numbers, products = tuple(merged), tuple(merged.values())
     return replace(blocks, length=2 * blocks.length, numbers=numbers, products=products)
+
+
+def _summed(keys: Iterable[int], products: Iterable[Array]) -> dict[int, Array]:
+    """The sum of the products of each key."""
+    sums: dict[int, Array] = {}
+    for key, product in zip(keys, products, strict=True):
+        sums[key] = sums[key] + product if key in sums else product
+    return sums
 
 
 def _products(rows: Rows) -> Array:
