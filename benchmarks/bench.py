@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
-from scarid_cli.algorithms.regression import plain
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.kernels import fir, information, moments, p2smd, plant, sos
 
 SCARID = str(Path(sys.executable).parent / "scarid")

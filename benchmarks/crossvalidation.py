@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from defaults import PERIOD, RATIO, ROBOT, experiment
 
-from scarid_cli.algorithms.matching import over
-from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
-from scarid_cli.algorithms.regression import plain
-from scarid_cli.algorithms.tuning import Motion, motion
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.processes.matching import over
+from scarid_cli.algorithms.regression.rows import plain
+from scarid_cli.algorithms.tuning.search import Motion, motion
 from scarid_cli.arrays import Array
 
 Log = tuple[Array, Array]

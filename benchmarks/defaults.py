@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import scipy.signal
 
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.filters.butterworth import Butterworth
 from scarid_cli.algorithms.plants.loop import ClosedLoop, Log
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.trajectories.hermite import refine
 from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path

@@ -25,11 +25,11 @@ import numpy as np
 import peers
 from signals import INNER, H, Run, errors, glitched, runs, seen, shaken
 
-from scarid_cli.algorithms import tuning
-from scarid_cli.algorithms.delays import lateness
-from scarid_cli.algorithms.matching import over
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.processes.delays import lateness
+from scarid_cli.algorithms.processes.matching import over
+from scarid_cli.algorithms.tuning import judges, search
 from scarid_cli.arrays import Array
 
 CLASSES = ("causal", "fixed lag", "whole record")
@@ -74,10 +74,10 @@ def blind(name: str, q: Array) -> Any:
     method = DIFFERENTIATORS.load(name)()
     if hasattr(method, "fitted"):
         return method.fitted(q, H)
-    if tuning.has_likelihood(method):
-        return tuning.fit(method, q, H)
-    judge = tuning.distance_to_smoother(q, H)
-    return min(tuning.search(method, method.TUNED, judge, H, 0), key=lambda t: t.loss).method
+    if judges.has_likelihood(method):
+        return judges.fit(method, q, H)
+    judge = judges.distance_to_smoother(q, H)
+    return min(search.search(method, method.TUNED, judge, H, 0), key=lambda t: t.loss).method
 
 
 def derivatives(method: Any, q: Array) -> tuple[Array, ...]:
@@ -87,7 +87,7 @@ def derivatives(method: Any, q: Array) -> tuple[Array, ...]:
 def informed(method: Any, q: Array, run: Run) -> float:
     """The error with the settings that the truth would choose, from the blind ones on."""
     ranges = method.TUNED or (
-        {"intensity": Range(1e-3, 1e8)} if tuning.has_likelihood(method) else {}
+        {"intensity": Range(1e-3, 1e8)} if judges.has_likelihood(method) else {}
     )
 
     def judge(tried: Any) -> float:
@@ -95,7 +95,7 @@ def informed(method: Any, q: Array, run: Run) -> float:
             v, a = errors(*over(tried, q, H), run)
         return float(np.sqrt(v * a))
 
-    return min(trial.loss for trial in tuning.search(method, ranges, judge, H, 0))
+    return min(trial.loss for trial in search.search(method, ranges, judge, H, 0))
 
 
 def kind_of(method: Any) -> str:

@@ -13,28 +13,28 @@ from typing import Any
 import numpy as np
 import pyarrow.csv
 
-from scarid_cli.algorithms import tuning
-from scarid_cli.algorithms.matching import over
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.robots import reading
+from scarid_cli.algorithms.tuning import judges
 from scarid_cli.stages.tune import Record, chosen, tune
 
 ROBOT, PUBLISHED, H = reading.load("emps"), 95.1089, 1e-3
 TABLE1 = ("p2smd", "ed-fir", "2smd", "astd")
 
 
-def unmatched(method: Any, record: Record) -> tuning.Motion:
+def unmatched(method: Any, record: Record) -> judges.Motion:
     """Derivatives beside the position and the torque as they were logged."""
     assert record.tau is not None
     dq, ddq = over(method, record.q[0], H)
     signals = (record.q, dq[None, :], ddq[None, :], record.tau)
-    return tuning.Motion(signals, np.ones(record.q.shape[1], dtype=bool))
+    return judges.Motion(signals, np.ones(record.q.shape[1], dtype=bool))
 
 
-def quality(motion: tuning.Motion) -> tuple[float, float]:
+def quality(motion: judges.Motion) -> tuple[float, float]:
     """Mass and relative error of the torque."""
     rows = motion.settled
-    theta = tuning.identified(ROBOT, motion, rows)
+    theta = judges.identified(ROBOT, motion, rows)
     if theta is None:
         return float("nan"), float("nan")
     q, dq, ddq, tau = (np.ascontiguousarray(signal[:, rows]) for signal in motion.signals)
@@ -55,11 +55,11 @@ def rows(record: Record) -> list[tuple[float, str]]:
         start = method(**method.PRESETS["table1"]) if name in TABLE1 else method()
         fitted = start.fitted(record.q[0], H) if hasattr(start, "fitted") else start
         tuned = fitted
-        if method.TUNED or tuning.has_likelihood(fitted):
+        if method.TUNED or judges.has_likelihood(fitted):
             _, settings = chosen(tune(record, [name], ROBOT, 0, lambda: None), 1)
             tuned = method(**{key: values[0] for key, values in settings[name].items()})
         motions = [unmatched(start, record)]
-        motions += [tuning.motion([m], record.q, record.tau, H) for m in (fitted, tuned)]
+        motions += [judges.motion([m], record.q, record.tau, H) for m in (fitted, tuned)]
         results = [quality(motion) for motion in motions]
         cells = [shown(*result) for result in results]
         label = f"`{name}`" + (" (Table 1)" if name in TABLE1 else "")

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms import tuning
-from scarid_cli.algorithms.delays import reference
-from scarid_cli.algorithms.matching import over
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.processes.delays import reference
+from scarid_cli.algorithms.processes.matching import over
+from scarid_cli.algorithms.tuning import judges, search
 from scarid_cli.arrays import Array
 
 H = 0.005
@@ -24,7 +24,7 @@ AHEAD = (0.02, 0.05, 0.1)
 INNER = slice(200, -200)
 
 
-def truth(q: Array, v: Array, a: Array) -> tuning.Judge:
+def truth(q: Array, v: Array, a: Array) -> search.Judge:
     def judge(method: Any) -> float:
         with np.errstate(all="ignore"):
             errors = [
@@ -36,7 +36,7 @@ def truth(q: Array, v: Array, a: Array) -> tuning.Judge:
     return judge
 
 
-def prediction(q: Array, ahead: float) -> tuning.Judge:
+def prediction(q: Array, ahead: float) -> search.Judge:
     """Error of q + v T + a T^2 / 2 against the position measured T later, which no row has seen."""
     n = round(ahead / H)
 
@@ -58,17 +58,17 @@ def main() -> None:
         noise = 0.3 * step * np.random.default_rng(bits).standard_normal(len(q))
         seen = step * np.round((q + noise) / step)
         right = truth(seen, v, a)
-        judges: list[Callable[[Any], float]] = [tuning.distance_to_smoother(seen, H)]
-        judges += [prediction(seen, ahead) for ahead in AHEAD]
+        candidates: list[Callable[[Any], float]] = [judges.distance_to_smoother(seen, H)]
+        candidates += [prediction(seen, ahead) for ahead in AHEAD]
         for name in METHODS:
             method = DIFFERENTIATORS.load(name)()
 
-            def chosen(judge: tuning.Judge, method: Any = method) -> Any:
-                trials = tuning.search(method, method.TUNED, judge, H, 0)
+            def chosen(judge: search.Judge, method: Any = method) -> Any:
+                trials = search.search(method, method.TUNED, judge, H, 0)
                 return min(trials, key=lambda trial: trial.loss).method
 
             least = right(chosen(right))
-            ratios = [right(chosen(judge)) / least for judge in judges]
+            ratios = [right(chosen(judge)) / least for judge in candidates]
             print(f"{bits} {name:11}{''.join(f'{ratio:14.2f}' for ratio in ratios)}")
 
 

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from signals import H
 
-from scarid_cli.algorithms import tuning
-from scarid_cli.algorithms.ranges import Range
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.tuning import judges
 from scarid_cli.arrays import Array
 
 Derivatives = tuple[Array, Array]
@@ -146,15 +146,15 @@ def tuned_algdiff(q: Array) -> Sensor:
 
 
 def _smooth(q: Array) -> Derivatives:
-    from scarid_cli.algorithms.matching import over
+    from scarid_cli.algorithms.processes.matching import over
 
-    _, v, a = over(tuning.smoother(q, H).matched(), q, H)
+    _, v, a = over(judges.smoother(q, H).matched(), q, H)
     return v, a
 
 
 def shifted(sensor: Sensor, q: Array) -> Sensor:
     """Both derivatives advanced by the delay that they have against a smoother's."""
-    from scarid_cli.algorithms.delays import lateness
+    from scarid_cli.algorithms.processes.delays import lateness
 
     late = [round(lateness(x, y, H) / H) for x, y in zip(sensor(q), _smooth(q), strict=True)]
     return partial(_advanced, sensor, late)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from scarid_cli.algorithms.registry import Registry
+from scarid_cli.algorithms.choices.registry import Registry
 
 
 def describing(registry: Registry, heading: str) -> type[click.Command]:

@@ -6,8 +6,8 @@ from typing import Any
 
 import click
 
-from scarid_cli.algorithms.registry import ESTIMATORS
-from scarid_cli.algorithms.settings import names_of
+from scarid_cli.algorithms.choices.registry import ESTIMATORS
+from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.cli import options
 from scarid_cli.cli.described import describing
 
@@ -131,11 +131,11 @@ def command(
             "slow": list(treatment.slow),
             "smooth_sign": rest["smooth_sign"],
         }
-        progress = None
+        checkpoint = None
         if resumed:
             from scarid_cli.stages.continuation import restored
 
-            progress = restored(resumed, told)
+            checkpoint = restored(resumed, told)
         places: list[Any] = []
         result = stage.identify(
             run.recorded(table),
@@ -145,7 +145,7 @@ def command(
             treatment=treatment,
             variance=variance,
             trace=side,
-            progress=progress,
+            checkpoint=checkpoint,
             keep=places.append,
         )
         run.write(result, out)

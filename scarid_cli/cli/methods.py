@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from scarid_cli.algorithms.registry import Registry
+from scarid_cli.algorithms.choices.registry import Registry
 from scarid_cli.cli.job import per_joint
 from scarid_cli.cli.pairs import pair, require_known
 from scarid_cli.cli.settings import Settings

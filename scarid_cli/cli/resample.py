@@ -9,7 +9,7 @@ import click
 from scarid_cli.cli import options
 
 if TYPE_CHECKING:
-    from scarid_cli.algorithms.resampling import Clock
+    from scarid_cli.algorithms.processes.resampling import Clock
 
 
 @click.command(name="resample")

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.cli import options
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.process import Process
+from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort, bad_data
 from scarid_cli.io.table import SEGMENT, Table, integers, matrix, segments, with_columns

@@ -11,31 +11,31 @@ from zipfile import BadZipFile
 import numpy as np
 
 from scarid_cli.algorithms.estimators.ekf import State
-from scarid_cli.algorithms.regression import Rows
+from scarid_cli.algorithms.regression.information import Information
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.information import Information
-from scarid_cli.algorithms.witness import Witness
+from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.errors import BadData, UsageFault
-from scarid_cli.stages.identify import Progress
+from scarid_cli.stages.identify import Checkpoint
 
-KNOWN = {kind.__name__: kind for kind in (Blocks, Information, Progress, Rows, State, Witness)}
+KNOWN = {kind.__name__: kind for kind in (Blocks, Information, Checkpoint, Rows, State, Subsample)}
 
 
-def saved(progress: Progress, settings: dict[str, Any]) -> bytes:
+def saved(checkpoint: Checkpoint, settings: dict[str, Any]) -> bytes:
     """An .npz file: the arrays, and a JSON document of how they belong together."""
     arrays: dict[str, Any] = {}
-    tree = json.dumps({"settings": settings, "progress": _packed(progress, arrays)})
+    tree = json.dumps({"settings": settings, "checkpoint": _packed(checkpoint, arrays)})
     out = io.BytesIO()
     np.savez(out, tree=np.array(tree), **arrays)
     return out.getvalue()
 
 
-def restored(path: str, settings: dict[str, Any]) -> Progress:
+def restored(path: str, settings: dict[str, Any]) -> Checkpoint:
     """Where the estimation was, which must have been one with the same settings."""
     try:
         with np.load(path, allow_pickle=False) as archive:
             document = json.loads(str(archive["tree"]))
-            progress = _unpacked(document["progress"], archive)
+            checkpoint = _unpacked(document["checkpoint"], archive)
             before = document["settings"]
     except FileNotFoundError:
         raise UsageFault(f"{path}: no such file; make one with `scarid identify --save`") from None
@@ -48,8 +48,8 @@ def restored(path: str, settings: dict[str, Any]) -> Progress:
             raise UsageFault(
                 f"{path}: saved with {key} {before.get(key)}, not {value}; go on with the same"
             )
-    assert isinstance(progress, Progress)
-    return progress
+    assert isinstance(checkpoint, Checkpoint)
+    return checkpoint
 
 
 def _packed(value: Any, arrays: dict[str, Any]) -> Any:

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.matching import spread
-from scarid_cli.algorithms.process import Matched, Method
+from scarid_cli.algorithms.processes.matching import settling_rows
+from scarid_cli.algorithms.processes.process import Matched, Method
 from scarid_cli.errors import TooShort
 from scarid_cli.io.table import SEGMENT, Table, matrix, number, without
 from scarid_cli.stages.columns import Edges, Plan, Task, processed
@@ -88,8 +88,8 @@ def _matching(table: Table, methods: list[Method]) -> Plan:
     tasks = []
     for i, form in enumerate(forms, start=1):
         tasks.append(Task(f"q{i}", form, (f"q{i}", f"dq{i}", f"ddq{i}")))
-        if form.companion and f"tau{i}" in table.columns:
-            tasks.append(Task(f"tau{i}", form.companion, (f"tau{i}",)))
+        if form.torque_filter and f"tau{i}" in table.columns:
+            tasks.append(Task(f"tau{i}", form.torque_filter, (f"tau{i}",)))
     return Plan(tasks, _edges(forms, table.meta.period or 0.0))
 
 
@@ -97,8 +97,8 @@ def _edges(forms: list[Matched], period: float) -> Edges:
     spreads = [(0, 0)]
     for form in forms:
         form.init(0.0, period)  # refuses settings
-        if form.companion:
-            spreads.append(spread(form.companion, period))
+        if form.torque_filter:
+            spreads.append(settling_rows(form.torque_filter, period))
     before, after = (max(sides) for sides in zip(*spreads, strict=True))
     return Edges(after, before)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scarid_cli.algorithms.process import Process
+from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.errors import TooShort
 from scarid_cli.io.table import Table
 from scarid_cli.stages.columns import Plan, Task, processed

@@ -9,19 +9,19 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.regression import Rows, with_delay
-from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.belief import LAG, Belief, believe
-from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.essential import Essential, essential
-from scarid_cli.algorithms.statistics.information import (
+from scarid_cli.algorithms.regression.information import (
     RESIDUAL,
     Fit,
     NotIdentifiableError,
     weakest,
 )
+from scarid_cli.algorithms.regression.rows import Rows, with_delay
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.diagnostics import LAG, Diagnostics, diagnose
+from scarid_cli.algorithms.statistics.essential import Essential, essential
+from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
-from scarid_cli.algorithms.witness import ALL, Witness
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io import schemas
@@ -29,7 +29,7 @@ from scarid_cli.io.table import Metadata, Table, doubles, number, segment_field,
 from scarid_cli.stages import Sink
 from scarid_cli.stages.rows import Treatment, treated
 
-LAGS = 5  # rows that the witness of a long record has at least in the lag that tells of bias
+LAGS = 5  # rows that the subsample of a long record has at least in the lag that tells of bias
 ALIGNMENTS = 3  # times that the delay is fitted, each from the estimates before
 
 
@@ -45,25 +45,25 @@ class Estimator(Protocol):
 
 
 @dataclass(frozen=True)
-class Progress:
+class Checkpoint:
     """Where an estimation is: it can be saved, and go on with another log.
 
-    `witness` and `blocks` are for the statistics, the latter unless the former holds all rows.
+    `subsample` and `blocks` are for the statistics, the latter unless the former holds all rows.
     `seen` are the samples so far, left out ones included.
     """
 
     state: Any
-    witness: Witness
+    subsample: Subsample
     blocks: Blocks | None
     seen: int = 0
 
     @classmethod
-    def begun(cls, state: Any, h: float, *, holds: bool) -> Progress:
+    def begun(cls, state: Any, h: float, *, holds: bool) -> Checkpoint:
         """Before the first sample; samples are h [s] apart."""
         if holds:
-            return cls(state, Witness(samples=ALL), None)
+            return cls(state, Subsample(samples=ALL), None)
         thinnest = int(LAG / LAGS / h + 1e-9) if h > 0.0 else 1
-        return cls(state, Witness(thinnest=max(1, thinnest)), Blocks.every(h))
+        return cls(state, Subsample(thinnest=max(1, thinnest)), Blocks.every(h))
 
 
 def identify(
@@ -75,12 +75,12 @@ def identify(
     treatment: Treatment | None = None,
     variance: str = RESIDUAL,
     trace: Sink | None = None,
-    progress: Progress | None = None,
-    keep: Callable[[Progress], None] | None = None,
+    checkpoint: Checkpoint | None = None,
+    keep: Callable[[Checkpoint], None] | None = None,
 ) -> Table:
     """The parameters, once every row of the motion has been taken in.
 
-    `trace` receives the estimates after every sample (Fig. 6). `progress` is where an earlier
+    `trace` receives the estimates after every sample (Fig. 6). `checkpoint` is where an earlier
     estimation left off, `keep` receives where this one does.
     """
     treatment = treatment or Treatment()
@@ -92,15 +92,15 @@ def identify(
         meta = replace(table.meta, kind="trace", robot=robot.name)
         trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
     holds = treatment.holds or estimator.HOLDS
-    progress = progress or Progress.begun(estimator.init(initial), period, holds=holds)
-    for batch, rows in treated(table, robot, treatment, progress.seen):
-        progress, estimates = _stepped(estimator, progress, rows, trace=trace is not None)
+    checkpoint = checkpoint or Checkpoint.begun(estimator.init(initial), period, holds=holds)
+    for batch, rows in treated(table, robot, treatment, checkpoint.seen):
+        checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))
             trace.write(with_columns(batch, schema, new))
-    _check_enough(table, robot, progress.witness.counted)
+    _check_enough(table, robot, checkpoint.subsample.counted)
     try:
-        found = _found(estimator, initial, progress, treatment, period)
+        found = _found(estimator, initial, checkpoint, treatment, period)
     except NotIdentifiableError as error:
         raise BadData(
             f"{table.name}: not identifiable: the motion leaves "
@@ -109,7 +109,7 @@ def identify(
         ) from None
     meta = replace(table.meta, kind="parameters", robot=robot.name)
     if keep:
-        keep(progress)
+        keep(checkpoint)
     return _parameters(found, robot, meta, variance=variance)
 
 
@@ -124,12 +124,12 @@ def _check_enough(table: Table, robot: Robot, counted: int) -> None:
 
 
 def _stepped(
-    estimator: Estimator, progress: Progress, rows: Rows, *, trace: bool
-) -> tuple[Progress, Array]:
-    state, estimates = estimator.step(progress.state, rows, trace=trace)
-    seen = int(rows.at[-1]) + 1 if rows.samples else progress.seen
-    blocks = progress.blocks.add(rows) if progress.blocks else None
-    return Progress(state, progress.witness.add(rows), blocks, seen), estimates
+    estimator: Estimator, checkpoint: Checkpoint, rows: Rows, *, trace: bool
+) -> tuple[Checkpoint, Array]:
+    state, estimates = estimator.step(checkpoint.state, rows, trace=trace)
+    seen = int(rows.at[-1]) + 1 if rows.samples else checkpoint.seen
+    blocks = checkpoint.blocks.add(rows) if checkpoint.blocks else None
+    return Checkpoint(state, checkpoint.subsample.add(rows), blocks, seen), estimates
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ class Found:
 
     fit: Fit
     excitation: Array
-    belief: Belief | None
+    diagnostics: Diagnostics | None
     reduced: Essential
     samples: int
     delay: tuple[float, float] | None
@@ -150,33 +150,33 @@ class Found:
 def _found(
     estimator: Estimator,
     initial: Array,
-    progress: Progress,
+    checkpoint: Checkpoint,
     treatment: Treatment,
     period: float,
 ) -> Found:
     period *= float(np.prod(treatment.decimate)) if treatment.decimate else 1.0
-    rows = progress.witness.rows()
-    fit = estimator.fit(progress.state)
+    rows = checkpoint.subsample.rows()
+    fit = estimator.fit(checkpoint.state)
     own = len(fit.estimates)
     if treatment.align:
         fit, rows = _aligned(estimator, initial, rows, fit, period)
     rows = fit.rows or rows
-    belief = None
+    diagnostics = None
     if fit.robust:
         record = None
-        if progress.blocks and not progress.witness.complete:
-            record = progress.blocks.whole()
-        belief = believe(rows, fit, period * progress.witness.thin, own, record)
+        if checkpoint.blocks and not checkpoint.subsample.complete:
+            record = checkpoint.blocks.whole()
+        diagnostics = diagnose(rows, fit, period * checkpoint.subsample.thin, own, record)
     delay = None
-    if treatment.align and belief:
-        delay = (float(fit.estimates[own]), float(belief.errors[own]))
-        fit, belief = _without_nuisance(fit, belief, own)
+    if treatment.align and diagnostics:
+        delay = (float(fit.estimates[own]), float(diagnostics.errors[own]))
+        fit, diagnostics = _without_nuisance(fit, diagnostics, own)
     reduced = Essential(fit, (), 0.0)
     if treatment.essential:
         reduced = essential(fit, float((rows.scales > 0.0).sum()))
     counted = rows.W[:, :, : len(fit.estimates)] * (rows.scales > 0.0)[:, :, None]
     excitation = np.sqrt((counted**2).sum(axis=(0, 1)) / max((rows.scales > 0.0).sum(), 1))
-    return Found(fit, excitation, belief, reduced, progress.witness.total, delay)
+    return Found(fit, excitation, diagnostics, reduced, checkpoint.subsample.total, delay)
 
 
 def _aligned(
@@ -191,12 +191,12 @@ def _aligned(
     return fit, wide
 
 
-def _without_nuisance(fit: Fit, belief: Belief, own: int) -> tuple[Fit, Belief]:
+def _without_nuisance(fit: Fit, diagnostics: Diagnostics, own: int) -> tuple[Fit, Diagnostics]:
     return (
         replace(
             fit, estimates=fit.estimates[:own], unit_covariance=fit.unit_covariance[:own, :own]
         ),
-        replace(belief, errors=belief.errors[:own]),
+        replace(diagnostics, errors=diagnostics.errors[:own]),
     )
 
 
@@ -206,13 +206,13 @@ def _trace_schema(robot: Robot, table: Table) -> pa.Schema:
 
 
 def _parameters(found: Found, robot: Robot, meta: Metadata, *, variance: str) -> Table:
-    fit, belief = found.reduced.fit, found.belief
+    fit, diagnostics = found.reduced.fit, found.diagnostics
     names = [*robot.names, *(name for name, _ in fit.added)]
     units = [*(p.unit for p in robot.parameters), *(unit for _, unit in fit.added)]
     errors = fit.standard_errors(variance=variance)
-    robust = belief.errors.copy() if belief else np.full(len(names), np.nan)
+    robust = diagnostics.errors.copy() if diagnostics else np.full(len(names), np.nan)
     robust[list(found.reduced.dropped)] = np.nan
-    half = robust * (belief.quantile if belief else np.nan)
+    half = robust * (diagnostics.quantile if diagnostics else np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = 100.0 * errors / np.abs(fit.estimates)
     schema = schemas.load("parameters").arrow()
@@ -232,13 +232,13 @@ def _parameters(found: Found, robot: Robot, meta: Metadata, *, variance: str) ->
     else:
         schema = schema.remove(schema.get_field_index("stands_for"))
     batch = pa.RecordBatch.from_arrays(columns, schema=schema)
-    extra = _told(found, robot, names, robust if belief else errors)
+    extra = _told(found, robot, names, robust if diagnostics else errors)
     return Table("identify", schema, replace(meta, extra=extra), iter([batch]))
 
 
 def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[str, Any]:
     """What the metadata say of the estimation, the verdict among it."""
-    fit, belief = found.fit, found.belief
+    fit, diagnostics = found.fit, found.diagnostics
     scaled, direction = weakest(fit.unit_covariance)
     evidence = Evidence(
         names=[n for i, n in enumerate(names) if i not in found.reduced.dropped],
@@ -247,7 +247,7 @@ def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[s
         condition=fit.condition,
         scaled_condition=scaled,
         weak=combination(direction, names),
-        belief=belief,
+        diagnostics=diagnostics,
     )
     judged = verdict(evidence, robot)
     extra: dict[str, Any] = {
@@ -263,9 +263,9 @@ def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[s
         "reasons": list(judged.reasons),
         **fit.extra,
     }
-    if belief:
-        extra["joints"] = [asdict(joint) for joint in belief.joints]
-        extra["lag_share"] = belief.lag_share
+    if diagnostics:
+        extra["joints"] = [asdict(joint) for joint in diagnostics.joints]
+        extra["lag_share"] = diagnostics.lag_share
     if found.delay:
         extra["delay"], extra["delay_error"] = found.delay
     if found.reduced.dropped:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.resampling import Clock, Decimator, Resampler, Run, State
+from scarid_cli.algorithms.processes.resampling import Clock, Decimator, Resampler, Run, State
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import (

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.regression import Rows, joined, rows_of, without_slow
+from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, without_slow
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
@@ -154,7 +154,7 @@ def _within(
 def _decimated(rows: Rows, factors: tuple[int, ...], slow: Array | None) -> Rows:
     if not factors:
         return rows
-    from scarid_cli.algorithms.decimation import decimated  # scipy.signal takes a second
+    from scarid_cli.algorithms.regression.decimation import decimated  # scipy.signal takes a second
 
     for factor in factors:
         rows = decimated(rows, factor)

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.information import NotIdentifiableError, absorb, empty, solve
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.information import NotIdentifiableError, absorb, empty, solve
 from scarid_cli.algorithms.trajectories.quintic import Path
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Metadata, Table, doubles, number

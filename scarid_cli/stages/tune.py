@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms import tuning
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.tuning import judges, search
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io import schemas
@@ -30,7 +30,7 @@ class Tried:
     name: str
     joint: int | None
     judge: str
-    trial: tuning.Trial
+    trial: search.Trial
     best: bool
 
     @property
@@ -91,16 +91,16 @@ def _for_positions(
     seed: int,
     progress: Callable[[], object],
 ) -> Iterator[Tried]:
-    judge = tuning.distance_to_smoother(q, h)
-    if tuning.has_likelihood(method):
-        likelihood = tuning.negative_log_likelihood(q, h)
-        fitted = tuning.fit(method, q, h)
+    judge = judges.distance_to_smoother(q, h)
+    if judges.has_likelihood(method):
+        likelihood = judges.negative_log_likelihood(q, h)
+        fitted = judges.fit(method, q, h)
         for tried in (method, fitted) if values(method)["noise"] else (fitted,):
             yield Tried(name, joint, LIKELIHOOD, _judged(tried, likelihood), tried is fitted)
         yield Tried(name, joint, SMOOTHER, _judged(fitted, judge), best=True)
         return
     trials = []
-    for trial in tuning.search(method, method.TUNED, judge, h, seed):
+    for trial in search.search(method, method.TUNED, judge, h, seed):
         trials.append(trial)
         progress()
     yield from _marked(name, joint, SMOOTHER, trials)
@@ -112,25 +112,25 @@ def _for_torques(
 ) -> Iterator[Tried]:  # fmt: skip
     assert robot is not None
     assert record.tau is not None
-    judge = tuning.error_of_torques(robot, record.q, record.tau, record.h)
+    judge = judges.error_of_torques(robot, record.q, record.tau, record.h)
     ranges = method.TUNED
-    if tuning.has_likelihood(method):
+    if judges.has_likelihood(method):
         # What is likely follows the vibration of the joint too; what identifies best may be slower.
-        method = tuning.fit(method, record.q[0], record.h)
+        method = judges.fit(method, record.q[0], record.h)
         ranges = {"intensity": Range(1e-12 * method.intensity, 1e2 * method.intensity)}
     trials = []
-    for trial in tuning.search(method, ranges, judge, record.h, seed):
+    for trial in search.search(method, ranges, judge, record.h, seed):
         trials.append(trial)
         progress()
     yield from _marked(name, None, TORQUES, trials)
 
 
-def _judged(method: Any, judge: tuning.Judge) -> tuning.Trial:
-    return tuning.Trial(method, judge(method))
+def _judged(method: Any, judge: search.Judge) -> search.Trial:
+    return search.Trial(method, judge(method))
 
 
 def _marked(
-    name: str, joint: int | None, judge: str, trials: list[tuning.Trial]
+    name: str, joint: int | None, judge: str, trials: list[search.Trial]
 ) -> Iterator[Tried]:
     best = min(trials, key=lambda trial: trial.loss if isfinite(trial.loss) else np.inf)
     if not isfinite(best.loss):

@@ -14,7 +14,7 @@ from conftest import Result
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.csvio import CsvWriter
 from scarid_cli.io.reader import open_table

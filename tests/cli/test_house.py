@@ -15,7 +15,7 @@ from conftest import ROOT, Result
 from importlinter.cli import lint_imports
 
 from scarid_cli import __version__
-from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS, Registry
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, Registry
 from scarid_cli.cli import COMMANDS, options
 from scarid_cli.io import schemas, writer
 from scarid_cli.reporting import schemas as page

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.tables import PERIOD, SCARA, Kept, collected, motion, table
 
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
 from scarid_cli.algorithms.plants.loop import ClosedLoop
-from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path
 from scarid_cli.io.table import Table
 from scarid_cli.stages.differentiate import differentiate, matched

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.tables import PERIOD, SCARA, Kept, collected, cut, motion, table
 
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
-from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS
-from scarid_cli.algorithms.resampling import Clock
+from scarid_cli.algorithms.processes.resampling import Clock
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, TooShort
 from scarid_cli.io.reader import checked

@@ -9,7 +9,7 @@ from scipy import signal
 from unit.support import PERIOD, cuts
 
 from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
-from scarid_cli.algorithms.matching import over
+from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

@@ -8,7 +8,7 @@ import crossvalidation
 import numpy as np
 import pytest
 
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 
 PAIRS = 4
 

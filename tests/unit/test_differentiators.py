@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from scipy import signal
 from unit.support import PERIOD, cuts, derivatives, encoder_readings, every_differentiator, sine
 
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.differentiators import central, ed_fir, p2smd
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
 from scarid_cli.arrays import Array
 from scarid_cli.errors import ScaridError, UsageFault
 

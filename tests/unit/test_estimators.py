@@ -13,10 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from unit.support import cuts
 
+from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.estimators import irls, ls, ml, rls, tls, wls
-from scarid_cli.algorithms.registry import ESTIMATORS
-from scarid_cli.algorithms.regression import plain
-from scarid_cli.algorithms.statistics.information import Fit, NotIdentifiableError
+from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableError
+from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

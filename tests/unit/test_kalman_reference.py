@@ -11,8 +11,10 @@ from scipy.linalg import expm
 from scipy.stats import multivariate_normal
 from unit.support import PERIOD, encoder_readings
 
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.filters import kalman
-from scarid_cli.algorithms.filters.likelihood import (
+from scarid_cli.algorithms.processes.matching import over
+from scarid_cli.algorithms.tuning.likelihood import (
     best_model,
     best_smoothing,
     held_out_error,
@@ -20,8 +22,6 @@ from scarid_cli.algorithms.filters.likelihood import (
     most_likely,
     noise_of,
 )
-from scarid_cli.algorithms.matching import over
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
 from scarid_cli.arrays import Array
 
 H = PERIOD
@@ -38,7 +38,7 @@ every_model = pytest.mark.parametrize("settings", MODELS.values(), ids=MODELS)
 
 
 def continuous(states: int, damping: float = 0.0, frequency: float = 0.0) -> Array:
-    """The acceleration process in companion form, below two integrators."""
+    """The acceleration process in torque_filter form, below two integrators."""
     s = np.polynomial.Polynomial([damping, 1.0])
     pair = s**2 + frequency**2
     characteristic = {3: s, 4: pair, 5: s * pair}[states].coef

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from unit.support import PERIOD
 
-from scarid_cli.algorithms.delays import reference
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.processes.delays import reference
 from scarid_cli.arrays import Array
 
 LSB = 2.0 * np.pi / 2**13

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scarid_cli.algorithms.delays import delays, lateness, reference
-from scarid_cli.algorithms.matching import over, spread
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.processes.delays import delays, lateness, reference
+from scarid_cli.algorithms.processes.matching import over, settling_rows
 from scarid_cli.arrays import Array
 
 H = 0.005
@@ -43,8 +43,8 @@ def form(name: str, q: Array, **settings: float) -> Any:
     return (method.fitted(q, H) if hasattr(method, "fitted") else method).matched()
 
 
-def through(companion: Any, x: Array) -> Array:
-    return x if companion is None else over(companion, x, H)[0]
+def through(torque_filter: Any, x: Array) -> Array:
+    return x if torque_filter is None else over(torque_filter, x, H)[0]
 
 
 @EXACT
@@ -56,7 +56,7 @@ def test_matched_derivatives_are_central_differences_of_the_filtered_position(
     matched = form(name, q, **settings)
     u, v, a = over(matched, q, H)
     settled = slice(800, -300)
-    np.testing.assert_allclose(u[settled], through(matched.companion, q)[settled], atol=1e-12)
+    np.testing.assert_allclose(u[settled], through(matched.torque_filter, q)[settled], atol=1e-12)
     np.testing.assert_allclose(v[settled], np.gradient(u, H)[settled], rtol=0.0, atol=1e-9)
     curvature = np.diff(np.diff(u)) / H**2
     np.testing.assert_allclose(a[settled], curvature[799:-299], rtol=0.0, atol=1e-7)
@@ -99,8 +99,8 @@ def test_smoothers_are_matched_to_second_order_in_the_period(name: str) -> None:
 
 @every_method
 def test_the_companion_keeps_a_constant(name: str) -> None:
-    companion = form(name, positions()).companion
-    np.testing.assert_allclose(through(companion, np.full(3000, 3.7)), 3.7, rtol=1e-10)
+    torque_filter = form(name, positions()).torque_filter
+    np.testing.assert_allclose(through(torque_filter, np.full(3000, 3.7)), 3.7, rtol=1e-10)
 
 
 @every_method
@@ -108,7 +108,7 @@ def test_position_and_torque_go_the_same_way(name: str) -> None:
     q = positions()
     matched = form(name, q)
     settled = slice(1000, -300)
-    u = through(matched.companion, q)
+    u = through(matched.torque_filter, q)
     # spline: the torque gets the least-squares spline of the same knots
     tolerance = 1e-6 if name in ("spline", "rts") else 1e-12
     np.testing.assert_allclose(over(matched, q, H)[0][settled], u[settled], atol=tolerance)
@@ -139,7 +139,7 @@ def test_torque_matched_to_its_motion_gives_the_mass_back(name: str) -> None:
     q, force = np.sin(3.5 * t), -3.0 * 3.5**2 * np.sin(3.5 * t)
     matched = form(name, q)
     _, _, a = over(matched, q, H)
-    tau = through(matched.companion, force)
+    tau = through(matched.torque_filter, force)
     inner = slice(800, -300)
     mass = float(a[inner] @ tau[inner] / (a[inner] @ a[inner]))
     linear = name in LINEAR or name in ("central", "rts", "spline")
@@ -183,12 +183,12 @@ def test_spread_of_a_causal_filter_is_its_settling_time() -> None:
     """One pole: 1 % after ln(100) time constants, its slope .5 % of the first after ln(200)."""
     from scarid_cli.algorithms.filters.butterworth import Butterworth
 
-    before, after = spread(Butterworth(4.0, 1), H)
+    before, after = settling_rows(Butterworth(4.0, 1), H)
     assert before == 0
     assert after == pytest.approx(np.log(200.0) / (2.0 * np.pi * 4.0) / H, abs=2)
 
 
 def test_spread_of_a_zero_phase_filter_has_two_sides() -> None:
-    before, after = spread(form("zero-phase", positions()).companion, H)
+    before, after = settling_rows(form("zero-phase", positions()).torque_filter, H)
     assert before == pytest.approx(after, abs=1)
     assert before > 10

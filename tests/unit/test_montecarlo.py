@@ -8,7 +8,7 @@ from crossvalidation import log
 from defaults import ROBOT
 from montecarlo import Z95, identified
 
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 
 RUNS = range(500, 530)
 

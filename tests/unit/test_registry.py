@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from scarid_cli.algorithms.registry import DIFFERENTIATORS, ESTIMATORS, FOLDER, Registry
-from scarid_cli.algorithms.settings import names_of
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, FOLDER, Registry
+from scarid_cli.algorithms.choices.settings import names_of
 
 REGISTRIES = {"differentiators": DIFFERENTIATORS, "estimators": ESTIMATORS}
 CHOICES = [

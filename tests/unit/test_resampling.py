@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.tables import Kept, collected, table
 
-from scarid_cli.algorithms.resampling import (
+from scarid_cli.algorithms.processes.resampling import (
     BETA,
     CUTOFF,
     REACH,

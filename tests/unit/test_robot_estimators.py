@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from scarid_cli.algorithms.decimation import decimated
 from scarid_cli.algorithms.estimators import ekf, iv, separable
 from scarid_cli.algorithms.estimators.ekf import forward
 from scarid_cli.algorithms.estimators.ls import Estimator as LeastSquares
 from scarid_cli.algorithms.plants.loop import mechanism
-from scarid_cli.algorithms.regression import Rows, plain, rows_of
+from scarid_cli.algorithms.regression.decimation import decimated
+from scarid_cli.algorithms.regression.rows import Rows, plain, rows_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault

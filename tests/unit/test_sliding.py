@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from unit.support import PERIOD, derivatives, encoder_readings
 
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
-from scarid_cli.algorithms.sliding import LAMBDA, gains
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.filters.sliding import LAMBDA, gains
 from scarid_cli.arrays import Array
 
 load = DIFFERENTIATORS.load

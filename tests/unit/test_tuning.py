@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from unit.support import PERIOD
 
-from scarid_cli.algorithms import tuning
-from scarid_cli.algorithms.delays import reference
-from scarid_cli.algorithms.matching import over
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.processes.delays import reference
+from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.tuning import judges, search
 from scarid_cli.arrays import Array
 from scarid_cli.stages.tune import Record, chosen, online, tune
 
@@ -40,7 +40,7 @@ def error(method: Any, q: Array, v: Array, a: Array) -> float:
     return float(np.sqrt(errors[0] * errors[1]))
 
 
-def best(trials: list[tuning.Trial]) -> Any:
+def best(trials: list[search.Trial]) -> Any:
     return min(trials, key=lambda trial: trial.loss).method
 
 
@@ -70,10 +70,10 @@ def test_a_smoother_judges_nearly_as_well_as_the_truth(name: str) -> None:
     q, v, a = readings()
     method = DIFFERENTIATORS.load(name)()
     blind = best(
-        list(tuning.search(method, method.TUNED, tuning.distance_to_smoother(q, PERIOD), PERIOD, 0))
+        list(search.search(method, method.TUNED, judges.distance_to_smoother(q, PERIOD), PERIOD, 0))
     )
     informed = best(
-        list(tuning.search(method, method.TUNED, lambda m: error(m, q, v, a), PERIOD, 0))
+        list(search.search(method, method.TUNED, lambda m: error(m, q, v, a), PERIOD, 0))
     )
     assert error(blind, q, v, a) < 1.15 * error(informed, q, v, a)
     assert error(blind, q, v, a) < error(method, q, v, a) * 1.001
@@ -81,10 +81,10 @@ def test_a_smoother_judges_nearly_as_well_as_the_truth(name: str) -> None:
 
 def test_the_smoother_is_nearer_to_the_truth_than_what_it_judges() -> None:
     q, v, a = readings()
-    smooth = error(tuning.smoother(q, PERIOD), q, v, a)
-    judge = tuning.distance_to_smoother(q, PERIOD)
+    smooth = error(judges.smoother(q, PERIOD), q, v, a)
+    judge = judges.distance_to_smoother(q, PERIOD)
     nearest = min(
-        judge(best(list(tuning.search(m(), m.TUNED, judge, PERIOD, 0))))
+        judge(best(list(search.search(m(), m.TUNED, judge, PERIOD, 0))))
         for m in (DIFFERENTIATORS.load(name) for name in ("p2smd", "high-gain", "levant"))
     )
     assert smooth < 0.25 * nearest
@@ -94,8 +94,8 @@ def test_the_smoother_is_nearer_to_the_truth_than_what_it_judges() -> None:
 def test_likelihood_prefers_its_fit(name: str) -> None:
     q, _, _ = readings()
     method = DIFFERENTIATORS.load(name)()
-    fitted = tuning.fit(method, q, PERIOD)
-    judge = tuning.negative_log_likelihood(q, PERIOD)
+    fitted = judges.fit(method, q, PERIOD)
+    judge = judges.negative_log_likelihood(q, PERIOD)
     for factor in (0.3, 3.0):
         assert judge(fitted) < judge(replace(fitted, intensity=factor * fitted.intensity))
         assert judge(fitted) < judge(replace(fitted, noise=factor * fitted.noise))
@@ -140,7 +140,7 @@ def test_torques_judge_by_the_parameters_that_come_out() -> None:
     q, v, a = reference(PERIOD)
     regressor = robot.regressor(q[None, :], v[None, :], a[None, :])
     tau = robot.torques(regressor, robot.apriori)
-    judge = tuning.error_of_torques(robot, readings()[0][None, :], tau, PERIOD)
+    judge = judges.error_of_torques(robot, readings()[0][None, :], tau, PERIOD)
     gain = DIFFERENTIATORS.load("high-gain")
     assert judge(gain(bandwidth=60.0)) < 0.15
     assert judge(gain(bandwidth=60.0)) < judge(gain(bandwidth=5.0))
@@ -150,12 +150,12 @@ def test_torques_that_leave_a_parameter_open_lose() -> None:
     robot = load("scara2")
     q = np.array([readings()[0], np.zeros(len(readings()[0]))])
     q[1] += 1e-5 * np.random.default_rng(0).standard_normal(q.shape[1])
-    still = tuning.motion([DIFFERENTIATORS.load("central")()] * 2, np.zeros_like(q), q, PERIOD)
-    assert tuning.identified(robot, still, still.settled) is None
+    still = judges.motion([DIFFERENTIATORS.load("central")()] * 2, np.zeros_like(q), q, PERIOD)
+    assert judges.identified(robot, still, still.settled) is None
 
 
 def test_a_method_that_diverges_loses() -> None:
     q, _, _ = readings()
-    judge = tuning.distance_to_smoother(q, PERIOD)
+    judge = judges.distance_to_smoother(q, PERIOD)
     wild = DIFFERENTIATORS.load("p2smd")(gamma0=2000.0, gamma1=2000.0)
     assert not judge(wild) < inf

@@ -17,9 +17,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.settings import require_above, require_between, require_positive
 from scarid_cli.algorithms.filters.convolution import FirMethod
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.settings import require_above, require_between, require_positive
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

@@ -11,8 +11,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.matching import WithPosition
-from scarid_cli.algorithms.ranges import Range
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.processes.matching import WithPosition
 from scarid_cli.arrays import Array
 
 

@@ -14,9 +14,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.settings import (
+    require_below_nyquist,
+    require_positive,
+    require_whole,
+)
 from scarid_cli.algorithms.filters.convolution import FirMethod
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.settings import require_below_nyquist, require_positive, require_whole
 from scarid_cli.arrays import Array
 
 

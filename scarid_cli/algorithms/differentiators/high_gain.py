@@ -17,12 +17,12 @@ from typing import ClassVar
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.settings import require_between, require_positive
 from scarid_cli.algorithms.filters import kalman
 from scarid_cli.algorithms.filters.observer import Lowpass
-from scarid_cli.algorithms.matching import Differences
-from scarid_cli.algorithms.process import Causal
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.settings import require_between, require_positive
+from scarid_cli.algorithms.processes.matching import Differences
+from scarid_cli.algorithms.processes.process import Causal
 from scarid_cli.arrays import Array
 
 

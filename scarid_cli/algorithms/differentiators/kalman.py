@@ -25,8 +25,8 @@ import numpy as np
 
 from scarid_cli.algorithms.filters import kalman
 from scarid_cli.algorithms.filters.observer import Lowpass
-from scarid_cli.algorithms.matching import Differences
-from scarid_cli.algorithms.process import Causal
+from scarid_cli.algorithms.processes.matching import Differences
+from scarid_cli.algorithms.processes.process import Causal
 from scarid_cli.arrays import Array
 
 

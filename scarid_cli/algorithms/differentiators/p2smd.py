@@ -20,15 +20,15 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_rest
-from scarid_cli.algorithms.process import Causal, Recursion
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.settings import (
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.settings import (
     require_between,
     require_not_negative,
     require_positive,
     require_positive_or_infinite,
 )
+from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_rest
+from scarid_cli.algorithms.processes.process import Causal, Recursion
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.kernels import p2smd
@@ -91,19 +91,19 @@ class Matched(Causal):
     method: Differentiator
 
     @property
-    def companion(self) -> Observer:
+    def torque_filter(self) -> Observer:
         method = self.method
         return Observer(method.gamma0, method.gamma1, implicit=bool(method.implicit))
 
     def init(self, x: float, h: float) -> MatchedState:
-        return MatchedState(self.method.init(x, h), self.companion.init(x, h))
+        return MatchedState(self.method.init(x, h), self.torque_filter.init(x, h))
 
     def step(self, state: MatchedState, x: Array) -> tuple[MatchedState, tuple[Array, ...]]:
         own, (_, a) = self.method.step(state.own, x)
         h = own.h
         # z1 as the recursion runs through it, from sample to sample; a is centred between two
         z1 = np.cumsum(np.concatenate((state.own.values[1:2], h * a)))
-        position, (q,) = self.companion.step(state.position, x)
+        position, (q,) = self.torque_filter.step(state.position, x)
         return MatchedState(own, position), (q, z1[:-1] + 0.5 * h * a, a)
 
 

@@ -19,10 +19,10 @@ from math import inf
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.settings import require_not_negative
 from scarid_cli.algorithms.filters import kalman
-from scarid_cli.algorithms.filters.likelihood import best_model, best_smoothing
-from scarid_cli.algorithms.process import Whole
-from scarid_cli.algorithms.settings import require_not_negative
+from scarid_cli.algorithms.processes.process import Whole
+from scarid_cli.algorithms.tuning.likelihood import best_model, best_smoothing
 from scarid_cli.arrays import Array
 
 
@@ -61,7 +61,7 @@ class Matched(Smoother):
     """All three as they are: the derivatives are those of the smoothed position."""
 
     @property
-    def companion(self) -> Position:
+    def torque_filter(self) -> Position:
         return Position(**vars(replace(self, gate=inf)))
 
 

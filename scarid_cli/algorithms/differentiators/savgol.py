@@ -15,10 +15,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.settings import require_odd
 from scarid_cli.algorithms.filters.convolution import FirMethod, convolved, integrated
 from scarid_cli.algorithms.filters.polynomials import derivative_taps, require_window
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.settings import require_odd
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
 

@@ -14,9 +14,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.filters.convolution import FirMethod, integrated
 from scarid_cli.algorithms.filters.polynomials import derivative_taps, require_window
-from scarid_cli.algorithms.ranges import Range
 from scarid_cli.arrays import Array
 
 

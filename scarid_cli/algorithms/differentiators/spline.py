@@ -13,9 +13,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.likelihood import noise_of
-from scarid_cli.algorithms.process import Whole
-from scarid_cli.algorithms.settings import require_not_negative
+from scarid_cli.algorithms.choices.settings import require_not_negative
+from scarid_cli.algorithms.processes.process import Whole
+from scarid_cli.algorithms.tuning.likelihood import noise_of
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
 
@@ -64,7 +64,7 @@ class Matched(Spline):
     knots: tuple[float, ...] = ()
 
     @property
-    def companion(self) -> Projection:
+    def torque_filter(self) -> Projection:
         return Projection(self.knots)
 
 

@@ -15,11 +15,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.delays import Measured
-from scarid_cli.algorithms.process import Causal, Recursion
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.settings import require_positive
-from scarid_cli.algorithms.sliding import gains
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.settings import require_positive
+from scarid_cli.algorithms.filters.sliding import gains
+from scarid_cli.algorithms.processes.delays import Measured
+from scarid_cli.algorithms.processes.process import Causal, Recursion
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import levant
 

@@ -17,10 +17,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.ranges import Range
+from scarid_cli.algorithms.choices.settings import require_positive
 from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_rest
-from scarid_cli.algorithms.process import Causal, Recursion
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.settings import require_positive
+from scarid_cli.algorithms.processes.process import Causal, Recursion
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.kernels import tracking
@@ -74,15 +74,15 @@ class Matched(Causal):
     method: Differentiator
 
     @property
-    def companion(self) -> Linear:
+    def torque_filter(self) -> Linear:
         return Linear(self.method.smoothing)
 
     def init(self, x: float, h: float) -> MatchedState:
-        return MatchedState(self.method.init(x, h), self.companion.init(x, h))
+        return MatchedState(self.method.init(x, h), self.torque_filter.init(x, h))
 
     def step(self, state: MatchedState, x: Array) -> tuple[MatchedState, tuple[Array, ...]]:
         own, _, (v, a) = self.method.stages(state.own, x)
-        position, (q,) = self.companion.step(state.position, x)
+        position, (q,) = self.torque_filter.step(state.position, x)
         return MatchedState(own, position), (q, v + 0.5 * own.h * a, a)
 
 

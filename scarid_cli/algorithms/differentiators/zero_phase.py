@@ -14,8 +14,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.filters.butterworth import ZeroPhase
-from scarid_cli.algorithms.ranges import Range
 from scarid_cli.arrays import Array
 
 
@@ -38,7 +38,7 @@ class Matched(ZeroPhase):
     """The filtered position with its derivatives."""
 
     @property
-    def companion(self) -> ZeroPhase:
+    def torque_filter(self) -> ZeroPhase:
         return ZeroPhase(self.cutoff, self.order)
 
     def over(self, x: Array, h: float) -> tuple[Array, ...]:

@@ -15,10 +15,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows
+from scarid_cli.algorithms.choices.settings import GIVEN, require_positive
+from scarid_cli.algorithms.regression.information import Fit
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.settings import GIVEN, require_positive
-from scarid_cli.algorithms.statistics.information import Fit
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

@@ -13,13 +13,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError
-from scarid_cli.algorithms.regression import Held, Rows, joined, runs
+from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableError
+from scarid_cli.algorithms.regression.rows import Held, Rows, joined, runs
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.settings import GIVEN
-from scarid_cli.algorithms.statistics.belief import shifts
-from scarid_cli.algorithms.statistics.information import Fit, NotIdentifiableError
+from scarid_cli.algorithms.statistics.diagnostics import shifts
 from scarid_cli.algorithms.trajectories.hermite import refine
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from scarid_cli.algorithms.regression import Rows
-from scarid_cli.algorithms.statistics.information import Fit, Information, absorb, empty, solve
+from scarid_cli.algorithms.regression.information import Fit, Information, absorb, empty, solve
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Held, Rows, joined
-from scarid_cli.algorithms.statistics.information import Fit, least_squares
+from scarid_cli.algorithms.regression.information import Fit, least_squares
+from scarid_cli.algorithms.regression.rows import Held, Rows, joined
 from scarid_cli.arrays import Array
 
 ITERATIONS = 100

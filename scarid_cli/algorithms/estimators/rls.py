@@ -13,9 +13,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows
-from scarid_cli.algorithms.settings import require_positive
-from scarid_cli.algorithms.statistics.information import Fit, Information, absorb, prior, solve
+from scarid_cli.algorithms.choices.settings import require_positive
+from scarid_cli.algorithms.regression.information import Fit, Information, absorb, prior, solve
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

@@ -12,11 +12,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Held, Rows, joined
+from scarid_cli.algorithms.choices.settings import GIVEN
+from scarid_cli.algorithms.regression.information import Fit, least_squares
+from scarid_cli.algorithms.regression.rows import Held, Rows, joined
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.terms import stribeck
-from scarid_cli.algorithms.settings import GIVEN
-from scarid_cli.algorithms.statistics.information import Fit, least_squares
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.estimators import ls
-from scarid_cli.algorithms.statistics.information import Fit, Information, solve
+from scarid_cli.algorithms.regression.information import Fit, Information, solve
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows
-from scarid_cli.algorithms.statistics.information import (
+from scarid_cli.algorithms.regression.information import (
     Fit,
     Information,
     absorb,
@@ -22,6 +21,7 @@ from scarid_cli.algorithms.statistics.information import (
     residual_deviation,
     solve,
 )
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 
 State = tuple[Information, ...]

@@ -10,9 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.settings import (
+    require_below_nyquist,
+    require_positive,
+    require_whole,
+)
 from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_rest
-from scarid_cli.algorithms.process import Causal, Record, Whole
-from scarid_cli.algorithms.settings import require_below_nyquist, require_positive, require_whole
+from scarid_cli.algorithms.processes.process import Causal, Record, Whole
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
 

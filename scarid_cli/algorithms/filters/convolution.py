@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.matching import Differences
-from scarid_cli.algorithms.process import Causal
+from scarid_cli.algorithms.processes.matching import Differences
+from scarid_cli.algorithms.processes.process import Causal
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import fir
 

@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from scarid_cli.algorithms.settings import (
+from scarid_cli.algorithms.choices.settings import (
     require_between,
     require_not_negative,
     require_positive,

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from scarid_cli.algorithms.filters.kalman import State, filtered
-from scarid_cli.algorithms.process import Causal
+from scarid_cli.algorithms.processes.process import Causal
 from scarid_cli.arrays import Array
 
 

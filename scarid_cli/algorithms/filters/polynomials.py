@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.settings import require_whole
+from scarid_cli.algorithms.choices.settings import require_whole
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

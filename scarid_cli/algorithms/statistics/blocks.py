@@ -1,6 +1,6 @@
 """A record of any length as blocks: what each tells of the parameters, joint by joint.
 
-For errors that autocorrelated residuals cannot shrink (`belief.py`), without holding the rows.
+For errors that autocorrelated residuals cannot shrink (`diagnostics.py`), without holding the rows.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows, joined
+from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.arrays import Array
 
 FINEST = 0.1  # s: of a block in the beginning

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.statistics.information import Fit
+from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.arrays import Array
 
 RATIO = 30.0

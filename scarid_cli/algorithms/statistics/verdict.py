@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.belief import Belief, Joint
+from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, Joint
 from scarid_cli.arrays import Array
 
 GOOD, DOUBTFUL, NOT_IDENTIFIABLE = "good", "doubtful", "not identifiable"
@@ -43,18 +43,18 @@ class Evidence:
     condition: float
     scaled_condition: float
     weak: str
-    belief: Belief | None
+    diagnostics: Diagnostics | None
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     """From the worst to the least: what cannot be known, what is wrong, what is uncertain."""
-    joints = evidence.belief.joints if evidence.belief else ()
+    joints = evidence.diagnostics.joints if evidence.diagnostics else ()
     hopeless = [*_idle(joints, robot), *_undetermined(evidence)]
     if hopeless:
         return Verdict(NOT_IDENTIFIABLE, (*hopeless, *_summary(evidence)))
     unknown = _unknown(evidence)
     wrong = [
-        *(_biased(evidence.belief) or _moved(evidence.belief, robot)),
+        *(_biased(evidence.diagnostics) or _moved(evidence.diagnostics, robot)),
         *_poor(joints),
         *_impossible(evidence, robot),
     ]
@@ -87,27 +87,27 @@ def _undetermined(evidence: Evidence) -> list[str]:
     ]
 
 
-def _biased(belief: Belief | None) -> list[str]:
-    if belief is None or not belief.lag_share > LAGGED:
+def _biased(diagnostics: Diagnostics | None) -> list[str]:
+    if diagnostics is None or not diagnostics.lag_share > LAGGED:
         return []
     return [
-        f"biased: the motion 25 ms before and after explains {100 * belief.lag_share:.0f} % of the "
-        "residual (signals of different instants, see scarid differentiate --match; noisy "
+        f"biased: the motion 25 ms before and after explains {100 * diagnostics.lag_share:.0f} % "
+        "of the residual (signals of different instants, see scarid differentiate --match; noisy "
         "derivatives; or a force that the model lacks)"
     ]
 
 
-def _moved(belief: Belief | None, robot: Robot) -> list[str]:
+def _moved(diagnostics: Diagnostics | None, robot: Robot) -> list[str]:
     """Estimates that rely on what slow rows say of dry friction, or on a delay."""
-    if belief is None or not any(p.term.startswith("coulomb") for p in robot.parameters):
+    if diagnostics is None or not any(p.term.startswith("coulomb") for p in robot.parameters):
         return []
     moved = [
-        name for name, x in zip(robot.names, belief.moved, strict=False) if abs(x) > DEVIATIONS
+        name for name, x in zip(robot.names, diagnostics.moved, strict=False) if abs(x) > DEVIATIONS
     ]
     if not moved:
         return []
-    slow = ",".join(f"{v:.1g}" for v in belief.slow)
-    most = np.nanmax(np.abs(belief.moved))
+    slow = ",".join(f"{v:.1g}" for v in diagnostics.slow)
+    most = np.nanmax(np.abs(diagnostics.moved))
     return [
         f"{_listed(moved)} would move by up to {most:.1f} deviations without the slow rows and "
         f"with the torques' delay fitted (--drop-slow {slow} --align)"
@@ -144,8 +144,8 @@ def _summary(evidence: Evidence) -> list[str]:
     """The numbers that say how good."""
     known = len(evidence.names) - len(_unknown(evidence))
     parts = [f"{known} of {len(evidence.names)} parameters known within {DOUBT:g} %"]
-    if evidence.belief:
-        r2 = ", ".join(f"{joint.r2:.4f}" for joint in evidence.belief.joints)
+    if evidence.diagnostics:
+        r2 = ", ".join(f"{joint.r2:.4f}" for joint in evidence.diagnostics.joints)
         parts.append(f"R2 {r2}")
     if np.isfinite(evidence.condition):
         parts.append(f"condition number {evidence.condition:.3g}")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import information
 

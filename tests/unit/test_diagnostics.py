@@ -11,14 +11,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scarid_cli.algorithms.estimators import irls, iv, ls, ml, wls
-from scarid_cli.algorithms.regression import Rows, joined, plain, rows_of, runs, with_delay
+from scarid_cli.algorithms.regression.information import Fit, weakest
+from scarid_cli.algorithms.regression.rows import Rows, joined, plain, rows_of, runs, with_delay
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.belief import Belief, Joint, believe, jackknife, t95
 from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.diagnostics import (
+    Diagnostics,
+    Joint,
+    diagnose,
+    jackknife,
+    t95,
+)
 from scarid_cli.algorithms.statistics.essential import RATIO, essential, without
-from scarid_cli.algorithms.statistics.information import Fit, weakest
+from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
-from scarid_cli.algorithms.witness import Witness
 from scarid_cli.arrays import Array
 
 H = 0.005
@@ -104,7 +110,7 @@ def test_quantiles_of_student_are_those_of_scipy(freedom: int) -> None:
 def test_residual_facts_are_those_of_numpy() -> None:
     rows = regression()
     fit = fitted(rows)
-    (joint,) = believe(rows, fit, H, P).joints
+    (joint,) = diagnose(rows, fit, H, P).joints
     residual = (rows.y - rows.W @ fit.estimates)[:, 0]
     y = rows.y[:, 0]
     assert joint.rows == len(y)
@@ -120,14 +126,14 @@ def test_residual_facts_are_those_of_numpy() -> None:
 
 def test_the_neighbours_explain_nothing_where_all_is_well() -> None:
     rows = regression(8000, coloured=False)
-    assert believe(rows, fitted(rows), H, P).lag_share < 0.01
+    assert diagnose(rows, fitted(rows), H, P).lag_share < 0.01
 
 
 @pytest.mark.parametrize("late", [-10, -3, 3, 10])
 def test_the_neighbours_explain_torques_of_another_instant(late: int) -> None:
     rows = regression(8000, coloured=False)
     shifted = plain(rows.W[20:-20], np.roll(rows.y, late, axis=0)[20:-20])
-    assert believe(shifted, fitted(shifted), H, P).lag_share > 0.5
+    assert diagnose(shifted, fitted(shifted), H, P).lag_share > 0.5
 
 
 @given(lead=st.floats(-2e-3, 2e-3))
@@ -216,7 +222,7 @@ def test_runs_end_at_gaps() -> None:
 SIZES = [(1000,), (7, 300), (8192,)]
 
 
-def fed(state: Witness | Blocks, rows: Rows, sizes: tuple[int, ...]) -> Witness | Blocks:
+def fed(state: Subsample | Blocks, rows: Rows, sizes: tuple[int, ...]) -> Subsample | Blocks:
     """After rows in batches of these sizes, over and over."""
     start = turn = 0
     while start < rows.samples:
@@ -233,24 +239,24 @@ def test_a_witness_is_the_same_however_rows_arrive_and_stays_small(
 ) -> None:
     W = np.arange(60_000.0).reshape(-1, 1, 1)
     rows = plain(W, W[:, :, 0])
-    begun = Witness(samples=5_000, thinnest=thinnest)
-    witness = fed(begun, rows, sizes)
-    assert isinstance(witness, Witness)
-    kept = witness.rows()
-    assert witness.total == witness.counted == rows.samples
-    assert not witness.complete
+    begun = Subsample(samples=5_000, thinnest=thinnest)
+    subsample = fed(begun, rows, sizes)
+    assert isinstance(subsample, Subsample)
+    kept = subsample.rows()
+    assert subsample.total == subsample.counted == rows.samples
+    assert not subsample.complete
     assert 1_250 <= kept.samples <= 5_000
-    assert witness.thin == {1: 1, 5: 4}[thinnest]
-    np.testing.assert_array_equal(kept.W[:, 0, 0], kept.at * witness.thin)
+    assert subsample.thin == {1: 1, 5: 4}[thinnest]
+    np.testing.assert_array_equal(kept.W[:, 0, 0], kept.at * subsample.thin)
     np.testing.assert_array_equal(kept.at, begun.add(rows).rows().at)
 
 
 def test_a_witness_is_thinned_before_segments_are_dropped() -> None:
     """So that it covers the whole of a record at a high rate."""
     W = np.arange(18_000.0).reshape(-1, 1, 1)
-    witness = Witness(samples=5_000, thinnest=5).add(plain(W, W[:, :, 0]))
-    kept = witness.rows()
-    assert (witness.thin, witness.stride) == (4, 1)
+    subsample = Subsample(samples=5_000, thinnest=5).add(plain(W, W[:, :, 0]))
+    kept = subsample.rows()
+    assert (subsample.thin, subsample.stride) == (4, 1)
     np.testing.assert_array_equal(kept.at, np.arange(18_000 // 4))
 
 
@@ -279,8 +285,8 @@ def test_errors_of_a_long_record_are_those_of_its_rows() -> None:
     """By blocks, and by the rows themselves: blocks end elsewhere, so to a tenth."""
     rows = regression(40_000)
     fit = fitted(rows)
-    by_rows = believe(rows, fit, H, P)
-    by_blocks = believe(rows, fit, H, P, Blocks.every(H).add(rows).whole())
+    by_rows = diagnose(rows, fit, H, P)
+    by_blocks = diagnose(rows, fit, H, P, Blocks.every(H).add(rows).whole())
     np.testing.assert_allclose(by_blocks.errors, by_rows.errors, rtol=0.3)
     assert by_blocks.errors.mean() == pytest.approx(by_rows.errors.mean(), rel=0.1)
 
@@ -298,7 +304,7 @@ GOOD = Joint(1000, 0.999, 0.1, 0.1, 2.0, 0.0, 5.0)
 
 
 def evidence(**changes: object) -> Evidence:
-    belief = Belief(
+    diagnostics = Diagnostics(
         errors=0.01 * np.ones(8),
         quantile=2.0,
         joints=(GOOD, replace(GOOD, torque=0.5)),
@@ -313,11 +319,11 @@ def evidence(**changes: object) -> Evidence:
         condition=20.0,
         scaled_condition=5.0,
         weak="Fv1 - Fs1",
-        belief=belief,
+        diagnostics=diagnostics,
     )
     changed = {k: v for k, v in changes.items() if k in vars(plain_evidence)}
     others = {k: v for k, v in changes.items() if k not in changed}
-    return replace(plain_evidence, belief=replace(belief, **others), **changed)  # type: ignore[arg-type]
+    return replace(plain_evidence, diagnostics=replace(diagnostics, **others), **changed)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

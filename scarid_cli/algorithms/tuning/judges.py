@@ -1,45 +1,30 @@
-"""Settings of a differentiator from the data, without the truth.
+"""Judges of a differentiator's settings, from the data alone, without the truth.
 
-Three judges. Likelihood: of the innovations, for the Kalman methods (D.11 of the equations).
-Smoother: the error against a Kalman smoother that has tuned itself to the same positions; it sees
-the samples after a row as well, and is several times nearer to the truth than any causal method.
-Torques: the error of torques predicted for held-out segments, with parameters identified through
-the method.
+Likelihood: of the innovations, for the Kalman methods. Smoother: the error against a Kalman
+smoother that has tuned itself to the same positions; it also sees the samples after a row, and is
+several times nearer to the truth than any causal method. Torques: the error of the torques
+predicted for held-out segments, with parameters identified through the method.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.estimators.ls import Estimator
-from scarid_cli.algorithms.filters.likelihood import best_model, log_likelihood
-from scarid_cli.algorithms.matching import over, spread
-from scarid_cli.algorithms.ranges import Range
-from scarid_cli.algorithms.registry import DIFFERENTIATORS
-from scarid_cli.algorithms.regression import plain
+from scarid_cli.algorithms.processes.matching import over, settling_rows
+from scarid_cli.algorithms.regression.information import NotIdentifiableError
+from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.information import NotIdentifiableError
+from scarid_cli.algorithms.tuning.likelihood import best_model, log_likelihood
+from scarid_cli.algorithms.tuning.search import Judge
 from scarid_cli.arrays import Array
-from scarid_cli.errors import UsageFault
 
 SETTLING = 1.0  # seconds at the start, where a method may still be on its way
-GUESSES = 16  # of a search, before the simplex
 SEGMENTS = 10  # of a record, every second one held out
-
-
-@dataclass(frozen=True)
-class Trial:
-    """One setting of a method that was tried, and what its judge said: less is better."""
-
-    method: Any
-    loss: float
-
-
-Judge = Callable[[Any], float]
 
 
 def fit(method: Any, q: Array, h: float) -> Any:
@@ -118,9 +103,9 @@ def motion(methods: list[Any], q: Array, tau: Array, h: float) -> Motion:
     parts, start, end = [], 0, 0
     for method, x, y in zip(methods, q, tau, strict=True):
         form = method.matched()
-        companion = form.companion
-        parts.append((*over(form, x, h), over(companion, y, h)[0] if companion else y))
-        before, after = spread(companion, h) if companion else (0, 0)
+        torque_filter = form.torque_filter
+        parts.append((*over(form, x, h), over(torque_filter, y, h)[0] if torque_filter else y))
+        before, after = settling_rows(torque_filter, h) if torque_filter else (0, 0)
         start, end = max(start, after), max(end, before)
     positions, dq, ddq, torques = (np.array(rows) for rows in zip(*parts, strict=True))
     at = np.arange(q.shape[1])
@@ -138,37 +123,3 @@ def identified(robot: Robot, motion: Motion, rows: Any) -> Array | None:
         return ls.fit(state).estimates
     except NotIdentifiableError:
         return None
-
-
-def search(
-    method: Any, ranges: dict[str, Range], judge: Judge, h: float, seed: int
-) -> Iterator[Trial]:
-    """Every setting that is tried: the method as it is, guesses, then Nelder and Mead's simplex."""
-    from scipy.optimize import minimize
-
-    trials: dict[Any, float] = {}
-
-    def loss(x: Array) -> float:
-        settings = {name: r.setting(u, h) for (name, r), u in zip(ranges.items(), x, strict=True)}
-        try:
-            tried = replace(method, **settings)
-            if tried not in trials:
-                trials[tried] = judge(tried)
-        except UsageFault:
-            return 1e9  # settings that the rate or the record does not allow
-        value = trials[tried] + np.sum((x - np.clip(x, 0.0, 1.0)) ** 2)
-        return float(value) if np.isfinite(value) else 1e9
-
-    trials[method] = judge(method)
-    yield Trial(method, trials[method])
-    if not ranges:
-        return
-    # A scrambled lattice: as even in one dimension as in three
-    rng = np.random.default_rng(seed)
-    lattice = (np.arange(GUESSES) + 0.5) / GUESSES
-    guesses = np.column_stack([rng.permutation(lattice) for _ in ranges])
-    best = min(guesses, key=loss)
-    options = {"xatol": 2e-3, "fatol": 1e-6, "maxfev": 60 * len(ranges)}
-    corners = np.vstack([best, *(best + 0.08 * row for row in np.eye(len(ranges)))])
-    minimize(loss, best, method="Nelder-Mead", options={**options, "initial_simplex": corners})
-    yield from (Trial(tried, value) for tried, value in trials.items() if tried != method)

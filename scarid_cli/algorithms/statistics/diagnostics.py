@@ -11,13 +11,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows, runs, with_delay, without_slow
-from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.information import (
+from scarid_cli.algorithms.regression.information import (
     Fit,
     NotIdentifiableError,
     least_squares,
 )
+from scarid_cli.algorithms.regression.rows import Rows, runs, with_delay, without_slow
+from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.arrays import Array, Marks, Numbers
 
 BLOCK = 0.5  # s: residuals so far apart are taken to be independent
@@ -47,7 +47,7 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Belief:
+class Diagnostics:
     """What the residuals say of a fit.
 
     `errors` are standard errors robust to autocorrelation, `quantile` times which is half of a 95 %
@@ -65,9 +65,9 @@ class Belief:
     slow: Array
 
 
-def believe(
+def diagnose(
     rows: Rows, fit: Fit, h: float, parameters: int, record: Blocks | None = None
-) -> Belief:
+) -> Diagnostics:
     """From rows every h [s], and the blocks of the `record` if there are more rows than these.
 
     `parameters`: how many of the columns are the robot's; the others are nuisances.
@@ -81,7 +81,7 @@ def believe(
     slow = SLOW * np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
     fast = without_slow(rows, slow)
     other = with_delay_fitted(fast, fit, h, joints, parameters)
-    return Belief(
+    return Diagnostics(
         errors=errors,
         quantile=t95(blocks - 1),
         joints=joints,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.regression import Rows, joined
+from scarid_cli.algorithms.regression.rows import Rows, joined
 
 SAMPLES = 16_384  # held of a streamed record, at most
 NUMBERS = 2_000_000  # that these have, unless that is too few
@@ -16,7 +16,7 @@ SEGMENTS = 8  # that these are in, at most
 
 
 @dataclass(frozen=True)
-class Witness:
+class Subsample:
     """Samples by their numbers: every `thin`-th one of every `stride`-th segment of a record.
 
     `samples` are held at most. First they are thinned, up to every `thinnest`-th; then segments are
@@ -31,7 +31,7 @@ class Witness:
     total: int = 0
     counted: int = 0
 
-    def add(self, rows: Rows) -> Witness:
+    def add(self, rows: Rows) -> Subsample:
         """Take in the next samples."""
         limit = self.samples
         if limit < ALL:

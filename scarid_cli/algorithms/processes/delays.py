@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.process import Causal
+from scarid_cli.algorithms.processes.process import Causal
 from scarid_cli.arrays import Array
 
 
@@ -45,7 +45,7 @@ class Measured(Causal):
     method: Any
 
     @property
-    def companion(self) -> Delay:
+    def torque_filter(self) -> Delay:
         return Delay(self.method)
 
     def init(self, x: float, h: float) -> MeasuredState:

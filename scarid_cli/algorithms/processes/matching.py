@@ -14,10 +14,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.process import Process
+from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.arrays import Array
 
-POSITION, ACCELERATION = 0.01, 0.005  # see spread
+POSITION, ACCELERATION = 0.01, 0.005  # see settling_rows
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Differences(AfterLowpass):
     torques: Process | None = None
 
     @property
-    def companion(self) -> Delayed:
+    def torque_filter(self) -> Delayed:
         return Delayed(self.torques or self.lowpass)
 
     def outputs(self, samples: Array, h: float) -> tuple[Array, ...]:
@@ -96,7 +96,7 @@ class WithPosition:
     """The matched form of a method that adds no dynamics: the position as it is."""
 
     method: Process
-    companion: ClassVar[None] = None
+    torque_filter: ClassVar[None] = None
 
     def lag(self, h: float) -> float:
         return self.method.lag(h)
@@ -114,18 +114,18 @@ class WithPosition:
         return state.positions, *self.method.finish(state.own)
 
 
-def spread(process: Process, h: float) -> tuple[int, int]:
+def settling_rows(process: Process, h: float) -> tuple[int, int]:
     """Rows before and after a step over which the response is off, or still moves.
 
     So many rows at the end and at the start of a record are not what they would be in the middle:
     the position by more than 1 % of a step, or, where the record begins in motion, the acceleration
     by more than .5 % of what a step of the velocity does to it.
     """
-    return _spread(process, h)  # type: ignore[arg-type]  # processes are frozen dataclasses
+    return _settling_rows(process, h)  # type: ignore[arg-type]  # processes are frozen dataclasses
 
 
 @lru_cache(maxsize=64)  # the joints of a robot often have the same
-def _spread(process: Process, h: float) -> tuple[int, int]:
+def _settling_rows(process: Process, h: float) -> tuple[int, int]:
     known: tuple[int, int] | None = getattr(process, "edges", None)
     if known is not None:
         return known

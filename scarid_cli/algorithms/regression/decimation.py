@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import cheby1, sosfiltfilt
 
-from scarid_cli.algorithms.regression import Rows, joined, runs
+from scarid_cli.algorithms.regression.rows import Rows, joined, runs
 from scarid_cli.arrays import Array
 
 ORDER = 8

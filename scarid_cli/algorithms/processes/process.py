@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from scarid_cli.algorithms.ranges import Range
+from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.arrays import Array
 
 
@@ -32,7 +32,7 @@ class Matched(Process, Protocol):
     """
 
     @property
-    def companion(self) -> Process | None:
+    def torque_filter(self) -> Process | None:
         """What torques go through; None if the position is as it was."""
 
 

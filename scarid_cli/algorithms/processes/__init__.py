@@ -1,0 +1,1 @@
+"""One column through a process: the interface, phase matching, measured delays, resampling."""
