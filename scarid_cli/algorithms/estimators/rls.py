@@ -14,7 +14,8 @@ from typing import ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import require_positive
-from scarid_cli.algorithms.regression.information import Fit, Information, absorb, prior, solve
+from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation, Scores
+from scarid_cli.algorithms.regression.information import Information, absorb, prior, solve
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -24,12 +25,12 @@ FADED = 1e-10
 
 
 @dataclass(frozen=True)
-class Estimator:
+class Estimator(BaseEstimator):
     forgetting: float | tuple[float, ...] = 1.0
     p0: float = 100.0
 
     RECURSIVE: ClassVar[bool] = True
-    HOLDS: ClassVar[bool] = False
+    INITIAL: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         require_positive(self, "p0")
@@ -63,6 +64,12 @@ class Estimator:
             trace=trace,
         )
 
-    def fit(self, state: Information) -> Fit:
-        # The errors of an estimate that forgets are not those of the whole record.
-        return replace(solve(state), robust=min(self.factors) == 1.0)
+    def widened(self) -> Estimator:
+        """The delay of the torques is forgotten no faster than any parameter."""
+        if not isinstance(self.forgetting, tuple):
+            return self
+        return replace(self, forgetting=(*self.forgetting, max(self.forgetting)))
+
+    def fit(self, state: Information) -> Estimation:
+        # The scores of an estimate that forgets are not those of the whole record.
+        return Estimation(solve(state), Scores() if min(self.factors) == 1.0 else None)

@@ -12,12 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.regression.estimation import Estimation
 from scarid_cli.algorithms.regression.information import Fit, Information, solve
 
 
 @dataclass(frozen=True)
 class Estimator(ls.Estimator):
-    def fit(self, state: Information) -> Fit:
+    def fit(self, state: Information) -> Estimation:
         plain = solve(state)  # refuses what is not identifiable
         p = state.parameters
         triangle = np.vstack((state.triangle, np.append(np.zeros(p), np.sqrt(state.residual))))
@@ -32,10 +33,10 @@ class Estimator(ls.Estimator):
         unit = gram + spread * gram @ gram * (1.0 + scaled @ scaled)
         rescale = norms[p] / norms[:p]
         freedom = max(state.weight - p, 1.0)
-        return Fit(
+        fit = Fit(
             estimates=scaled * rescale,
             unit_covariance=unit * np.outer(rescale, rescale),
             variance=(1.0 + scaled @ scaled) * spread / freedom,
             condition=plain.condition,
-            robust=False,
         )
+        return Estimation(fit, scores=None)
