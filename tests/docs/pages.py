@@ -27,7 +27,7 @@ PAGES = sorted(
 
 # Lines that begin with these words are not run: they install something, change the shell of the
 # reader, or take minutes (make, and the benchmarks behind it).
-NOT_RUN = re.compile(r"(make|pip|source|git|python|\.venv/bin/|\.ci/run)\b|\.venv/")
+NOT_RUN = re.compile(r"(make|pip|source|git|python|ruff|\.ci/run)\b|\.venv/")
 REAL_LOG = re.compile(r"\bDATA/|\bemps_(train|test_pulses)\.csv|\btx40\.toml")
 SLOW = os.environ.get("SCARID_DOCS") == "all"
 MESSAGE = re.compile(r"scarid( \w+)*: ")
