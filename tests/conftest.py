@@ -90,7 +90,7 @@ def shell(tmp_path: Path) -> Callable[..., Result]:
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=300,
             check=False,
         )
         return Result(done.returncode, done.stdout, done.stderr)

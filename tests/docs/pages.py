@@ -7,7 +7,6 @@ on standard output. A line `...` stands for any number of lines.
 
 from __future__ import annotations
 
-import os
 import re
 import textwrap
 from dataclasses import dataclass, replace
@@ -29,7 +28,6 @@ PAGES = sorted(
 # reader, or take minutes (make, and the benchmarks behind it).
 NOT_RUN = re.compile(r"(make|pip|source|git|python|ruff|\.ci/run)\b|\.venv/")
 REAL_LOG = re.compile(r"\bDATA/|\bemps_(train|test_pulses)\.csv|\btx40\.toml")
-SLOW = os.environ.get("SCARID_DOCS") == "all"
 MESSAGE = re.compile(r"scarid( \w+)*: ")
 FENCE = re.compile(r"^(?P<indent> *)```(?P<info>.*)$")
 
@@ -60,10 +58,12 @@ class Block:
         return "\n".join(lines).strip()
 
     @property
+    def slow(self) -> bool:
+        return "slow" in self.info.split()
+
+    @property
     def lacks(self) -> str | None:
-        """Why the block is not run here, although it could be elsewhere."""
-        if "slow" in self.info.split() and not SLOW:
-            return f"{self.place} is slow: make docs-test"
+        """What the block needs and is not here."""
         if REAL_LOG.search(self.text) and not (SHARED / "data").is_dir():
             return f"{self.place} needs the real robot logs (../shared/data)"
         return None

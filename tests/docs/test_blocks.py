@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +15,10 @@ from docs.pages import PAGES, Block, blocks
 from scarid_cli.algorithms.robots.reading import load
 
 Shell = Callable[..., Result]
+
+# The blocks that are run, by page.
+RUN = {page: [block for block in blocks(page) if block.commands] for page in PAGES}
+RUN = {page: found for page, found in RUN.items() if found}
 
 # What pages call the reader's own files, and how to have something of that name.
 OWN = {
@@ -86,24 +91,33 @@ def complaint(block: Block, folder: Path) -> str:
     return ""
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page)])
-def test_a_page_shows_what_its_commands_print(page: str, shell: Shell, tmp_path: Path) -> None:
-    runnable = [block for block in blocks(page) if block.commands]
-    chosen = [block for block in runnable if not block.lacks]
-    own_files(page, shell, tmp_path)
-    shell(script(chosen))
-    wrong = [text for text in (complaint(block, tmp_path) for block in chosen) if text]
+def check(page: str, chosen: list[Block], shell: Shell, folder: Path) -> None:
+    """Run these blocks of a page, as far as what they need is here, and compare."""
+    runnable = [block for block in chosen if not block.lacks]
+    own_files(page, shell, folder)
+    shell(script(runnable))
+    wrong = [text for text in (complaint(block, folder) for block in runnable) if text]
     assert not wrong, "\n\n".join(wrong)
-    left = [block.lacks for block in runnable if block.lacks]
+    left = [block.lacks for block in chosen if block.lacks]
     if left:
-        pytest.skip(f"{len(chosen)} blocks are as shown; not run: {'; '.join(map(str, left))}")
+        pytest.skip(f"{len(runnable)} blocks are as shown; {'; '.join(map(str, left))}")
+
+
+@pytest.mark.parametrize("page", RUN)
+def test_a_page_shows_what_its_commands_print(page: str, shell: Shell, tmp_path: Path) -> None:
+    check(page, [block for block in RUN[page] if not block.slow], shell, tmp_path)
+
+
+@pytest.mark.skipif(os.environ.get("SCARID_DOCS") != "all", reason="slow: make docs-test")
+@pytest.mark.parametrize("page", [p for p, run in RUN.items() if any(b.slow for b in run)])
+def test_a_page_with_slow_blocks_shows_it_too(page: str, shell: Shell, tmp_path: Path) -> None:
+    check(page, RUN[page], shell, tmp_path)
 
 
 def test_most_blocks_are_run_and_many_are_compared() -> None:
     """So that a change of the rules in `pages` cannot quietly turn this module off."""
-    every = [block for page in PAGES for block in blocks(page)]
-    run = [block for block in every if block.commands]
+    run = [block for blocks_run in RUN.values() for block in blocks_run]
     assert len(run) >= 30
-    assert len(run) >= 0.8 * len(every)
+    assert len(run) >= 0.8 * sum(len(blocks(page)) for page in PAGES)
     assert sum(block.shown is not None for block in run) >= 10
-    assert sum("slow" in block.info for block in run) <= 0.1 * len(run)
+    assert sum(block.slow for block in run) <= 0.1 * len(run)
