@@ -129,3 +129,16 @@ def test_the_weakest_direction_is_that_of_the_smallest_singular_value() -> None:
 def test_a_direction_is_written_out() -> None:
     assert combination(np.array([2.0, -1.0, 0.01]), ["a", "b", "c"]) == "a - 0.5 b"
     assert combination(np.array([0.0, -3.0, 0.0]), ["a", "b", "c"]) == "b"
+
+
+def test_a_direction_that_is_singular_to_rounding_is_found_as_well() -> None:
+    """The inverse of such a covariance has negative diagonals, or does not exist."""
+    rng = np.random.default_rng(0)
+    for apart in np.geomspace(1e-10, 1e-6, 50):
+        W = rng.standard_normal((60, 4))
+        W[:, 3] = W[:, 0] + W[:, 1] + apart * rng.standard_normal(60)
+        inverse = np.linalg.inv(np.linalg.qr(W)[1])
+        condition, direction = weakest(inverse @ inverse.T)
+        assert condition > 1e5
+        expected = np.array([1.0, 1.0, 0.0, -1.0]) / np.sqrt(3.0)
+        np.testing.assert_allclose(np.abs(direction @ expected), 1.0, rtol=1e-6)

@@ -208,5 +208,10 @@ def combination(direction: Array, names: Sequence[str]) -> str:
         ((x, n) for x, n in zip(unit, names, strict=True) if abs(x) > 0.1),
         key=lambda part: -abs(part[0]),
     )
-    text = " ".join(f"{'-' if x < 0 else '+'} {abs(x):.2g} {name}" for x, name in parts)
-    return text.removeprefix("+ ").replace("1 ", "", 1) if text.startswith("+ 1 ") else text
+    text = " ".join(f"{'-' if x < 0 else '+'} {_factor(x)}{name}" for x, name in parts)
+    return text.removeprefix("+ ")
+
+
+def _factor(x: float) -> str:
+    text = f"{abs(x):.2g}"
+    return "" if text == "1" else f"{text} "
