@@ -89,7 +89,7 @@ def test_the_robot_with_stribeck_friction_predicts_what_was_fitted() -> None:
 
 def test_separable_without_dry_friction_is_refused() -> None:
     smooth = replace(SCARA, parameters=SCARA.parameters[:1])
-    with pytest.raises(UsageFault, match="no joint with dry friction"):
+    with pytest.raises(UsageFault, match="no joint with Coulomb friction"):
         separable.Estimator().for_robot(smooth)
 
 

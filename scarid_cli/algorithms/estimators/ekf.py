@@ -1,11 +1,12 @@
 """Extended Kalman filter of joint positions, velocities and parameters (the paper's ref. 45).
 
-For comparison: it needs no derivatives, but initial parameters (`--initial`), and is a hundred
-times slower. Reads positions and torques alone; the accelerations are those of the model.
+It is here for comparison: it needs no derivatives, but initial parameters (`--initial`), and takes
+a hundred times as long. It reads positions and torques only; accelerations are those of the model.
+Its errors are its own covariance, not robust ones.
 spread = 0.5: initial standard deviation of a parameter, in parts of its initial value (of 0.1 if
 that is 0).
 acceleration_noise = 2: what the model leaves out, standard deviation per sample [rad/s2 or m/s2].
-smoothing = 0.05: velocity over which dry friction changes its sign [rad/s or m/s].
+smoothing = 0.05: velocity over which Coulomb friction changes its sign [rad/s or m/s].
 """
 
 from __future__ import annotations

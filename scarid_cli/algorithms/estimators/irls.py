@@ -1,8 +1,8 @@
-"""Iteratively reweighted least squares with Huber's weights (Huber 1964): outliers count less.
+"""Iteratively reweighted least squares with Huber's weights (Huber 1964), robust to outliers.
 
-Rows whose residual is beyond k deviations of their joint count k over their size; the deviation
-is the median absolute one over 0.6745. Holds all rows.
-k = 1.345: for 95 % of the efficiency of least squares on normal residuals.
+A row whose residual exceeds k standard deviations of its joint has a weight of k over its size. The
+standard deviation is the median absolute residual over 0.6745. All rows are held in memory.
+k = 1.345: gives 95 % of the efficiency of least squares if the residuals are normal.
 """
 
 from __future__ import annotations

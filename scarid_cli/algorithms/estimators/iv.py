@@ -1,10 +1,10 @@
 """Instrumental variables from the simulated model, IDIM-IV (Janot, Vandanjon and Gautier 2014).
 
-The instruments are the regressor of a noise-free simulation of the robot in its loop, with the
-estimates before: noise of the measured motion cannot bias what it has no part in. The log must
-have its reference (q1_ref, ...) and the robot description its controller. Joints are weighted by
-their residuals. Comes with the Durbin-Wu-Hausman test against weighted least squares. Holds all
-rows. No settings.
+The instruments are the regressor along a noise-free simulation of the robot in its loop with the
+previous estimates, so noise of the measured motion cannot bias the estimates. The log must have its
+reference (q1_ref, ...) and the robot description its controller. Joints are weighted by their
+residuals. The Durbin-Wu-Hausman test against weighted least squares is reported. All rows are held
+in memory. No settings.
 """
 
 from __future__ import annotations

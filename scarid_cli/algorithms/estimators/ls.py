@@ -1,6 +1,6 @@
-"""Least squares by streaming orthogonal factorisation (paper eq. 25), never normal equations.
+"""Least squares by streaming orthogonal factorisation (paper eq. 25), without normal equations.
 
-Memory does not depend on the number of rows. No settings.
+The memory does not depend on the number of rows. No settings.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Maximum likelihood for normal torque noise with an unknown covariance between the joints.
 
-Alternates between the covariance of the residuals and generalised least squares (Zellner 1962,
-iterated: Oberhofer and Kmenta 1974). Holds all rows; samples with a row left out are left out.
-No settings.
+It alternates between the covariance of the residuals and generalised least squares (Zellner 1962;
+iterated as by Oberhofer and Kmenta 1974). A sample of which one row is left out is left out. All
+rows are held in memory. No settings.
 """
 
 from __future__ import annotations

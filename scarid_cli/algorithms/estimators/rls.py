@@ -1,7 +1,7 @@
-"""Recursive least squares with forgetting (paper section 2.3, and section 5 for several factors).
+"""Recursive least squares with forgetting (paper section 2.3; several factors: section 5).
 
-In factored information form: the covariance stays symmetric positive definite, and bounded
-where forgetting meets no excitation.
+The recursion is in factored information form: the covariance stays symmetric positive definite, and
+bounded when the filter forgets without excitation.
 forgetting = 1: forgetting factor per sample, in (0, 1]; one, or one per parameter.
 p0 = 100: initial covariance, P0 = p0 I.
 """

@@ -1,8 +1,8 @@
-"""Separable least squares with Stribeck friction (Golub and Pereyra 1973; paper's ref. 46).
+"""Separable least squares with Stribeck friction (Golub and Pereyra 1973; the paper's ref. 46).
 
-Dry friction gets a part that fades with speed, Fst sign(dq) exp(-(dq / vs)^2), on each joint that
-has dry friction. The velocities vs are searched, everything else is linear and solved for each of
-them. Joints are weighted by their residuals. Holds all rows. No settings.
+Each joint with Coulomb friction gets a part that decays with speed, Fst sign(dq) exp(-(dq / vs)^2).
+The velocities vs are searched; everything else is linear, and solved for each trial of them. Joints
+are weighted by their residuals. All rows are held in memory. No settings.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Estimator(HoldingEstimator):
 
     def for_robot(self, robot: Robot) -> Estimator:
         if not any(p.term == "coulomb" for p in robot.parameters):
-            raise UsageFault(f"separable: robot {robot.name} has no joint with dry friction")
+            raise UsageFault(f"separable: robot {robot.name} has no joint with Coulomb friction")
         return replace(self, robot=robot)
 
     def fit(self, state: list[Rows]) -> Estimation:

@@ -1,8 +1,9 @@
-"""Total least squares (Golub and Van Loan 1980): errors in the regressor as well as in the torque.
+"""Total least squares (Golub and Van Loan 1980), for errors in the regressor and in the torque.
 
-By the smallest singular vector of [W y], each column over its norm, so that all are taken to be
-wrong by the same part of their size. In one pass: the singular values are those of the triangle.
-Its covariance is the first-order one of Van Huffel and Vandewalle (1991, section 8.5). No settings.
+The estimates come from the smallest singular vector of [W y], each column divided by its norm, so
+all columns are assumed to be wrong by the same part of their size. It takes one pass, because the
+singular values are those of the triangle. The covariance is the first-order one of Van Huffel and
+Vandewalle (1991, section 8.5). No settings.
 """
 
 from __future__ import annotations

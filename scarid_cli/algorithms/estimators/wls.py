@@ -1,8 +1,8 @@
-"""Least squares with each joint weighted by its residual (Gautier 1997, "Dynamic identification of
-robots with power model"), in one pass.
+"""Least squares with each joint weighted by its residual (Gautier 1997), in one pass.
 
-The deviation of a joint's torque is that of the residual of its own rows, fitted alone. So that a
-joint with torques of hundreds of N m does not drown one with one N m. No settings.
+"Dynamic identification of robots with power model". The standard deviation of a joint's torque is
+that of the residual of its own rows, fitted alone. A joint with torques of hundreds of N m does not
+hide one with 1 N m. No settings.
 """
 
 from __future__ import annotations

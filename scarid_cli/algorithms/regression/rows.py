@@ -80,7 +80,7 @@ def rows_of(
 ) -> Rows:
     """The rows of a motion (4, joints, samples): position, velocity, acceleration, torque.
 
-    Rows of joints below their velocity `slow` (joints) are left out: there dry friction is not
+    Rows of joints below their velocity `slow` (joints) are left out: there Coulomb friction is not
     sign(dq).
     """
     q, dq, ddq, tau = motion

@@ -85,8 +85,8 @@ def _idle(joints: Sequence[JointResidual], robot: Robot) -> list[str]:
     """Joints without torque, to which parameters of zero would fit."""
     return [
         f"joint {i} has hardly any torque ({joint.torque:.3g} {robot.joints[i - 1].torque_unit} "
-        "rms, less than its noise or dry friction), so parameters of zero would fit it: use a log "
-        "in which it is driven"
+        "rms, less than its noise or Coulomb friction), so parameters of zero would fit it: use a "
+        "log in which it is driven"
         for i, joint in enumerate(joints, start=1)
         if joint.torque
         < max(NOISE * robot.joints[i - 1].torque_noise, abs(robot.value("coulomb", i)))
