@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 import scarid_cli.kernels
+from scarid_cli.algorithms.differentiators.kalman import Differentiator as Kalman
 from scarid_cli.algorithms.filters.butterworth import Butterworth
 from scarid_cli.algorithms.filters.kalman import Records
-from scarid_cli.algorithms.filters.kalman import Settings as Kalman
 from scarid_cli.algorithms.plants.loop import mechanism
 from scarid_cli.algorithms.robots.reading import load
 
