@@ -91,8 +91,7 @@ def kalman(rng: np.random.Generator) -> Arguments:
     q[::50] += 1.0
     q[300:] += 0.5
     state = Kalman().model(0.005).at_rest(float(q[0]))
-    numbers = [state.x, state.P, state.gain, state.work]
-    return [q, np.empty((400, 4)), *numbers, state.model.F, state.model.Q, state.model.noise]
+    return [q, np.empty((400, 4)), *state.arrays, *state.model.arrays]
 
 
 def kalman_records(rng: np.random.Generator) -> Arguments:

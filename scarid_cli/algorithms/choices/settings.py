@@ -25,8 +25,10 @@ class Validated:
     def __post_init__(self) -> None:
         for field in fields(self):  # type: ignore[arg-type]  # subclasses are dataclasses
             if field.type in (int, "int"):
-                require_whole(self, field.name)
-                object.__setattr__(self, field.name, int(getattr(self, field.name)))
+                value = getattr(self, field.name)
+                if not abs(value) < inf or value % 1:
+                    raise UsageFault(f"{field.name} must be a whole number, not {value:g}")
+                object.__setattr__(self, field.name, int(value))
         self.check()
 
     def check(self) -> None:
@@ -57,13 +59,6 @@ def require_not_negative(settings: Any, *names: str) -> None:
     for name in names:
         if not 0.0 <= getattr(settings, name) < inf:
             raise UsageFault(f"{name} must not be negative, not {getattr(settings, name):g}")
-
-
-def require_whole(settings: Any, *names: str) -> None:
-    """Each named setting must be a whole number."""
-    for name in names:
-        if not abs(getattr(settings, name)) < inf or getattr(settings, name) % 1:
-            raise UsageFault(f"{name} must be a whole number, not {getattr(settings, name):g}")
 
 
 def require_odd(settings: Any, *names: str) -> None:

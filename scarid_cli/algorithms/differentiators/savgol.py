@@ -87,9 +87,6 @@ class Differentiator(LowpassMethod):
             for rows in zip(*fits, strict=True)
         )
 
-    def _fit(self, age: int, h: float) -> tuple[Array, Array]:
+    def _fit(self, age: int, h: float) -> list[Array]:
         """The taps of velocity and acceleration at the sample `age` periods ago."""
-        first, second = (
-            derivative_taps(self.window, self.degree, order, age, h) for order in (1, 2)
-        )
-        return first, second
+        return [derivative_taps(self.window, self.degree, order, age, h) for order in (1, 2)]

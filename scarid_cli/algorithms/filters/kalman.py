@@ -33,8 +33,13 @@ class KalmanState:
 
     def copy(self) -> KalmanState:
         """A state that a kernel may change in place."""
-        x, P, gain, work = (a.copy() for a in (self.x, self.P, self.gain, self.work))
+        x, P, gain, work = (array.copy() for array in self.arrays)
         return KalmanState(x, P, gain, work, self.model)
+
+    @property
+    def arrays(self) -> tuple[Array, ...]:
+        """All arrays, in the order in which the kernels take them."""
+        return self.x, self.P, self.gain, self.work
 
     def with_constant_gain(self, gain: Array) -> KalmanState:
         """The state of a filter that keeps this gain (m)."""
@@ -68,6 +73,11 @@ class Model:
     start: Array
 
     @property
+    def arrays(self) -> tuple[Array, ...]:
+        """F, Q and noise, as the kernels take them."""
+        return self.F, self.Q, self.noise
+
+    @property
     def variance(self) -> float:
         """The variance of the measurement."""
         return float(self.noise[0])
@@ -83,11 +93,9 @@ class Model:
 
 def filtered(state: KalmanState, x: Array) -> tuple[KalmanState, Array]:
     """The state after the positions x, and the filtered states (rows, m)."""
-    state, model = state.copy(), state.model
+    state = state.copy()
     rows = np.empty((len(x), len(state.x)))
-    kalman.filtered(
-        x, rows, state.x, state.P, state.gain, state.work, model.F, model.Q, model.noise
-    )
+    kalman.filtered(x, rows, *state.arrays, *state.model.arrays)
     return state, rows
 
 
@@ -114,13 +122,8 @@ class Records:
     @classmethod
     def of(cls, rows: int, states: int) -> Records:
         """Room for the records of so many rows."""
-        return cls(
-            np.empty((rows, states)),
-            np.empty(rows),
-            np.empty(rows),
-            np.empty((rows, states)),
-            np.empty((rows, states, states)),
-        )
+        m = states
+        return cls(*map(np.empty, ((rows, m), rows, rows, (rows, m), (rows, m, m))))
 
     @property
     def arrays(self) -> tuple[Array, ...]:
@@ -143,19 +146,9 @@ class Records:
 
 def recorded(state: KalmanState, x: Array) -> tuple[KalmanState, Records]:
     """The state after the positions x, and the records of their rows."""
-    state, model = state.copy(), state.model
+    state = state.copy()
     records = Records.of(len(x), len(state.x))
-    kalman.recorded(
-        x,
-        *records.arrays,
-        state.x,
-        state.P,
-        state.gain,
-        state.work,
-        model.F,
-        model.Q,
-        model.noise,
-    )
+    kalman.recorded(x, *records.arrays, *state.arrays, *state.model.arrays)
     return state, records
 
 
