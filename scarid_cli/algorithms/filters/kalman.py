@@ -123,7 +123,8 @@ class Records:
     def of(cls, rows: int, states: int) -> Records:
         """Room for the records of so many rows."""
         m = states
-        return cls(*map(np.empty, ((rows, m), rows, rows, (rows, m), (rows, m, m))))
+        sizes: tuple[tuple[int, ...], ...] = ((rows, m), (rows,), (rows,), (rows, m), (rows, m, m))
+        return cls(*(np.empty(size) for size in sizes))
 
     @property
     def arrays(self) -> tuple[Array, ...]:
