@@ -44,7 +44,7 @@ def log(seed: int) -> Log:
 
 def seen(method: Any, q: Array, tau: Array, *, match: bool = True) -> Motion:
     """A log through the method."""
-    fitted = [method.fitted(x, PERIOD) if hasattr(method, "fitted") else method for x in q]
+    fitted = [method.fitted(x, PERIOD) for x in q]
     if match:
         return motion(fitted, q, tau, PERIOD)
     derivatives = (over(m, x, PERIOD) for m, x in zip(fitted, q, strict=True))

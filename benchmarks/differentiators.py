@@ -72,9 +72,9 @@ def geometric(values: Any) -> float:
 def blind(name: str, q: Array) -> Any:
     """The method as `scarid tune` sets it."""
     method = DIFFERENTIATORS.load(name)()
-    if hasattr(method, "fitted"):
+    if method.TUNES_ITSELF:
         return method.fitted(q, H)
-    if judges.has_likelihood(method):
+    if method.HAS_LIKELIHOOD:
         return judges.fit(method, q, H)
     judge = judges.distance_to_smoother(q, H)
     return min(search.search(method, method.TUNED, judge, H, 0), key=lambda t: t.loss).method
@@ -86,9 +86,7 @@ def derivatives(method: Any, q: Array) -> tuple[Array, ...]:
 
 def informed(method: Any, q: Array, run: Run) -> float:
     """The error with the settings that the truth would choose, from the blind ones on."""
-    ranges = method.TUNED or (
-        {"intensity": Range(1e-3, 1e8)} if judges.has_likelihood(method) else {}
-    )
+    ranges = method.TUNED or ({"intensity": Range(1e-3, 1e8)} if method.HAS_LIKELIHOOD else {})
 
     def judge(tried: Any) -> float:
         with np.errstate(all="ignore"):

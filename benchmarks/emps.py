@@ -53,9 +53,9 @@ def rows(record: Record) -> list[tuple[float, str]]:
     for name in DIFFERENTIATORS.names:
         method = DIFFERENTIATORS.load(name)
         start = method(**method.PRESETS["table1"]) if name in TABLE1 else method()
-        fitted = start.fitted(record.q[0], H) if hasattr(start, "fitted") else start
+        fitted = start.fitted(record.q[0], H)
         tuned = fitted
-        if method.TUNED or judges.has_likelihood(fitted):
+        if method.TUNED or method.HAS_LIKELIHOOD:
             _, settings = chosen(tune(record, [name], ROBOT, 0, lambda: None), 1)
             tuned = method(**{key: values[0] for key, values in settings[name].items()})
         motions = [unmatched(start, record)]

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from math import inf
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.processes.matching import settling_rows
-from scarid_cli.algorithms.processes.process import Matched, Method
+from scarid_cli.algorithms.processes.method import MatchedForm, Method
 from scarid_cli.errors import TooShort
 from scarid_cli.io.table import SEGMENT, Table, matrix, number, without
 from scarid_cli.stages.columns import Edges, Plan, Task, processed
@@ -50,7 +49,7 @@ def _motion(
     """The table as a motion, with the lag of its rows [s] in the metadata."""
     period = table.meta.period or 0.0
     schema = _schema(table, len(methods), [pa.field("settled", pa.int64())] if marked else [])
-    if any(hasattr(method, "fitted") for method in methods):  # these need to see the record first
+    if any(method.TUNES_ITSELF for method in methods):  # these need to see the record first
         rows = inf
 
         def planned(segment: Table) -> tuple[Table, Plan]:
@@ -93,7 +92,7 @@ def _matching(table: Table, methods: list[Method]) -> Plan:
     return Plan(tasks, _edges(forms, table.meta.period or 0.0))
 
 
-def _edges(forms: list[Matched], period: float) -> Edges:
+def _edges(forms: list[MatchedForm], period: float) -> Edges:
     spreads = [(0, 0)]
     for form in forms:
         form.init(0.0, period)  # refuses settings
@@ -109,10 +108,7 @@ def _fitted(table: Table, methods: list[Method]) -> tuple[Table, list[Method]]:
     columns = [f"q{i}" for i in range(1, len(methods) + 1)]
     positions = np.concatenate([matrix(batch, columns) for batch in batches], axis=1)
     period = table.meta.period or 0.0
-    fitted: list[Any] = [
-        method.fitted(q, period) if hasattr(method, "fitted") else method
-        for method, q in zip(methods, positions, strict=True)
-    ]
+    fitted = [method.fitted(q, period) for method, q in zip(methods, positions, strict=True)]
     return replace(table, batches=iter(batches)), fitted
 
 

@@ -10,7 +10,13 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.processes.resampling import Clock, Decimator, Resampler, Run, State
+from scarid_cli.algorithms.processes.resampling import (
+    Clock,
+    Decimator,
+    DecimatorState,
+    Resampler,
+    ResamplerState,
+)
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import (
@@ -155,7 +161,7 @@ class Laying:
     resampler: Resampler
     schema: pa.Schema
     numbers: list[str]
-    state: State | None = None
+    state: ResamplerState | None = None
     held: pa.RecordBatch | None = None
     first: int = 0
 
@@ -185,7 +191,7 @@ class Laying:
         new = {"t": at, SEGMENT: mark, **dict(zip(self.numbers, found, strict=True))}
         return _made(together, self.schema, new, left)
 
-    def _at(self, t: float, x: Array) -> State:
+    def _at(self, t: float, x: Array) -> ResamplerState:
         if self.state is None:
             return self.resampler.init(t, x)
         return self.resampler.after_gap(self.state, t, x)
@@ -199,7 +205,7 @@ class Thinning:
     schema: pa.Schema
     numbers: list[str]
     period: float
-    state: Run | None = None
+    state: DecimatorState | None = None
     held: pa.RecordBatch | None = None
     at: int = 0  # number of the first row held
     start: float = 0.0  # time of row 0

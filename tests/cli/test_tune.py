@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import Result
+from conftest import Result, refused
 
 Run = Callable[..., Result]
 
@@ -90,6 +90,18 @@ def test_a_wrong_file_of_settings_is_told_in_one_line(
     assert message in result.err
     assert result.err.count("\n") == 1
     assert result.out == ""
+
+
+@pytest.mark.parametrize(
+    "words", [(), ("--method", "p2smd"), ("--robot", "scara2")], ids=["kalman", "p2smd", "robot"]
+)
+def test_too_short_a_log_is_refused_with_the_rows_it_needs(
+    words: tuple[str, ...], log: Path, tmp_path: Path, scarid: Run
+) -> None:
+    short = tmp_path / "short.csv"
+    short.write_text("".join(log.read_text("utf-8").splitlines(keepends=True)[:4]))
+    result = scarid("tune", *words, short)
+    refused(result, 65, "short.csv: 3 rows are too few", "at least 10 rows")
 
 
 def test_a_log_that_does_not_move_leaves_no_files(tmp_path: Path, scarid: Run) -> None:
