@@ -1,4 +1,4 @@
-"""A report as one HTML page that needs nothing else: no network, no script, no other file."""
+"""A report as one self-contained HTML page: no network, no script, no other file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from markupsafe import Markup
 from scarid_cli import __version__
 from scarid_cli.io.table import Table
 from scarid_cli.reporting.curves import POINTS
-from scarid_cli.reporting.parts import Section, split
+from scarid_cli.reporting.parts import Section, header_lines, split
 
 WIDTH = 108  # characters of a table that fit an A4 page
 GAP = 2
@@ -23,7 +23,7 @@ NO_BREAK = "\N{NO-BREAK SPACE}"
 
 def figures(sections: Sequence[Section]) -> list[list[str]]:
     """Every plot of every section as an SVG document."""
-    # While it is imported, matplotlib may tell about its caches, which is nobody's concern here.
+    # While it is imported, matplotlib may log messages about its caches.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     from scarid_cli.reporting.figures import drawn
 
@@ -33,7 +33,7 @@ def figures(sections: Sequence[Section]) -> list[list[str]]:
 def html(
     title: str, sections: Sequence[Section], drawn: list[list[str]], tables: Sequence[Table]
 ) -> str:
-    """The whole page with its figures; `tables` are told with their history at the end."""
+    """The whole page with its figures; it ends with the history of the `tables`."""
     from scarid_cli.reporting.figures import element
 
     environment = Environment(
@@ -49,6 +49,7 @@ def html(
         version=__version__,
         points=POINTS,
         count=len(tables),
+        no_break=NO_BREAK,
         origins=_origins(tables),
         sections=[
             {
@@ -67,7 +68,7 @@ def html(
 
 
 def _origins(tables: Sequence[Table]) -> list[dict[str, Any]]:
-    """Tables of one run share a history: it is told once."""
+    """Tables of one run share a history, which is listed once."""
     origins: list[dict[str, Any]] = []
     for table in tables:
         same = next((o for o in origins if o["history"] == table.meta.history), None)
@@ -79,10 +80,10 @@ def _origins(tables: Sequence[Table]) -> list[dict[str, Any]]:
 
 
 def _wrapping(header: str) -> str:
-    """The header with a single place for a line break: before the unit."""
-    return header.replace(" ", NO_BREAK).replace(f"{NO_BREAK}[", " [")
+    """The header with spaces that a browser may break at between its lines only."""
+    return " ".join(line.replace(" ", NO_BREAK) for line in header_lines(header))
 
 
 def _own(svg: str, prefix: str) -> Markup:
-    """The figure with names of its own inside: those of a page must be unique."""
+    """The figure with a prefix before its identifiers: those of a page must be unique."""
     return Markup(re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{prefix}", svg))
