@@ -90,7 +90,7 @@ def test_two_runs_give_the_same_bytes(tables: list[Path], tmp_path: Path, scarid
         assert first.read_bytes() == second.read_bytes()
 
 
-def test_the_page_tells_how_each_table_was_made(
+def test_the_page_lists_how_each_table_was_made(
     tables: list[Path], tmp_path: Path, scarid: Run
 ) -> None:
     html = tmp_path / "r.html"
@@ -135,7 +135,7 @@ def test_standard_input_is_the_default(tables: list[Path], shell: Run) -> None:
     assert "stdin" in result.out
 
 
-def test_predictions_alone_are_told_to_need_the_page(
+def test_predictions_alone_are_reported_to_need_the_page(
     tables: list[Path], tmp_path: Path, scarid: Run
 ) -> None:
     result = scarid("report", tables[3])

@@ -42,7 +42,7 @@ def test_two_documents_in_one_file_are_refused(tables: list[Path], scarid: Run) 
 
 
 @pytest.mark.parametrize(
-    ("columns", "told"),
+    ("columns", "words"),
     [
         ({"t": [0.0, 1.0], "p": [1.0, float("nan")]}, ["row 2", "column p", "finite"]),
         ({"t": [0.0, 1.0], "p": pa.array([None, 1.0])}, ["row 1", "column p", "empty"]),
@@ -51,20 +51,20 @@ def test_two_documents_in_one_file_are_refused(tables: list[Path], scarid: Run) 
         ({"t": [1.0, 0.0], "p": [1.0, 1.0]}, ["row 2", "column t"]),
     ],
 )
-def test_a_bad_trace_is_told_by_row_and_column(
-    columns: dict[str, Any], told: list[str], tmp_path: Path, scarid: Run
+def test_a_bad_trace_is_refused_with_its_row_and_column(
+    columns: dict[str, Any], words: list[str], tmp_path: Path, scarid: Run
 ) -> None:
     path = write(tmp_path / "m.trace.parquet", "trace", columns)
-    refused(scarid("report", path), 65, str(path), *told)
+    refused(scarid("report", path), 65, str(path), *words)
 
 
-def test_a_prediction_without_a_joint_is_told(tmp_path: Path, scarid: Run) -> None:
+def test_a_prediction_that_lacks_a_joint_is_refused(tmp_path: Path, scarid: Run) -> None:
     columns = {"t": [0.0, 1.0], "tau1": [1.0, 1.0], "tau1_pred": [1.0, 1.0], "tau2": [1.0, 1.0]}
     path = write(tmp_path / "m.parquet", "prediction", columns)
     refused(scarid("report", path), 65, str(path), "tau2_pred")
 
 
-def test_parameters_without_rows_are_told(tmp_path: Path, scarid: Run) -> None:
+def test_parameters_without_rows_are_refused(tmp_path: Path, scarid: Run) -> None:
     path = tmp_path / "m.csv"
     path.write_text("parameter,unit,estimate\n")
     refused(scarid("report", path), 65, str(path), "no rows")
@@ -80,6 +80,6 @@ def test_a_failure_leaves_what_was_there(tables: list[Path], tmp_path: Path, sca
     assert sorted(tmp_path.iterdir()) == before
 
 
-def test_a_place_that_cannot_be_written_is_told_first(tables: list[Path], scarid: Run) -> None:
+def test_a_path_that_cannot_be_written_is_reported_first(tables: list[Path], scarid: Run) -> None:
     refused(scarid("report", "nosuch", "--html", "/nowhere/r.html"), 74, "/nowhere/r.html")
     refused(scarid("report", tables[0], "--html", "/dev/full"), 74, "/dev/full")

@@ -31,13 +31,13 @@ from scarid_cli.reporting.parts import Section, number, split
         ("a\x1b[1m.csv", "trace", "a?[1m", ""),
     ],
 )
-def test_a_file_name_tells_method_and_experiment(
+def test_a_file_name_states_method_and_experiment(
     file: str, kind: str, label: str, experiment: str
 ) -> None:
     assert name_of(file, kind) == Name(label, experiment)
 
 
-def test_equal_labels_are_told_apart_by_folder_then_by_file() -> None:
+def test_equal_labels_are_distinguished_by_folder_then_by_file() -> None:
     files = ["r1/m.csv", "r2/m.csv", "r1/m.trace.csv", "n.csv"]
     kinds = ["parameters", "parameters", "trace", "parameters"]
     labels = [name.label for name in names_of(files, kinds)]
