@@ -14,14 +14,12 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from signals import H
+from signals import Derivatives, H, Sensor
 
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.tuning import judges
 from scarid_cli.arrays import Array
 
-Derivatives = tuple[Array, Array]
-Sensor = Callable[[Array], Derivatives]
 BAND = 1.0  # Hz, bandwidth of the motion that PyNumDiff is given
 # Its searches over all settings take minutes to hours each: here the usual order, and few starts.
 SPACES: dict[str, tuple[str, dict[str, Any]]] = {
@@ -60,16 +58,10 @@ def pynumdiff(name: str, q: Array) -> tuple[Sensor, ...]:
     method = getattr(import_module(f"pynumdiff.{module}"), name)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        part = q[:1000] if name in SLOW else q
+        part, rounds = (q[:1000], 5) if name in SLOW else (q, 10)
+        options = {"parallel": False, "padding": "auto", "maxiter": rounds}
         settings, _ = optimize(
-            method,
-            part,
-            H,
-            bandlimit=BAND,
-            search_space_updates=space,
-            parallel=False,
-            padding="auto",
-            maxiter=5 if name in SLOW else 10,
+            method, part, H, bandlimit=BAND, search_space_updates=space, **options
         )
 
     def velocity(x: Array) -> Array:
@@ -77,15 +69,16 @@ def pynumdiff(name: str, q: Array) -> tuple[Sensor, ...]:
             warnings.simplefilter("ignore")
             return np.asarray(method(x, H, **settings)[1])
 
-    def twice(x: Array) -> Derivatives:
-        v = velocity(x)
-        return v, velocity(v)
+    gradient = partial(_completed, velocity, lambda v: np.gradient(v, H))
+    return (gradient,) if name in SLOW else (partial(_completed, velocity, velocity), gradient)
 
-    def gradient(x: Array) -> Derivatives:
-        v = velocity(x)
-        return v, np.gradient(v, H)
 
-    return (gradient,) if name in SLOW else (twice, gradient)
+def _completed(
+    velocity: Callable[[Array], Array], acceleration: Callable[[Array], Array], x: Array
+) -> Derivatives:
+    """Both derivatives, from one that takes positions and one that takes velocities."""
+    v = velocity(x)
+    return v, acceleration(v)
 
 
 def derivative(name: str, settings: dict[str, float]) -> Sensor:

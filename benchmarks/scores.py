@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import inf, nan
 from typing import Any
 
 import numpy as np
-from signals import INNER, H, TrueMotion, errors, glitched, seen, shaken
+from signals import INNER, H, Sensor, TrueMotion, errors, glitched, seen, shaken
 
 from scarid_cli.algorithms.processes.delays import lateness
 from scarid_cli.arrays import Array
 
 CLASSES = ("causal", "fixed lag", "whole record")
 BATCH = 8192  # rows
-Sensor = Callable[[Array], Any]  # from positions to velocities and accelerations
 
 
 @dataclass

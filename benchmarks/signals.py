@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,8 @@ from defaults import PERIOD, RATIO, experiment
 from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path
 from scarid_cli.arrays import Array
 
+Derivatives = tuple[Array, Array]  # velocities and accelerations
+Sensor = Callable[[Array], Derivatives]  # takes positions
 H = PERIOD
 SECONDS = 20.0
 INNER = slice(200, -200)  # errors leave out a second at both ends

@@ -10,6 +10,12 @@ from scarid_cli.reporting.kinds import Parameters
 from scarid_cli.reporting.parts import Bars, Section, number
 from scarid_cli.reporting.wording import cells, robots_of, shown, titled, with_experiment, with_unit
 
+PLAIN = "Each estimate with its relative standard deviation in % (eq. 34)."
+ROBUST = (
+    "Each estimate with its relative standard deviation in % (eq. 34), and its relative standard "
+    'error robust to autocorrelated residuals ("robust %").'
+)
+
 
 def verdicts(results: Sequence[Parameters]) -> list[Section]:
     """Whether the estimates of each method can be relied on, before anything else."""
@@ -35,15 +41,9 @@ def estimates(group: Sequence[Parameters], colours: dict[str, int]) -> Section:
         for r in group
         for values in (r.estimates, r.deviations, *([_robust(r)] if robust else []))
     ]
-    note = "Each estimate with its relative standard deviation in % (eq. 34)"
-    note += (
-        ', and its relative standard error robust to autocorrelated residuals ("robust %").'
-        if robust
-        else "."
-    )
     return Section(
         title=titled("Parameters", first.name.experiment),
-        note=robots_of(group) + note,
+        note=robots_of(group) + (ROBUST if robust else PLAIN),
         headers=(
             *("parameter", "unit", "a priori")[: len(keys)],
             *(header for name in shown(group) for header in (name, *percents)),

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import logging
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from scarid_cli import __version__
@@ -16,6 +16,8 @@ from scarid_cli.io.table import Table
 from scarid_cli.reporting.curves import POINTS
 from scarid_cli.reporting.parts import Section, header_lines, split
 
+A = TypeVar("A")
+B = TypeVar("B")
 WIDTH = 108  # characters of a table that fit an A4 page
 GAP = 2
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -36,15 +38,7 @@ def html(
     """The whole page with its figures; it ends with the history of the `tables`."""
     from scarid_cli.reporting.figures import element
 
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=StrictUndefined,
-    )
-    environment.filters["wrapping"] = _wrapping
-    return environment.get_template("report.html").render(
+    return _template().render(
         title=title,
         version=__version__,
         points=POINTS,
@@ -57,14 +51,28 @@ def html(
                 "parts": split(section, WIDTH, GAP, wrapped=True) if section.rows else [],
                 "figures": [
                     (plot.caption, _own(element(document), f"f{i}-{j}-"))
-                    for j, (plot, document) in enumerate(
-                        zip(section.plots, documents, strict=True), start=1
-                    )
+                    for j, (plot, document) in _numbered(section.plots, documents)
                 ],
             }
-            for i, (section, documents) in enumerate(zip(sections, drawn, strict=True), start=1)
+            for i, (section, documents) in _numbered(sections, drawn)
         ],
     )
+
+
+def _template() -> Template:
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.filters["wrapping"] = _wrapping
+    return environment.get_template("report.html")
+
+
+def _numbered(first: Iterable[A], second: Iterable[B]) -> Iterator[tuple[int, tuple[A, B]]]:
+    return enumerate(zip(first, second, strict=True), start=1)
 
 
 def _origins(tables: Sequence[Table]) -> list[dict[str, Any]]:

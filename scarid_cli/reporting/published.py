@@ -49,14 +49,10 @@ def _published(result: Result, values: Values) -> Result | None:
     if not any(key[:2] == (method, experiment) for key in values):
         return None
     if isinstance(result, Parameters):
-        return replace(
-            result,
-            name=name,
-            estimates=tuple(of(p, "estimate") for p in result.names),
-            deviations=tuple(of(p, "relative_deviation") for p in result.names),
-            extra={},
-            robust=(),
-        )
+        estimates = tuple(of(p, "estimate") for p in result.names)
+        known = tuple(of(p, "relative_deviation") for p in result.names)
+        plain = replace(result, name=name, extra={}, robust=())
+        return replace(plain, estimates=estimates, deviations=known)
     if isinstance(result, Trace):
         errors = tuple(of(p, "rms_error") for p in result.names)
         return replace(result, name=name, curves=(), errors=errors)

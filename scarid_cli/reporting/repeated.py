@@ -18,6 +18,14 @@ R = TypeVar("R", bound=Result)
 # The repetitions of one kind of result: by experiment, then by method.
 Repetitions = Mapping[str, Mapping[str, Sequence[R]]]
 BETTER_HIGH = {"r2"}
+RANKING = (
+    *("experiment", "quantity", "measure"),
+    *("published, best first", "same best", "same order"),
+)
+RANKED = (
+    "Share of the experiments in which the method published as the best is the best here, and in "
+    "which all methods come in the published order."
+)
 
 
 def sections(results: Sequence[Result], values: Values | None = None) -> list[Section]:
@@ -118,23 +126,14 @@ def _rankings(results: Sequence[Result], values: Values) -> list[Section]:
         sign = -1.0 if measure in BETTER_HIGH else 1.0
         orders = [sorted(x, key=lambda method, x=x: sign * x[method]) for x in found]  # type: ignore[misc]
         order = sorted(found[0], key=lambda method: sign * published[method])
-        best = sum(o[0] == order[0] for o in orders) / len(orders)
-        whole = sum(o == order for o in orders) / len(orders)
-        row = (experiment or NONE, quantity, measure, " < ".join(order))
-        rows.append((*row, f"{100 * best:.0f} %", f"{100 * whole:.0f} %"))
-    headers = (
-        "experiment",
-        "quantity",
-        "measure",
-        "published, best first",
-        "same best",
-        "same order",
-    )
-    note = (
-        "Share of the experiments in which the method published as the best is the best here, "
-        "and in which all methods come in the published order."
-    )
-    return [Section("Rankings", note, headers, tuple(rows), texts=4)] if rows else []
+        best = _share([o[0] == order[0] for o in orders])
+        whole = _share([o == order for o in orders])
+        rows.append((experiment or NONE, quantity, measure, " < ".join(order), best, whole))
+    return [Section("Rankings", RANKED, RANKING, tuple(rows), texts=4)] if rows else []
+
+
+def _share(cases: Sequence[bool]) -> str:
+    return f"{100 * (sum(cases) / len(cases)):.0f} %"
 
 
 def _published(values: Values) -> dict[tuple[str, str, str], dict[str, float]]:
