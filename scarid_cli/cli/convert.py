@@ -13,9 +13,10 @@ from scarid_cli.cli import options
 @options.table_input
 @click.option(
     "--map",
-    "mapping",
+    "mappings",
+    multiple=True,
     metavar="NEW=OLD[,NEW=OLD...]",
-    help="Give columns the names that the commands expect: q1, tau1, t, ...",
+    help="Rename columns to what the commands expect: q1, tau1, t, ...; repeatable.",
 )
 @click.option(
     "--unit",
@@ -42,7 +43,7 @@ from scarid_cli.cli import options
 @options.common
 def command(
     file: str,
-    mapping: str | None,
+    mappings: tuple[str, ...],
     units: tuple[str, ...],
     rate: float | None,
     robot: str | None,
@@ -70,7 +71,7 @@ def command(
     joints, by the gear ratios, couplings and torque constants there: see docs/robots.md.
     """
     from scarid_cli.cli.job import job
-    from scarid_cli.cli.pairs import pair
+    from scarid_cli.cli.pairs import pair, renamings
     from scarid_cli.errors import UsageFault
     from scarid_cli.io.foreign import ARCHIVES, Customs, read_archive
     from scarid_cli.stages.adapt import adapted
@@ -81,7 +82,7 @@ def command(
         raise UsageFault(f"--separator is one character, not {separator!r}")
     if decimal_comma and not separator:
         raise UsageFault("--decimal-comma needs a --separator other than the comma")
-    pairs = [pair(text, "--map") for text in (mapping.split(",") if mapping else [])]
+    names = renamings(mappings)
     wanted = [pair(text, "--unit") for text in units]
     foreign = separator or header
     with job(rest) as run:
@@ -98,7 +99,7 @@ def command(
             from scarid_cli.algorithms.robots.reading import load
             from scarid_cli.stages.joints import as_described
 
-            table = as_described(table, load(robot), dict(pairs), wanted, rate)
+            table = as_described(table, load(robot), names, wanted, rate)
         else:
-            table = adapted(table, dict(pairs), wanted, rate)
+            table = adapted(table, names, wanted, rate)
         run.write(run.recorded(table), out)

@@ -58,7 +58,14 @@ def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:
             raise UsageFault(
                 f"{table.name}: no column {old!r} to rename; it has {', '.join(table.columns)}"
             )
-    to = {old: new for new, old in names.items()}
+    to: dict[str, str] = {}
+    for new, old in names.items():
+        if old in to:
+            raise UsageFault(
+                f"--map: column {old!r} cannot become both {to[old]!r} and {new!r}; "
+                "give it one new name"
+            )
+        to[old] = new
     fields = [f.with_name(to.get(f.name, f.name)) for f in table.schema]
     twice = next((f.name for f in fields if [g.name for g in fields].count(f.name) > 1), None)
     if twice:

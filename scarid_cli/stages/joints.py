@@ -28,10 +28,11 @@ def as_described(
     log = robot.log
     if log is None:
         raise UsageFault(f"{robot.name}: its description has no [log] that says what logs hold")
-    clocked = "t" in table.columns or "t" in {**log.columns, **names}
+    described = {new: old for new, old in log.columns.items() if old not in names.values()}
+    clocked = "t" in table.columns or "t" in {**described, **names}
     table = adapted(
         table,
-        {**log.columns, **names},
+        {**described, **names},
         [*log.units, *units],
         rate if rate or clocked else log.rate,
     )
