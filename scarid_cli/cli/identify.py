@@ -37,6 +37,7 @@ from scarid_cli.cli.described import describing
 @click.option("--p0", type=float, help="Initial covariance of rls, P0 = p0 I.  [default: 100]")
 @click.option(
     "--initial",
+    type=options.InputFile("apriori"),
     metavar="FILE",
     help="Initial parameters of rls or ekf: a parameter table, or `apriori`.  [default: zeros]",
 )
@@ -59,9 +60,15 @@ from scarid_cli.cli.described import describing
     help="Of the residual, for standard_error: with r - c degrees of freedom, 1 as printed in eq. "
     "32-33, or with r - 1.",
 )
-@click.option("--trace", metavar="FILE", help="Write the estimates after every sample (rls, ekf).")
-@click.option("--from", "resumed", metavar="STATE", help="Go on from where --save left off.")
-@click.option("--save", metavar="STATE", help="Save where the estimation is (.npz).")
+@options.side_output("--trace", help="Write the estimates after every sample (rls, ekf).")
+@click.option(
+    "--from",
+    "resumed",
+    type=options.INPUT,
+    metavar="STATE",
+    help="Go on from where --save left off.",
+)
+@options.side_output("--save", metavar="STATE", help="Save where the estimation is (.npz).")
 @options.table_output
 @options.common
 def command(
@@ -158,21 +165,19 @@ def command(
 
 def _given(method: Any, name: str, rest: dict[str, Any]) -> dict[str, Any]:
     """The settings that were given, which must be some of the estimator's."""
-    from scarid_cli.cli.pairs import pair, require_known
+    from scarid_cli.cli.pairs import require_known, settings
     from scarid_cli.errors import UsageFault
 
+    known = names_of(method)
     given: dict[str, Any] = {}
-    for text in rest["settings"]:
-        key, value = pair(text, "--set")
-        try:
-            given[key] = float(value)
-        except ValueError:
-            raise UsageFault(f"--set {text}: {value!r} is not a number") from None
+    for key, values in settings(rest["settings"], known, name):
+        if len(values) > 1:
+            raise UsageFault(f"--set {key}: give one value, not {len(values)}")
+        given[key] = values[0]
     if rest["p0"] is not None:
         given["p0"] = rest["p0"]
     if rest["forgetting"] is not None:
         given["forgetting"] = _number(rest["forgetting"], rest["forgetting"].split(",")[0])
-    known = names_of(method)
     for key in given:
         require_known(known, key, name)
     if "," in (rest["forgetting"] or ""):

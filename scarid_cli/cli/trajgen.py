@@ -31,7 +31,10 @@ from scarid_cli.cli.options import NUMBERS
     help="Move one joint at a time while the others are locked (the paper's test movements).",
 )
 @click.option(
-    "--via", metavar="FILE", help="Take the via points from a table with columns t, q1, q2, ..."
+    "--via",
+    type=options.INPUT,
+    metavar="FILE",
+    help="Take the via points from a table with columns t, q1, q2, ...",
 )
 @click.option("--rate", type=float, default=200.0, show_default=True, help="Rows per second [Hz].")
 @click.option("--q-max", type=NUMBERS, help="Bound on |q| [rad or m].  [default: the robot's]")

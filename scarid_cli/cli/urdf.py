@@ -10,19 +10,23 @@ from scarid_cli.cli import options
 
 
 @click.command(name="urdf")
-@click.argument("robot", metavar="ROBOT")
+@click.argument("robot", metavar="ROBOT", type=options.ROBOT)
 @click.option(
     "--parameters",
     required=True,
+    type=options.INPUT,
     metavar="FILE",
     help="The parameter table that `scarid identify --robot ROBOT` made.",
 )
 @click.option(
-    "--output", "-o", default="-", metavar="FILE", help="Where the URDF goes.  [default: stdout]"
+    "--output",
+    "-o",
+    cls=options.Unrecorded,
+    default="-",
+    metavar="FILE",
+    help="Where the URDF goes.  [default: stdout]",
 )
-@click.option(
-    "--base", metavar="FILE", help="Write the base parameters of the new bodies as a table."
-)
+@options.side_output("--base", help="Write the base parameters of the new bodies as a table.")
 @options.common
 def command(robot: str, parameters: str, output: str, base: str | None, **rest: Any) -> None:
     """Put identified parameters into a copy of a URDF, as bodies that can exist.

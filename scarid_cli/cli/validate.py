@@ -12,11 +12,15 @@ from scarid_cli.cli import options
 @click.command(name="validate")
 @options.table_input
 @click.option(
-    "--parameters", required=True, metavar="FILE", help="The parameter table of `scarid identify`."
+    "--parameters",
+    required=True,
+    type=options.INPUT,
+    metavar="FILE",
+    help="The parameter table of `scarid identify`.",
 )
 @options.robot
 @options.treatment
-@click.option("--predictions", metavar="FILE", help="Write measured and predicted torques.")
+@options.side_output("--predictions", help="Write measured and predicted torques.")
 @options.table_output
 @options.common
 def command(

@@ -15,7 +15,7 @@ from scarid_cli.io.table import Metadata, Table, doubles
 ARCHIVES = (".npz", ".mat")
 
 
-class Customs(ByteSource):
+class TranslatedCsv(ByteSource):
     """CSV with another separator, a decimal comma, or without a header, turned into ours.
 
     Byte by byte, so in files whose texts have neither character.

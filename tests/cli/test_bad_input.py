@@ -161,7 +161,7 @@ USAGE = {
     "no such file": (["filter", "nowhere.csv"], "nowhere.csv: no such file"),
     "no such option": (["filter", "--frob"], "No such option '--frob'"),
     "no such command": (["frobnicate"], "No such command 'frobnicate'"),
-    "one output twice": (["identify", "--trace", "-"], "standard output: two tables cannot share"),
+    "one output twice": (["identify", "--trace", "-"], "standard output: two outputs cannot share"),
     "no such robot": (
         ["trajgen", "--robot", "r2d2"],
         "unknown robot 'r2d2'; choose emps, planar2-gravity, scara2",
@@ -194,6 +194,7 @@ USAGE = {
     "trace of ls": (["identify", "--estimator", "ls", "--trace", "t.csv"], "no estimates after"),
     "setting without a value": (["identify", "--set", "p0"], "write NAME=VALUE"),
     "setting that is no number": (["identify", "--set", "p0=x"], "'x' is not a number"),
+    "two values of a setting": (["identify", "--set", "p0=1,2"], "p0: give one value, not 2"),
     "skip of three": (["identify", "--skip", "1,2,3"], "at the start and at the end"),
     "decimation by a half": (["identify", "--decimate", "0.5"], "whole numbers from 2"),
     "negative slow": (["identify", "--drop-slow", "-1"], "cannot be negative"),
