@@ -15,7 +15,7 @@ from scarid_cli.cli.options import Unrecorded
 from scarid_cli.errors import TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
-from scarid_cli.io.reader import checked, open_table, require
+from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document, Output, all_or_none, write_table
 
@@ -72,24 +72,47 @@ class Job:
         path: str,
         kind: str | None,
         *,
+        reads: Reads | None = None,
         regular: bool = True,
         through: Callable[[ByteSource], ByteSource] | None = None,
     ) -> Table:
         """Open a table and check that it is of this kind; without a kind, take any table.
 
-        Its clock must be regular unless `regular` is false. `through` translates its bytes.
+        `reads` names the columns whose values must be there (see io.reader.checked). The clock
+        must be regular unless `regular` is false. `through` translates the bytes.
         """
+        table = self._opened_table(path, through)
+        return self._shown(checked(table, kind, reads=reads, regular=regular) if kind else table)
+
+    def read_for(
+        self, path: str, kind: str, robot: str | None, *, torques: bool = False
+    ) -> tuple[Table, Robot]:
+        """Open a table that has every column of this kind for each of the robot's joints."""
+        table = conforming(self._opened_table(path), kind)
+        arm = robot_of(robot, table)
+        joints = range(1, len(arm.joints) + 1)
+        fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
+        fields += ["tau{i}"] if torques else []
+        columns = [name.replace("{i}", str(i)) for name in fields for i in joints]
+        require(table, columns, f"this one for robot {arm.name} (another: --robot)")
+        columns += [name for name in table.columns if name.endswith("_ref")]
+        return self._shown(checked(table, kind, reads=lambda _: columns)), arm
+
+    def _opened_table(
+        self, path: str, through: Callable[[ByteSource], ByteSource] | None = None
+    ) -> Table:
         if path == "-" and STDIN in {source.name for source in self.sources}:
             raise UsageFault(
                 "standard input can be read only once; give a FILE for the other table"
             )
         source = self._opened(path)
-        table = open_table(through(source) if through else source)
-        if kind:
-            table = checked(table, kind, regular=regular)
+        return open_table(through(source) if through else source)
+
+    def _shown(self, table: Table) -> Table:
+        """The table, reported with --verbose and followed by a progress line on a terminal."""
         if self._verbose:
-            rate = f"{1.0 / table.meta.period:.6g} Hz, " if table.meta.period else ""
-            self.say(f"{source.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
+            rate = f"{1.0 / table.period:.6g} Hz, " if table.period else ""
+            self.say(f"{table.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
         return _with_progress(table, self.quiet)
 
     def noted(self, path: str) -> str:
@@ -101,19 +124,6 @@ class Job:
         source = ByteSource.open(path)
         self.sources.append(source)
         return source
-
-    def read_for(
-        self, path: str, kind: str, robot: str | None, *, torques: bool = False
-    ) -> tuple[Table, Robot]:
-        """Open a table that has every column of this kind for each of the robot's joints."""
-        table = self.read(path, kind)
-        arm = robot_of(robot, table)
-        joints = range(1, len(arm.joints) + 1)
-        fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
-        fields += ["tau{i}"] if torques else []
-        columns = [name.replace("{i}", str(i)) for name in fields for i in joints]
-        require(table, columns, f"this one for robot {arm.name} (another: --robot)")
-        return table, arm
 
     def write(self, table: Table, output: Output | None = None) -> None:
         """Send a table to an output, by default the command's, and report omitted segments."""

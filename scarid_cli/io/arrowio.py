@@ -10,7 +10,7 @@ import pyarrow.ipc as ipc
 
 from scarid_cli.errors import BadData, cut_short
 from scarid_cli.io.bytesource import BLOCK, ByteSource
-from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table
+from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
 
 END_OF_STREAM = b"\xff\xff\xff\xff\x00\x00\x00\x00"
 # Rows of a Parquet row group or Arrow file block: fixed, so that the bytes of a file do not
@@ -80,7 +80,7 @@ def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> T
         raise BadData(f"{name}: the scarid metadata of the table cannot be read") from None
     fields = [_plain(field) for field in schema]
     plain = pa.schema(fields)
-    return Table(name, plain, meta, (_cast(batch, plain) for batch in batches))
+    return Table(name, plain, meta, (cast(batch, plain) for batch in batches))
 
 
 def _plain(field: pa.Field) -> pa.Field:
@@ -98,15 +98,7 @@ def _plain(field: pa.Field) -> pa.Field:
     return pa.field(field.name, kind, metadata={UNIT_KEY: unit} if unit else None)
 
 
-def _cast(batch: pa.RecordBatch, schema: pa.Schema) -> pa.RecordBatch:
-    columns = [
-        column if column.type == field.type else column.cast(field.type)
-        for column, field in zip(batch.columns, schema, strict=True)
-    ]
-    return pa.RecordBatch.from_arrays(columns, schema=schema)
-
-
-class Sink:
+class PyarrowFile:
     """The file-like object that pyarrow writes to. Once cut, it swallows what comes.
 
     pyarrow's writers put their end mark even when an exception closes them.
@@ -143,8 +135,8 @@ class StreamWriter:
     """An Arrow IPC stream: each batch leaves as it comes; the end mark only on success."""
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
-        self._sink = Sink(write)
-        self._writer = ipc.new_stream(self._sink, schema)
+        self._file = PyarrowFile(write)
+        self._writer = ipc.new_stream(self._file, schema)
         self._schema = schema
 
     def write(self, batch: pa.RecordBatch) -> None:
@@ -154,7 +146,7 @@ class StreamWriter:
         self._writer.close()
 
     def abort(self) -> None:
-        self._sink.cut()
+        self._file.cut()
         self._writer.close()
 
 
@@ -188,8 +180,8 @@ class FileWriter(_GroupWriter):
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
         super().__init__(schema)
-        self._sink = Sink(write)
-        self._writer = ipc.new_file(self._sink, schema)
+        self._file = PyarrowFile(write)
+        self._writer = ipc.new_file(self._file, schema)
 
     def _put(self, table: pa.Table) -> None:
         self._writer.write_batch(table.combine_chunks().to_batches()[0])
@@ -199,7 +191,7 @@ class FileWriter(_GroupWriter):
         self._writer.close()
 
     def abort(self) -> None:
-        self._sink.cut()
+        self._file.cut()
         self._writer.close()
 
 
@@ -210,10 +202,10 @@ class ParquetWriter(_GroupWriter):
         import pyarrow.parquet as pq
 
         super().__init__(schema)
-        self._sink = Sink(write)
+        self._file = PyarrowFile(write)
         floats = [field.name for field in schema if pa.types.is_floating(field.type)]
         self._writer = pq.ParquetWriter(
-            self._sink,
+            self._file,
             schema,
             use_dictionary=False,
             use_byte_stream_split=floats,
@@ -229,5 +221,5 @@ class ParquetWriter(_GroupWriter):
         self._writer.close()
 
     def abort(self) -> None:
-        self._sink.cut()
+        self._file.cut()
         self._writer.close()

@@ -133,6 +133,11 @@ def column_type(column: str) -> pa.DataType | None:
     return next((field.type for field in fields if field is not None), None)
 
 
+def numbered(columns: list[str], *prefixes: str) -> list[str]:
+    """The columns that are one of these prefixes and the number of a joint: q1, q2, ..."""
+    return [c for c in columns for p in prefixes if c.startswith(p) and c[len(p) :].isdigit()]
+
+
 def joints_of(columns: list[str], prefix: str) -> int:
     """How many joints the columns `prefix1`, `prefix2`, ... cover, without a gap."""
     count = 0

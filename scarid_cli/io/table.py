@@ -58,6 +58,11 @@ class Table:
     def columns(self) -> list[str]:
         return list(self.schema.names)
 
+    @property
+    def period(self) -> float:
+        """The nominal sampling period [s]; 0 for a table that states none."""
+        return self.meta.period or 0.0
+
     def arrow_schema(self) -> pa.Schema:
         """The schema with the metadata attached, as it is written."""
         return self.schema.with_metadata({METADATA_KEY: self.meta.to_json()})
@@ -91,6 +96,15 @@ def integers(values: Any) -> pa.Array:
     """Whole numbers likewise."""
     data = np.ascontiguousarray(values, dtype=np.int64)
     return pa.Array.from_buffers(pa.int64(), len(data), [None, pa.py_buffer(data)])
+
+
+def cast(batch: pa.RecordBatch, schema: pa.Schema) -> pa.RecordBatch:
+    """The batch with the types of a schema that has the same columns."""
+    columns = [
+        column if column.type == field.type else column.cast(field.type)
+        for column, field in zip(batch.columns, schema, strict=True)
+    ]
+    return pa.RecordBatch.from_arrays(columns, schema=schema)
 
 
 def without(table: Table, column: str) -> Table:

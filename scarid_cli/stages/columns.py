@@ -143,7 +143,7 @@ class Counted:
 
 def _rows(table: Table, plan: Plan, schema: pa.Schema, first: int) -> Iterator[pa.RecordBatch]:
     """Of a record whose first row has this number in the table."""
-    period = table.meta.period or 0.0
+    period = table.period
     running = [Running(task) for task in plan.tasks]
     waiting = Waiting(table.name, schema, plan.edges, before=first)
     for batch in table.batches:

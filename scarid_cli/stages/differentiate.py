@@ -48,7 +48,7 @@ def _motion(
     marked: bool,
 ) -> Table:
     """The table as a motion, with the lag of its rows [s] in the metadata."""
-    period = table.meta.period or 0.0
+    period = table.period
     schema = _schema(table, len(methods), [pa.field("settled", pa.int64())] if marked else [])
     if any(hasattr(method, "fitted") for method in methods):  # these need to see the record first
         rows = inf
@@ -80,7 +80,7 @@ def _plain(table: Table, methods: list[Method]) -> Plan:
     if SEGMENT not in table.columns:
         return Plan(tasks)
     forms = [method.matched() for method in methods]
-    return Plan(tasks, _edges(forms, table.meta.period or 0.0))
+    return Plan(tasks, _edges(forms, table.period))
 
 
 def _matching(table: Table, methods: list[Method]) -> Plan:
@@ -90,7 +90,7 @@ def _matching(table: Table, methods: list[Method]) -> Plan:
         tasks.append(Task(f"q{i}", form, (f"q{i}", f"dq{i}", f"ddq{i}")))
         if form.torque_filter and f"tau{i}" in table.columns:
             tasks.append(Task(f"tau{i}", form.torque_filter, (f"tau{i}",)))
-    return Plan(tasks, _edges(forms, table.meta.period or 0.0))
+    return Plan(tasks, _edges(forms, table.period))
 
 
 def _edges(forms: list[Matched], period: float) -> Edges:
@@ -108,7 +108,7 @@ def _fitted(table: Table, methods: list[Method]) -> tuple[Table, list[Method]]:
     batches = list(table.batches)
     columns = [f"q{i}" for i in range(1, len(methods) + 1)]
     positions = np.concatenate([matrix(batch, columns) for batch in batches], axis=1)
-    period = table.meta.period or 0.0
+    period = table.period
     fitted: list[Any] = [
         method.fitted(q, period) if hasattr(method, "fitted") else method
         for method, q in zip(methods, positions, strict=True)

@@ -16,5 +16,5 @@ def filtered(
     `left_out` receives why a segment was.
     """
     plan = Plan([Task(name, lowpass, (name,)) for name, lowpass in filters.items()])
-    plan.check(table.meta.period or 0.0)
+    plan.check(table.period)
     return processed(table, table.schema, lambda segment: (segment, plan), left_out)

@@ -31,6 +31,10 @@ CASES = {
     "short row": (with_line(5, "0.04,1"), "row 5: found 2 values, expected 3"),
     "long row": (with_line(5, "0.04,1,2,3"), "row 5: found 4 values, expected 3"),
     "repeated time": (with_line(5, "0.03,4,2"), "row 5, column t: found 0.03 after 0.03, expected"),
+    "time that stands still at the start": (
+        [GOOD[0], "0,1,2", *GOOD[1:]],
+        "row 2, column t: found 0.0 after 0, expected time to increase",
+    ),
     "time running back": (with_line(5, "0.01,4,2"), "row 5, column t: found 0.01 after 0.03"),
     "jitter": (
         with_line(5, "0.042,4,2"),
@@ -72,6 +76,42 @@ def write_parquet(path: Path, fields: list[pa.Field], rows: int = 20) -> None:
     t = np.arange(rows) / 100
     columns = [t if f.name == "t" else t.astype(f.type.to_pandas_dtype()) for f in fields]
     pq.write_table(pa.table(columns, schema=pa.schema(fields)), path)
+
+
+@pytest.mark.parametrize("command", ["filter", "differentiate"])
+def test_whole_numbers_are_as_good_as_others(command: str, scarid: Run, tmp_path: Path) -> None:
+    """A log of encoder counts, say, whose columns are integers."""
+    log, numbers = tmp_path / "log.parquet", tmp_path / "log.csv"
+    k = np.arange(300)
+    pq.write_table(pa.table({"t": k / 100, "q1": k**2 // 500, "n": k}), log)
+    assert scarid("convert", log, "-o", numbers).status == 0
+    result = scarid(command, log)
+    assert result.status == 0
+    assert result.out == scarid(command, numbers).out
+
+
+BEYOND = {
+    "unread": ("differentiate --no-match", 0),
+    "read": ("differentiate --match", 65),
+    "interpolated": ("resample --rate 200", 65),
+}
+
+
+@pytest.mark.parametrize("name", BEYOND)
+def test_values_are_checked_in_the_columns_that_a_command_reads(
+    name: str, scarid: Run, tmp_path: Path
+) -> None:
+    """The others pass as they are."""
+    log = tmp_path / "log.csv"
+    lines = with_line(5, "0.04,4,nan")
+    log.write_text("".join(f"{line}\n" for line in lines))
+    command, status = BEYOND[name]
+    result = scarid(*command.split(), log)
+    assert result.status == status
+    if status:
+        assert "row 5, column tau1: found nan, expected a finite number" in result.err
+    else:
+        assert result.out.splitlines()[5].startswith("0.04,4,nan,")
 
 
 def test_a_wrong_unit_is_told(scarid: Run, tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.methods import configured
 from scarid_cli.cli.settings import read
-from scarid_cli.io.schemas import joints_of
+from scarid_cli.io.schemas import joints_of, numbered
 from scarid_cli.stages import differentiate as stage
 
 
@@ -21,7 +21,8 @@ def run(
     match: bool | None,
 ) -> None:
     """Write the motion."""
-    table = job.read(file, "measurement")
+    signals = ("q",) if match is False else ("q", "tau")
+    table = job.read(file, "measurement", reads=lambda names: numbered(names, *signals))
     saved = read(settings) if settings else None
     methods = configured(
         DIFFERENTIATORS,

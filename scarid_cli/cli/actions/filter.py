@@ -8,6 +8,7 @@ from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
 from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
+from scarid_cli.io.schemas import numbered
 from scarid_cli.stages import filter as stage
 
 CUTOFF_PER_NATURAL_FREQUENCY = 10.0  # the paper's rule
@@ -31,15 +32,13 @@ def run(
         natural = NATURAL_FREQUENCY if natural_frequency is None else natural_frequency
         cutoff = CUTOFF_PER_NATURAL_FREQUENCY * natural
     lowpass = (ZeroPhase if zero_phase else Butterworth)(cutoff, order)
-    table = job.read(file, "measurement")
-    chosen = select(columns, table.columns) if columns else measured(table.columns)
-    filters: dict[str, Process] = dict.fromkeys(chosen, lowpass)
+
+    def chosen(names: list[str]) -> list[str]:
+        return select(columns, names) if columns else numbered(names, "q", "tau")
+
+    table = job.read(file, "measurement", reads=chosen)
+    filters: dict[str, Process] = dict.fromkeys(chosen(table.columns), lowpass)
     job.write(stage.filtered(job.recorded(table), filters, job.left_out))
-
-
-def measured(names: list[str]) -> list[str]:
-    """The columns that come from sensors: q1, q2, ... and tau1, tau2, ..."""
-    return [n for n in names for p in ("q", "tau") if n.startswith(p) and n[len(p) :].isdigit()]
 
 
 def select(patterns: str, names: list[str]) -> list[str]:

@@ -7,7 +7,7 @@ from scarid_cli.cli.job import Job, command_line, robot_of
 from scarid_cli.cli.progress import steps
 from scarid_cli.cli.settings import document
 from scarid_cli.io.reader import require
-from scarid_cli.io.schemas import joints_of
+from scarid_cli.io.schemas import joints_of, numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages import tune as stage
 
@@ -17,7 +17,9 @@ def run(
 ) -> None:
     """Write the table of what was tried, and save the best settings."""
     side = job.side_text(save)
-    table = job.recorded(job.read(file, "measurement"))
+    signals = ("q", "tau") if robot else ("q",)
+    log = job.read(file, "measurement", reads=lambda names: numbered(names, *signals))
+    table = job.recorded(log)
     arm = robot_of(robot) if robot else None
     joints = _joints(table, arm)
     names = stage.online() if method == "all" else [method]
