@@ -1,4 +1,4 @@
-"""Arrow IPC streams and files, and Parquet: metadata travels, and a cut table is noticed."""
+"""Arrow IPC streams and files, and Parquet, with their metadata; cut tables are detected."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from scarid_cli.io.bytesource import BLOCK, ByteSource
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
 
 END_OF_STREAM = b"\xff\xff\xff\xff\x00\x00\x00\x00"
-# Rows of a Parquet row group or Arrow file block: fixed, so that the bytes of a file do not
-# depend on how its rows arrived.
+# Rows of a Parquet row group or of a block of an Arrow file. They are fixed so that the bytes of a
+# file do not depend on how its rows arrived.
 GROUP_ROWS = 1 << 16
 READ_ROWS = 1 << 13
 
@@ -69,7 +69,7 @@ def _small(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
 
 def _unreadable(name: str, error: Exception) -> BadData:
     reason = str(error).partition("\n")[0]
-    return BadData(f"{name}: not a whole Arrow or Parquet table ({reason}); write it again")
+    return BadData(f"{name}: not a complete Arrow or Parquet table ({reason}); write it again")
 
 
 def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> Table:
@@ -77,14 +77,16 @@ def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> T
     try:
         meta = Metadata.from_json(document) if document else Metadata()
     except (ValueError, KeyError, TypeError):
-        raise BadData(f"{name}: the scarid metadata of the table cannot be read") from None
+        raise BadData(
+            f"{name}: the scarid metadata of the table cannot be read; write it again"
+        ) from None
     fields = [_plain(field) for field in schema]
     plain = pa.schema(fields)
     return Table(name, plain, meta, (cast(batch, plain) for batch in batches))
 
 
 def _plain(field: pa.Field) -> pa.Field:
-    """Numbers as doubles or 64-bit integers, dictionaries as text; of the metadata, the unit."""
+    """The field with doubles, 64-bit integers or text, and no metadata but the unit."""
     kind = field.type
     if pa.types.is_dictionary(kind):
         kind = kind.value_type
@@ -99,9 +101,10 @@ def _plain(field: pa.Field) -> pa.Field:
 
 
 class PyarrowFile:
-    """The file-like object that pyarrow writes to. Once cut, it swallows what comes.
+    """The file-like object that pyarrow writes to. Once cut, it drops everything.
 
-    pyarrow's writers put their end mark even when an exception closes them.
+    pyarrow's writers write their end mark even when an exception closes them, and a table with an
+    end mark would look complete.
     """
 
     closed = False
@@ -125,14 +128,14 @@ class PyarrowFile:
         """Nothing is held back."""
 
     def close(self) -> None:
-        """The output is closed by who opened it."""
+        """The output is closed where it was opened."""
 
     def cut(self) -> None:
         self._cut = True
 
 
 class StreamWriter:
-    """An Arrow IPC stream: each batch leaves as it comes; the end mark only on success."""
+    """An Arrow IPC stream: batches leave as they arrive, the end mark only on success."""
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
         self._file = PyarrowFile(write)
@@ -151,7 +154,7 @@ class StreamWriter:
 
 
 class _GroupWriter:
-    """Writers of files: batches are gathered into groups of a fixed number of rows."""
+    """The part common to files: batches are gathered into groups of a fixed number of rows."""
 
     def __init__(self, schema: pa.Schema) -> None:
         self._schema = schema
@@ -196,7 +199,7 @@ class FileWriter(_GroupWriter):
 
 
 class ParquetWriter(_GroupWriter):
-    """Parquet, set for doubles (5 times faster to write and 44 % smaller than the defaults)."""
+    """Parquet with settings for doubles: 5 times faster and 44 % smaller than the defaults."""
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
         import pyarrow.parquet as pq

@@ -207,7 +207,7 @@ def _check_values(column: pa.Array, name: str, column_name: str, row: int) -> No
             name,
             found,
             expected="a finite number" if pa.types.is_floating(column.type) else "a value",
-            remedy="mend or remove the row",
+            remedy="correct or remove the row",
             row=row + bad + 1,
             column=column_name,
         )
@@ -269,7 +269,7 @@ def _check_segments(jumps: Numbers, name: str, row: int) -> None:
     if np.any(jumps < 0):
         raise bad_data(
             name,
-            "a number that goes back",
+            "a smaller number than in the row before",
             expected="segments to be numbered in order",
             remedy="sort the log",
             row=row + int(np.argmax(jumps < 0)),

@@ -146,7 +146,7 @@ def test_a_log_of_motors_becomes_one_of_joints(shell: Shell, tmp_path: Path) -> 
     [
         ("--robot emps log.csv", 2, "its description has no [log]"),
         ("--robot robot.toml log.csv", 2, "no column 'enc2' to rename; it has enc1"),
-        ("--robot robot.toml --map q2=other log.csv", 65, "name them all"),
+        ("--robot robot.toml --map q2=other log.csv", 65, "name the columns of all motors"),
     ],
 )
 def test_a_log_that_does_not_fit_its_robot_is_told(
