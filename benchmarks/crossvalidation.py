@@ -17,7 +17,7 @@ from defaults import PERIOD, RATIO, ROBOT, experiment
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.regression.rows import plain
-from scarid_cli.algorithms.tuning.search import Motion, motion
+from scarid_cli.algorithms.tuning.judges import Motion, motion
 from scarid_cli.arrays import Array
 
 Log = tuple[Array, Array]
@@ -62,7 +62,7 @@ def identified(motion: Motion) -> Array:
     rls = ESTIMATORS.load("rls")()
     W = ROBOT.regressor(*kinematics)
     state, _ = rls.step(rls.init(np.zeros(8)), plain(W, np.ascontiguousarray(tau.T)))
-    estimates: Array = rls.fit(state).estimates
+    estimates: Array = rls.fit(state).fit.estimates
     return estimates
 
 
