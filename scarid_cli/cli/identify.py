@@ -18,7 +18,7 @@ from scarid_cli.cli.described import describing
     type=click.Choice(ESTIMATORS.names),
     default="rls",
     show_default=True,
-    help="How; see below.",
+    help="The estimator; see below.",
 )
 @click.option(
     "--set",
@@ -30,7 +30,8 @@ from scarid_cli.cli.described import describing
 @click.option(
     "--forgetting",
     metavar="FACTOR[,NAME=FACTOR...]",
-    help="Forgetting factor of rls per sample; after it, those of single parameters.  [default: 1]",
+    help="Forgetting factor of rls per sample, followed by other factors for single parameters.  "
+    "[default: 1]",
 )
 @click.option("--p0", type=float, help="Initial covariance of rls, P0 = p0 I.  [default: 100]")
 @click.option(
@@ -43,20 +44,21 @@ from scarid_cli.cli.described import describing
 @click.option(
     "--align",
     is_flag=True,
-    help="Fit the time by which the torques lead the motion as well. Holds the whole log.",
+    help="Also fit the time by which the torques lead the motion. Holds the whole log in memory.",
 )
 @click.option(
     "--essential",
     is_flag=True,
-    help="Drop the worst known parameter while its relative deviation is 30 times the best one's.",
+    help="Keep only essential parameters: drop the least certain one as long as its relative "
+    "standard deviation is 30 times that of the most certain one.",
 )
 @click.option(
     "--variance",
     type=click.Choice(("residual", "unit", "sample")),
     default="residual",
     show_default=True,
-    help="Of the residual, for standard_error: with r - c degrees of freedom, 1 as printed in eq. "
-    "32-33, or with r - 1.",
+    help="Variance of the residual that standard_error assumes: estimated with r - c degrees of "
+    "freedom, 1 as printed in paper eq. 32-33, or estimated with r - 1.",
 )
 @options.side_output("--trace", help="Write the estimates after every sample (rls, ekf).")
 @click.option(
@@ -64,13 +66,17 @@ from scarid_cli.cli.described import describing
     "resumed",
     type=options.INPUT,
     metavar="STATE",
-    help="Go on from where --save left off.",
+    help="Continue the estimation that --save wrote.",
 )
-@options.side_output("--save", metavar="STATE", help="Save where the estimation is (.npz).")
+@options.side_output(
+    "--save",
+    metavar="STATE",
+    help="Write the state of the estimation (.npz), to be continued with --from.",
+)
 @options.table_output
 @options.common
 def command() -> None:
-    """Estimate a robot's dynamic parameters from a motion, and say whether to believe them.
+    """Estimate a robot's dynamic parameters from a motion, and judge their reliability.
 
     \b
       scarid identify motion.csv
@@ -79,9 +85,9 @@ def command() -> None:
       scarid identify --forgetting 0.999,Fv1=0.99 --trace trace.parquet motion.csv
       scarid identify --save state.npz monday.csv; scarid identify --from state.npz tuesday.csv
 
-    Solves tau = W(q, dq, ddq) theta (paper eq. 25) for the robot's regressor W. Each estimate comes
-    with the standard error of white residuals, s (diag (W'W)^-1)^1/2 (eq. 32-34), and with one that
-    autocorrelated residuals cannot shrink, from leaving out blocks of half a second; low and high
-    are its 95 % interval. The last line on standard error is the verdict: good, doubtful or not
-    identifiable, and why.
+    Solves tau = W(q, dq, ddq) theta (paper eq. 25), where W is the robot's regressor. Each estimate
+    has two standard errors: one that holds for white residuals, s (diag (W'W)^-1)^1/2 (eq. 32-34),
+    and a robust one that also holds for autocorrelated residuals, found by leaving out blocks of
+    half a second. The columns low and high are the 95 % interval of the latter. The last line on
+    standard error is the verdict (good, doubtful or not identifiable) with its reasons.
     """

@@ -15,22 +15,22 @@ from scarid_cli.cli.declare import declare
     required=True,
     type=options.INPUT,
     metavar="FILE",
-    help="The parameter table of `scarid identify`.",
+    help="The parameter table that `scarid identify` wrote.",
 )
 @options.robot
 @options.treatment
-@options.side_output("--predictions", help="Write measured and predicted torques.")
+@options.side_output("--predictions", help="Write the measured and the predicted torques.")
 @options.table_output
 @options.common
 def command() -> None:
-    """Predict torques with identified parameters, and measure how well.
+    """Measure how well identified parameters predict the torques of a motion.
 
     \b
       scarid validate --parameters parameters.csv motion.csv
       scarid validate --parameters p.parquet --predictions torques.parquet motion.parquet
 
-    Per joint: R2 (paper eq. 36), root-mean-square error (eq. 35), relative error 100 |tau -
-    tau_hat| / |tau| in percent, number of samples. On the motion that the parameters were
-    identified from this is direct validation; on another motion, cross validation. Rows are
-    treated as by identify: give it the same options.
+    Writes for each joint R2 (paper eq. 36), the root-mean-square error (eq. 35), the relative error
+    100 |tau - tau_hat| / |tau| in percent, and the number of samples. On the motion that the
+    parameters were identified from, this is direct validation; on another motion, it is cross
+    validation. Treat the rows as identify did, with the same options.
     """
