@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.io import schemas
-from scarid_cli.io.reader import nominal_period
+from scarid_cli.io.clock import nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, steps_of
 
 
