@@ -22,7 +22,7 @@ def simulate(table: Table, loop: ClosedLoop, log_rate: float, *, truth: bool) ->
 
     The reference columns stay beside the measured ones; `truth` adds the true ones.
     """
-    period = table.meta.period or 0.0
+    period = table.period
     ratio = _whole(loop.control_rate * period, "the trajectory's rate")
     keep = _whole(loop.control_rate / log_rate, "the log rate")
     schema = _schema(loop.robot, truth=truth)
@@ -78,7 +78,7 @@ def _rows(
 def _references(table: Table, joints: int, ratio: int) -> Iterator[tuple[float, Motion]]:
     """The time of the first row, and the reference at the control ticks, chunk by chunk."""
     columns = [f"{name}{i}_ref" for name in SIGNALS for i in range(1, joints + 1)]
-    period = table.meta.period or 0.0
+    period = table.period
     start: float | None = None
     last = np.empty((3 * joints, 0))
     for batch in table.batches:

@@ -61,7 +61,7 @@ class Record:
         rows = max(parts, key=lambda part: part.shape[1])
         tau = np.ascontiguousarray(rows[joints:]) if torques else None
         q = np.ascontiguousarray(rows[:joints])
-        return cls(q, tau, table.meta.period or 0.0, table.name)
+        return cls(q, tau, table.period, table.name)
 
 
 def online() -> list[str]:

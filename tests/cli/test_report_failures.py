@@ -81,5 +81,5 @@ def test_a_failure_leaves_what_was_there(tables: list[Path], tmp_path: Path, sca
 
 
 def test_a_path_that_cannot_be_written_is_reported_first(tables: list[Path], scarid: Run) -> None:
-    refused(scarid("report", "nosuch", "--html", "/nowhere/r.html"), 74, "/nowhere/r.html")
+    refused(scarid("report", __file__, "--html", "/nowhere/r.html"), 74, "/nowhere/r.html")
     refused(scarid("report", tables[0], "--html", "/dev/full"), 74, "/dev/full")

@@ -35,7 +35,7 @@ def _model(path: str, gravity: tuple[float, ...], joints: tuple[str, ...]) -> An
         import pinocchio
     except ImportError:
         raise UsageFault(f"{path}: a URDF needs Pinocchio: pip install 'scarid[urdf]'") from None
-    if not Path(path).is_file():
+    if not Path(path).exists():
         raise UsageFault(f"{path}: no such file")
     try:
         model = pinocchio.buildModelFromXML(_with_limits(Path(path).read_text("utf-8")))
