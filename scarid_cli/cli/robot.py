@@ -12,6 +12,7 @@ from scarid_cli.cli import options
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
+    from scarid_cli.algorithms.robots.joints import Joint
     from scarid_cli.algorithms.robots.logs import Log
 
 
@@ -57,6 +58,19 @@ def _told(log: Log) -> str:
     return ", ".join(parts)
 
 
+def _limits(joint: Joint) -> Iterator[str]:
+    """The limits that the description gives."""
+    if isfinite(joint.lower) or isfinite(joint.upper):
+        yield f"position {joint.lower:g} to {joint.upper:g} {joint.unit}"
+    for name, limit, unit in (
+        ("velocity", joint.velocity_limit, f"{joint.unit}/s"),
+        ("acceleration", joint.acceleration_limit, f"{joint.unit}/s2"),
+        ("torque", joint.torque_limit, joint.torque_unit),
+    ):
+        if isfinite(limit):
+            yield f"{name} {limit:g} {unit}"
+
+
 def described(robot: Robot) -> Iterator[str]:
     """A line for the robot, each joint and each parameter."""
     joints, parameters = len(robot.joints), len(robot.parameters)
@@ -69,13 +83,9 @@ def described(robot: Robot) -> Iterator[str]:
         yield f"logs        {_told(robot.log)}"
     yield "joints"
     for i, joint in enumerate(robot.joints, start=1):
-        limits = (
-            ("position", joint.position_limit, joint.unit),
-            ("velocity", joint.velocity_limit, f"{joint.unit}/s"),
-            ("torque", joint.torque_limit, joint.torque_unit),
-        )
-        known = ", ".join(f"{name} {x:g} {unit}" for name, x, unit in limits if isfinite(x))
-        yield f"  {i}  {joint.type:<9}  {known or 'no limits'}"
+        yield f"  {i}  {joint.type:<9}  {', '.join(_limits(joint)) or 'no limits'}"
+    for name, why in (robot.body.locked if robot.body else {}).items():
+        yield f"  locked: {name} ({why})"
     yield "parameters"
     width = max(len(parameter.name) for parameter in robot.parameters)
     for parameter in robot.parameters:

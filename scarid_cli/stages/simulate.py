@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, State
+from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, LoopState
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
 from scarid_cli.errors import BadData, UsageFault
@@ -53,7 +53,7 @@ def _schema(robot: Robot, *, truth: bool) -> pa.Schema:
 def _rows(
     table: Table, loop: ClosedLoop, ratio: int, keep: int, schema: pa.Schema
 ) -> Iterator[pa.RecordBatch]:
-    state: State | None = None
+    state: LoopState | None = None
     tick = 0
     for start, reference in _references(table, len(loop.robot.joints), ratio):
         if state is None:

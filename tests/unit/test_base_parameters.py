@@ -137,7 +137,7 @@ def test_a_check_writes_the_base_parameters_out(urdf: str) -> None:
     lines = list(described(load(urdf)))
     assert "freedom     2 joints, 13 parameters" in lines
     assert "controller  none: it cannot be simulated" in lines
-    assert "  1  revolute   position 3 rad, velocity 9 rad/s, torque 9 N m" in lines
+    assert "  1  revolute   position -3 to 3 rad, velocity 9 rad/s, torque 9 N m" in lines
     assert "  Iyy1  kg m2      0.31  = Iyy1 + 1 Ia1 + 0.09 m2" in lines
     assert "  mx2   kg m       0.1" in lines
 
@@ -148,7 +148,7 @@ def test_a_joint_without_end_is_an_angle(urdf: str, tmp_path: Path) -> None:
     turning, limited = load(str(path)), load(urdf)
     motion = np.random.default_rng(0).standard_normal((3, 2, 5))
     np.testing.assert_array_equal(turning.regressor(*motion), limited.regressor(*motion))
-    assert turning.joints[1].position_limit == np.inf
+    assert (turning.joints[1].lower, turning.joints[1].upper) == (-np.inf, np.inf)
 
 
 def test_joints_without_an_entry_are_locked(urdf: str, tmp_path: Path) -> None:

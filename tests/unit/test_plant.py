@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from scipy.integrate import solve_ivp
 from unit.support import adjusted, cuts
 
-from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, Log, State
+from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, LoopLog, LoopState
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
@@ -31,14 +31,14 @@ def closed_loop(robot: Robot, **settings: Any) -> ClosedLoop:
     return ClosedLoop(robot, **(dict.fromkeys(names, none) | fixed | settings))
 
 
-def moving(state: State, *dq: float) -> State:
+def moving(state: LoopState, *dq: float) -> LoopState:
     """The same state, with velocities."""
     values = state.values.copy()
     values[2 : 2 + len(dq)] = dq
     return replace(state, values=values)
 
 
-def free(loop: ClosedLoop, q: list[float], dq: list[float], ticks: int) -> Log:
+def free(loop: ClosedLoop, q: list[float], dq: list[float], ticks: int) -> LoopLog:
     """What happens without a reference."""
     nothing = np.zeros((len(q), ticks))
     return loop.step(moving(loop.init(np.array(q)), *dq), nothing, nothing)[1]
@@ -53,7 +53,7 @@ def pushed(robot: Robot, *torques: float) -> ClosedLoop:
     return closed_loop(replace(robot, joints=tuple(joints)), kp=np.full(len(joints), 1e12))
 
 
-def push(loop: ClosedLoop, ticks: int) -> Log:
+def push(loop: ClosedLoop, ticks: int) -> LoopLog:
     """From rest at zero, all torques forwards."""
     joints = len(loop.robot.joints)
     far, still = np.full((joints, ticks), 1e3), np.zeros((joints, ticks))

@@ -23,7 +23,7 @@ LARGE = 1e300
 
 
 @dataclass(frozen=True)
-class State:
+class LoopState:
     """Where the robot and its controller are, and the sources of noise."""
 
     values: Array
@@ -32,7 +32,7 @@ class State:
 
 
 @dataclass(frozen=True)
-class Log:
+class LoopLog:
     """What happened at each tick: arrays (joints, ticks)."""
 
     q: Array
@@ -74,7 +74,7 @@ class ClosedLoop:
             if np.any(getattr(self, name) < 0.0):
                 raise UsageFault(f"{name.replace('_', ' ')} must not be negative")
 
-    def init(self, q: Array) -> State:
+    def init(self, q: Array) -> LoopState:
         """At rest at q (joints)."""
         position_seed, torque_seed = np.random.SeedSequence(self.seed).spawn(2)
         q = padded(q)
@@ -82,13 +82,13 @@ class ClosedLoop:
         steps = np.where(resolution > 0.0, resolution, 1.0)
         # Rounded as the kernel does, or the first velocity would be that of a jump.
         reading = np.where(resolution > 0.0, np.floor(q / steps + 0.5) * steps, q)
-        return State(
+        return LoopState(
             np.concatenate((q, np.zeros(2), reading, np.zeros(4))),
             np.random.default_rng(position_seed),
             np.random.default_rng(torque_seed),
         )
 
-    def step(self, state: State, q_ref: Array, dq_ref: Array) -> tuple[State, Log]:
+    def step(self, state: LoopState, q_ref: Array, dq_ref: Array) -> tuple[LoopState, LoopLog]:
         """Run over the ticks of a reference (joints, ticks)."""
         state = deepcopy(state)
         joints, ticks = q_ref.shape
@@ -114,7 +114,7 @@ class ClosedLoop:
         torque_noise = state.torque_noise.standard_normal((ticks, joints)) * self.torque_noise
         columns = [np.ascontiguousarray(log[:, i : i + joints].T) for i in range(0, 10, JOINTS)]
         q, tau, q_true, dq_true, ddq_true = columns
-        return state, Log(q, tau + torque_noise.T, q_true, dq_true, ddq_true, tau)
+        return state, LoopLog(q, tau + torque_noise.T, q_true, dq_true, ddq_true, tau)
 
     def _control(self) -> Array:
         limits = [min(joint.torque_limit, LARGE) for joint in self.robot.joints]

@@ -59,7 +59,7 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
     found = body.joints_found
     entries = entries or [{} for _ in found]
     if len(entries) != len(found):
-        raise ValueError(f"{len(entries)} joints for the {len(found)} of {body.path}")
+        raise ValueError(_wrong_number(len(entries), len(found), body))
     standard = body.standard
     joints, parameters = [], []
     for i, (joint, entry) in enumerate(zip(found, entries, strict=True), start=1):
@@ -81,6 +81,11 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
             log=log_of(document, len(found)),
         )
     )
+
+
+def _wrong_number(entries: int, axes: int, body: Body) -> str:
+    locked = f" (locked: {', '.join(body.locked)})" if body.locked else ""
+    return f"{entries} joints for the {axes} of {body.path}{locked}"
 
 
 def _names(entries: list[dict[str, Any]]) -> tuple[str, ...]:
