@@ -15,7 +15,12 @@ from conftest import ROOT, Result
 from importlinter.cli import lint_imports
 
 from scarid_cli import __version__
-from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, Registry
+from scarid_cli.algorithms.choices.registry import (
+    DIFFERENTIATORS,
+    ESTIMATORS,
+    EXCITATIONS,
+    Registry,
+)
 from scarid_cli.cli import COMMANDS, options
 from scarid_cli.io import schemas, writer
 from scarid_cli.reporting import schemas as page
@@ -98,7 +103,8 @@ def test_every_command_has_help_with_examples(name: str, scarid: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    ("command", "registry"), [("differentiate", DIFFERENTIATORS), ("identify", ESTIMATORS)]
+    ("command", "registry"),
+    [("differentiate", DIFFERENTIATORS), ("identify", ESTIMATORS), ("trajgen", EXCITATIONS)],
 )
 def test_the_help_describes_every_choice(command: str, registry: Registry, scarid: Run) -> None:
     text = scarid(command, "--help").out
