@@ -13,7 +13,7 @@ from scarid_cli.cli import options
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
     from scarid_cli.algorithms.robots.joints import Joint
-    from scarid_cli.algorithms.robots.logs import Log
+    from scarid_cli.algorithms.robots.logs import LogFormat
 
 
 @click.group(name="robot")
@@ -46,7 +46,7 @@ def check(robot: str, **_rest: Any) -> None:
         click.echo(line)
 
 
-def _told(log: Log) -> str:
+def _told(log: LogFormat) -> str:
     """What the robot's logs hold."""
     from scarid_cli.algorithms.robots.logs import CURRENT
 

@@ -11,9 +11,9 @@ import pytest
 from unit.arms import URDF, described_arm
 
 from scarid_cli.algorithms.robots.base import independent
-from scarid_cli.algorithms.robots.description import Parameter
+from scarid_cli.algorithms.robots.coupled import CoupledInertia
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.robots.terms import TERMS
+from scarid_cli.algorithms.robots.terms import Samples, StandardTerm
 from scarid_cli.cli.robot import described
 from scarid_cli.errors import UsageFault
 
@@ -58,7 +58,7 @@ def written_out(combination: str, values: dict[str, float]) -> float:
 
 def test_base_parameters_are_those_of_a_planar_arm_and_always_the_same(urdf: str) -> None:
     robot = load(urdf)
-    bodies = [p.name for p in robot.parameters if p.column >= 0]
+    bodies = [p.name for p in robot.parameters if isinstance(p.term, StandardTerm)]
     assert bodies == ["Iyy1", "mx1", "mz1", "Iyy2", "mx2", "mz2"]
     assert robot.parameters[0].stands_for == "Iyy1 + 1 Ia1 + 0.09 m2"
     again = load(urdf)
@@ -170,7 +170,7 @@ def test_gravity_pulls_where_the_description_says(urdf: str, tmp_path: Path) -> 
     upright = described_arm(urdf, tmp_path, "")
     lying = described_arm(urdf, tmp_path, "gravity = [0.0, 9.81, 0.0]")
     assert np.abs(upright.regressor(q, rest, rest)[:, :, :6]).max() > 1.0
-    bodies = [i for i, p in enumerate(lying.parameters) if p.column >= 0]
+    bodies = [i for i, p in enumerate(lying.parameters) if isinstance(p.term, StandardTerm)]
     np.testing.assert_allclose(lying.regressor(q, rest, rest)[:, :, bodies], 0.0, atol=1e-12)
 
 
@@ -205,8 +205,7 @@ def test_a_coupled_motor_is_felt_by_both_joints(urdf: str, tmp_path: Path) -> No
     np.testing.assert_allclose(column["fsm2"], slopes * np.sign(angle_rate))
     own = np.array([k * k * dq[0], dq[1]])  # what the axes' own columns have
     np.testing.assert_allclose(column["fvm2"], slopes * angle_rate - own)
-    inertia = Parameter("Iam2", "coupled-inertia", "kg m2", 0.0, joint=1, other=2, ratio=k)
-    both = TERMS["coupled-inertia"](dq, dq, ddq, inertia)
+    both = CoupledInertia(joint=1, other=2, ratio=k).column(Samples(dq, dq, ddq))
     own = np.array([k * k * ddq[0], ddq[1]])
     np.testing.assert_allclose([both[0], both[1]], slopes * (k * ddq[0] + ddq[1]) - own)
 

@@ -12,23 +12,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.algorithms.trajectories.limits import Limits
-from scarid_cli.algorithms.trajectories.random_via import random_path, random_times
-from scarid_cli.algorithms.trajectories.via import ViaPath
+from scarid_cli.algorithms.trajectories.random_via import RandomVia
 from scarid_cli.arrays import Array
 
 
 @dataclass(frozen=True)
-class Excitation:
-    shortest: float = 0.8
-    longest: float = 2.0
+class Excitation(RandomVia):
+    def moving(self, segments: int, joints: int) -> Array:
+        turn = np.arange(segments)[:, None] % joints
+        mask: Array = turn == np.arange(joints)
+        return mask
 
-    def trajectory(
-        self, limits: Limits, home: Array, duration: float, rng: np.random.Generator
-    ) -> ViaPath:
-        """A random motion of this duration [s] from home (joints) back to home."""
-        joints = len(home)
-        # Each joint moves away and back, at least.
-        times = random_times(duration, (self.shortest, self.longest), rng, at_least=2 * joints)
-        moving = np.arange(len(times) - 1)[:, None] % joints == np.arange(joints)
-        return random_path(limits, home, times, moving, rng)
+    def fewest(self, joints: int) -> int:
+        return 2 * joints

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.terms import PLANAR_TERMS
+from scarid_cli.algorithms.robots.planar import HORIZONTAL
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.kernels import plant
@@ -133,12 +133,12 @@ def padded(row: Array) -> Array:
 def mechanism(robot: Robot) -> Array:
     """The kernel's model of a robot, at its a priori values."""
     joints = len(robot.joints)
-    terms = {parameter.term for parameter in robot.parameters}
+    terms = {parameter.term.NAME for parameter in robot.parameters}
     friction = [
         robot.value(term, joint) for term in ("viscous", "coulomb", "offset") for joint in (1, 2)
     ]
-    if joints == 2 and terms >= set(PLANAR_TERMS) and "mass" not in terms:
-        inertia = [robot.value(term) for term in PLANAR_TERMS]
+    if joints == 2 and terms >= set(HORIZONTAL) and "mass" not in terms:
+        inertia = [robot.value(term) for term in HORIZONTAL]
     elif joints == 1 and "mass" in terms:
         # The second joint is there for the kernel only: L1MX2 = -ZZ2 uncouples it (M12 = 0).
         inertia = [robot.value("mass", 1) + 1.0, 1.0, -1.0, 0.0]

@@ -34,7 +34,7 @@ AXIS = ("gear_ratio", "torque_constant", "zero")  # of [[joint]]
 
 
 @dataclass(frozen=True)
-class Log:
+class LogFormat:
     """Names and units as `convert` takes them, and the motors behind the joints.
 
     `ratios` is R above (joints, joints), `constants` (joints) [N m/A], `zero` (joints) [rad or m].
@@ -72,7 +72,7 @@ def _mixed(matrix: Array, x: Array) -> Array:
     return np.asarray(total, dtype=np.float64)
 
 
-def log_of(document: dict[str, Any], joints: int) -> Log | None:
+def log_of(document: dict[str, Any], joints: int) -> LogFormat | None:
     """What a description says of its logs."""
     if "log" not in document:
         return None
@@ -85,7 +85,7 @@ def log_of(document: dict[str, Any], joints: int) -> Log | None:
     rate = values.number("rate", entry["rate"]) if "rate" in entry else None
     if rate is not None and rate <= 0.0:
         raise ValueError("rate is not positive")
-    return Log(
+    return LogFormat(
         columns={new: values.text(new, old) for new, old in columns.items()},
         units=tuple((pattern, values.text(pattern, unit)) for pattern, unit in units.items()),
         rate=rate,

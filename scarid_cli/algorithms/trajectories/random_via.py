@@ -2,12 +2,38 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.algorithms.trajectories.via import ViaPath, reach
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
+
+
+@dataclass(frozen=True)
+class RandomVia:
+    """An excitation through random via points; a subclass says which joints move when."""
+
+    shortest: float = 0.8
+    longest: float = 2.0
+
+    def moving(self, segments: int, joints: int) -> Array:
+        """Which joints move in which segment: a mask (segments, joints)."""
+        raise NotImplementedError
+
+    def fewest(self, joints: int) -> int:
+        """The number of segments that brings every joint away from home and back."""
+        raise NotImplementedError
+
+    def trajectory(
+        self, limits: Limits, home: Array, duration: float, rng: np.random.Generator
+    ) -> ViaPath:
+        """A random motion of this duration [s] from home (joints) back to home."""
+        segment = (self.shortest, self.longest)
+        times = random_times(duration, segment, rng, at_least=self.fewest(len(home)))
+        return random_path(limits, home, times, self.moving(len(times) - 1, len(home)), rng)
 
 
 def random_path(
