@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @click.group(name="robot")
 def command() -> None:
-    """Robot descriptions: what a name, a TOML file or a URDF stands for.
+    """Check robot descriptions.
 
     \b
       scarid robot check scara2
@@ -30,15 +30,17 @@ def command() -> None:
 @click.argument("robot", metavar="ROBOT")
 @options.common
 def check(robot: str, **_rest: Any) -> None:
-    """Tell what was understood of a robot description.
+    """Show how a robot description was understood.
 
     \b
       scarid robot check planar2-gravity
       scarid robot check mine.toml
 
-    What its logs hold (see convert --robot), joints with their limits, and the parameters that
-    identify estimates: name, unit, a priori value, and, for a URDF, the standard parameters that
-    each base parameter stands for.
+    ROBOT is the name of a robot that comes with scarid (scara2, emps, planar2-gravity), a TOML file
+    or a URDF. The command shows what the logs of the robot hold (see `scarid convert --robot`), its
+    joints with their limits, and the parameters that `scarid identify` estimates: name, unit and a
+    priori value. For a robot with a URDF it also shows which joints are locked and why, and the
+    combination of standard parameters that each base parameter stands for.
     """
     from scarid_cli.algorithms.robots.reading import load
 
@@ -46,8 +48,8 @@ def check(robot: str, **_rest: Any) -> None:
         click.echo(line)
 
 
-def _told(log: LogFormat) -> str:
-    """What the robot's logs hold."""
+def _contents(log: LogFormat) -> str:
+    """What the logs of the robot hold."""
     from scarid_cli.algorithms.robots.logs import CURRENT
 
     parts = [f"positions of {log.positions}s"]
@@ -72,15 +74,16 @@ def _limits(joint: Joint) -> Iterator[str]:
 
 
 def described(robot: Robot) -> Iterator[str]:
-    """A line for the robot, each joint and each parameter."""
+    """The lines on the robot, each of its joints and each of its parameters."""
     joints, parameters = len(robot.joints), len(robot.parameters)
     yield f"robot       {robot.name}: {robot.title}"
     yield f"freedom     {joints} joint{'s' if joints > 1 else ''}, {parameters} parameters"
-    yield f"controller  {'described' if robot.control else 'none: it cannot be simulated'}"
+    controller = "described" if robot.control else "none, so the robot cannot be simulated"
+    yield f"controller  {controller}"
     if robot.body:
         yield f"gravity     {' '.join(f'{x:g}' for x in robot.body.gravity)} m/s2"
     if robot.log:
-        yield f"logs        {_told(robot.log)}"
+        yield f"logs        {_contents(robot.log)}"
     yield "joints"
     for i, joint in enumerate(robot.joints, start=1):
         yield f"  {i}  {joint.type:<9}  {', '.join(_limits(joint)) or 'no limits'}"

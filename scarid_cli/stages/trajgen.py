@@ -1,4 +1,4 @@
-"""Tabulate a trajectory, and judge how well it excites a robot."""
+"""Check a trajectory, tabulate it, and judge how well it excites a robot."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _rows(trajectory: Trajectory, rate: float, schema: pa.Schema) -> Iterator[pa
 
 
 def conditioning(trajectory: Trajectory, robot: Robot, rate: float) -> str:
-    """The condition number of the observation matrix that following the trajectory would give."""
+    """The condition number of the observation matrix W along the trajectory, in words."""
     state = empty(len(robot.parameters))
     for _, motion in _samples(trajectory, rate):
         W = robot.regressor(*motion)
@@ -63,7 +63,7 @@ def conditioning(trajectory: Trajectory, robot: Robot, rate: float) -> str:
 
 
 def _samples(trajectory: Trajectory, rate: float) -> Iterator[tuple[Array, tuple[Array, ...]]]:
-    """Times [s] and the motion at them, some rows of the table after the other."""
+    """The times [s] of the rows of the table, and the motion at these times, in batches."""
     count = round(trajectory.duration * rate) + 1
     for start in range(0, count, ROWS):
         t = np.arange(start, min(start + ROWS, count)) / rate

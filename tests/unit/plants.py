@@ -18,7 +18,7 @@ GAINS = {"kp": np.array([800.0, 25.0]), "kd": np.array([100.0, 2.5])}
 
 
 def closed_loop(robot: Robot, **settings: Any) -> ClosedLoop:
-    """No control, no noise and a perfect encoder, unless told."""
+    """No control, no noise and a perfect encoder, unless settings say otherwise."""
     none = np.zeros(len(robot.joints))
     names = ("kp", "kd", "ki", "encoder_resolution", "position_noise", "torque_noise")
     fixed = {"velocity_cutoff": 0.0, "seed": 0, "control_rate": RATE}
@@ -61,7 +61,7 @@ def reference(joints: int, ticks: int) -> tuple[Array, Array]:
 
 
 def inertia(robot: Robot, q: Array) -> Array:
-    """The inertia matrix of section A.1: (samples, 2, 2)."""
+    """The inertia matrix (samples, 2, 2) of docs/theory.md."""
     zz1r, zz2, mx, my = (robot.value(term) for term in ("ZZ1R", "ZZ2", "L1MX2", "L1MY2"))
     coupling = mx * np.cos(q[1]) - my * np.sin(q[1])
     rows = [[zz1r + zz2 + 2.0 * coupling, zz2 + coupling], [zz2 + coupling, zz2 + 0.0 * coupling]]

@@ -86,7 +86,7 @@ def test_dependent_columns_are_counted_to_those_before_them() -> None:
     ],
     ids=["broken", "floating"],
 )
-def test_what_is_no_arm_is_told(content: str, told: str, tmp_path: Path) -> None:
+def test_what_is_no_arm_is_refused(content: str, told: str, tmp_path: Path) -> None:
     path = tmp_path / "x.urdf"
     path.write_text(content)
     with pytest.raises(UsageFault, match=told):
@@ -102,15 +102,15 @@ def test_a_prismatic_joint_is_known_by_its_type(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("lines", "told"),
     [
-        ("[[joint]]", "1 joints for the 2"),
-        ("[[joint]]\n[[joint]]\nterms = ['magic']", "term 'magic' of an axis"),
+        ("[[joint]]", "1 tables [[joint]] for the 2 axes of"),
+        ("[[joint]]\n[[joint]]\nterms = ['magic']", "an axis has no term 'magic'; choose viscous"),
         ("[[coupling]]\njoints = [1, 3]", "joints 1 and 3 cannot be coupled"),
         ("[[joint]]\nname = 'a'\n[[joint]]", "some joints have a name"),
         (
             "[[joint]]\nname = 'b'\n[[joint]]\nname = 'a'",
             "no joints b, a in this order; it has a, b",
         ),
-        ("[[joint]]\nmass = 3.0\n[[joint]]", "mass is not of [[joint]]"),
+        ("[[joint]]\nmass = 3.0\n[[joint]]", "mass is not a key of [[joint]]; its keys are type"),
         ("gravity = [0.0, 9.81]", "not a list of 3 numbers"),
         ("joint = [1, 2]", "joint is 1, not a table"),
         ("coupling = 3", "coupling is 3, not tables [[coupling]]"),
@@ -123,7 +123,7 @@ def test_a_prismatic_joint_is_known_by_its_type(tmp_path: Path) -> None:
     ],
     ids=lambda value: value.replace("\n", " ") if "[" in value else "",
 )
-def test_a_description_that_does_not_fit_is_told(
+def test_a_description_that_does_not_fit_is_refused(
     lines: str, told: str, urdf: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "robot.toml"
@@ -136,7 +136,7 @@ def test_a_description_that_does_not_fit_is_told(
 def test_a_check_writes_the_base_parameters_out(urdf: str) -> None:
     lines = list(described(load(urdf)))
     assert "freedom     2 joints, 13 parameters" in lines
-    assert "controller  none: it cannot be simulated" in lines
+    assert "controller  none, so the robot cannot be simulated" in lines
     assert "  1  revolute   position -3 to 3 rad, velocity 9 rad/s, torque 9 N m" in lines
     assert "  Iyy1  kg m2      0.31  = Iyy1 + 1 Ia1 + 0.09 m2" in lines
     assert "  mx2   kg m       0.1" in lines

@@ -109,7 +109,9 @@ def test_a_finger_that_is_named_is_an_axis(gripper: Path, tmp_path: Path) -> Non
 def test_entries_for_locked_joints_are_refused_with_their_names(
     gripper: Path, tmp_path: Path
 ) -> None:
-    with pytest.raises(UsageFault, match=r"4 joints for the 2 of .*\(locked: left, right\)"):
+    with pytest.raises(
+        UsageFault, match=r"4 tables .* for the 2 axes of .*\(locked: left, right\)"
+    ):
         described_arm(str(gripper), tmp_path, "[[joint]]\n" * 4)
 
 

@@ -34,7 +34,7 @@ def test_kinetic_energy_is_kept_without_friction_and_control(dq: list[float]) ->
 
 
 def test_kinetic_energy_is_kept_when_a_joint_reverses() -> None:
-    """Without dry friction nothing stops a joint on its way back."""
+    """Without Coulomb friction nothing stops a joint on its way back."""
     log = free(closed_loop(SMOOTH), [0.0, 0.3], [2.0, 1.0], 5000)
     M = inertia(SMOOTH, log.q_true)
     energy = 0.5 * np.einsum("ik,kij,jk->k", log.dq_true, M, log.dq_true)
@@ -72,7 +72,7 @@ def test_motion_agrees_with_a_reference_integrator() -> None:
 
 @pytest.mark.parametrize("name", ["scara2", "emps"])
 def test_logged_motion_and_torques_obey_the_inverse_dynamics(name: str) -> None:
-    """While all joints slide; a joint that sticks has a dry friction within its bounds."""
+    """While all joints slide; a joint that sticks has a Coulomb friction within its bounds."""
     robot = adjusted(name)
     joints = len(robot.joints)
     assert robot.control is not None

@@ -26,7 +26,7 @@ MASS, COULOMB = AXIS.value("mass", 1), AXIS.value("coulomb", 1)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_joint_stays_where_it_is_below_the_dry_friction(sign: float) -> None:
+def test_joint_stays_where_it_is_below_the_coulomb_friction(sign: float) -> None:
     loop = pushed(AXIS, 0.999 * COULOMB)
     _, log = loop.step(
         loop.init(np.array([0.1])), np.full((1, 3000), sign * 1e3), np.zeros((1, 3000))
@@ -38,7 +38,7 @@ def test_joint_stays_where_it_is_below_the_dry_friction(sign: float) -> None:
 
 
 @pytest.mark.parametrize("excess", [0.001, 0.5])
-def test_joint_accelerates_with_what_exceeds_the_dry_friction(excess: float) -> None:
+def test_joint_accelerates_with_what_exceeds_the_coulomb_friction(excess: float) -> None:
     log = push(pushed(AXIS, (1.0 + excess) * COULOMB), 3000)
     t, ddq = np.arange(3000) / RATE, excess * COULOMB / MASS
     np.testing.assert_allclose(log.ddq_true[0], ddq, rtol=1e-10)
@@ -60,7 +60,7 @@ def test_sliding_joint_stops_where_friction_has_eaten_its_energy(dq: float) -> N
 
 
 @pytest.mark.parametrize(("share", "slides"), [(0.99, False), (1.01, True)])
-def test_joint_at_rest_is_dragged_along_beyond_its_dry_friction(
+def test_joint_at_rest_is_dragged_along_beyond_its_coulomb_friction(
     share: float, *, slides: bool
 ) -> None:
     """Joint 1 accelerates; M12 of its acceleration is what joint 2 has to hold."""

@@ -70,7 +70,7 @@ def test_unknown_robot_is_refused_with_the_choice(name: str) -> None:
     ("text", "instead", "complaint"),
     [
         ('title = "EMPS, one prismatic axis"', "", "missing 'title'"),
-        ("[[joint]]", "[[axis]]", "axis is not of a robot; it has title, joint"),
+        ("[[joint]]", "[[axis]]", "axis is not a key of a robot; its keys are title, joint"),
         ("apriori = 95.1089", "", "apriori"),
         ("apriori = 95.1089", 'apriori = "heavy"', "apriori"),
         ("kp = [1370725.0]", "", "missing 'kp'"),
@@ -78,20 +78,20 @@ def test_unknown_robot_is_refused_with_the_choice(name: str) -> None:
         ("position_limit", "position_bound", "position_bound"),
         ('"prismatic"', '"spherical"', "'spherical'; choose revolute or prismatic"),
         ('"viscous"', '"turbulent"', "'turbulent'; choose viscous, coulomb"),
-        ("joint = 1", "joint = 2", "on joint 2 of 1"),
-        ("joint = 1", "joint = -1", "on joint -1 of 1"),
+        ("joint = 1", "joint = 2", "on joint 2 of a robot with 1"),
+        ("joint = 1", "joint = -1", "on joint -1 of a robot with 1"),
         ("joint = 1", "", "joint"),
         ("joint = 1", 'joint = "1"', "not a whole number"),
         ("[control]", "[control", "at line"),
         ("prismatic axis", "prismatic axis\xe9", "utf-8"),
-        ("joint = 1", "joint = 1\nvelocity = 0.1", "velocity is not of a [[parameter]] with term"),
+        ("joint = 1", "joint = 1\nvelocity = 0.1", "velocity is not a key of a [[parameter]] with"),
         ('"coulomb"', '"coulomb"\nvelocity = -0.1', "Fc: velocity is negative"),
         ('"coulomb"', '"stribeck"', "missing 'velocity'"),
         ('"coulomb"', '"stribeck"\nvelocity = 0', "Fc: velocity is not positive"),
         ('"coulomb"', '"coupled-coulomb"', "'coupled-coulomb'; choose viscous, coulomb"),
     ],
 )
-def test_bad_description_is_told_in_one_line(
+def test_bad_description_is_refused_in_one_line(
     tmp_path: Path, text: str, instead: str, complaint: str
 ) -> None:
     good = (FOLDER / "emps.toml").read_text("utf-8")
@@ -151,5 +151,5 @@ def test_term_given_twice_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     good = (FOLDER / "emps.toml").read_text("utf-8")
     path.write_text(good.replace('"coulomb"', '"viscous"'), "utf-8")
-    with pytest.raises(UsageFault, match="stands twice"):
+    with pytest.raises(UsageFault, match="appears twice"):
         load(str(path))

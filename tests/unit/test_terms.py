@@ -101,7 +101,7 @@ def test_vertical_arm_is_the_horizontal_one_and_the_slope_of_its_potential_energ
 
 def test_single_axis_is_mass_friction_and_offset() -> None:
     q, dq, ddq = motions(joints=1)
-    dq[0, 0] = 0.0  # dry friction has no direction at rest
+    dq[0, 0] = 0.0  # Coulomb friction has no direction at rest
     W = load("emps").regressor(q, dq, ddq)
     columns = [ddq[0], dq[0], np.sign(dq[0]), np.ones(50)]
     np.testing.assert_array_equal(W[:, 0, :], np.column_stack(columns))

@@ -1,8 +1,9 @@
-"""A robot in closed loop (paper section 3.1 and eq. 29, with the sign of its error mended).
+"""A simulated robot in closed loop (paper section 3.1 and eq. 29, with its sign corrected).
 
-tau = Kp (q_ref - q) + Kd (dq_ref - dq_est) + Ki integral(q_ref - q), at the control rate; dq_est
-is the smoothed backward difference of the encoder. The plant is integrated by fourth-order
-Runge-Kutta between the control ticks, with dry friction that sticks.
+tau = Kp (q_ref - q) + Kd (dq_ref - dq_est) + Ki integral(q_ref - q), at the control rate. dq_est is
+the backward difference of the encoder, smoothed by a low-pass. Between the ticks of the controller
+the robot is integrated by the Runge-Kutta method of fourth order, and Coulomb friction sticks
+(docs/theory.md, "Robot, control and regression").
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.kernels import plant
 
-JOINTS = 2  # of the kernel; an axis alone takes the first
+JOINTS = 2  # of the kernel; a single axis uses the first one
 LARGE = 1e300
 
 
 @dataclass(frozen=True)
 class LoopState:
-    """Where the robot and its controller are, and the sources of noise."""
+    """The state of the robot and its controller (of the kernel), and the sources of noise."""
 
     values: Array
     position_noise: np.random.Generator
@@ -33,7 +34,7 @@ class LoopState:
 
 @dataclass(frozen=True)
 class LoopLog:
-    """What happened at each tick: arrays (joints, ticks)."""
+    """The signals at each tick of the controller: arrays (joints, ticks), in SI units."""
 
     q: Array
     tau: Array
@@ -44,7 +45,7 @@ class LoopLog:
 
 
 class DivergedError(ValueError):
-    """The loop is unstable; `tick` is where its state left all bounds."""
+    """The loop is unstable; `tick` is when its state left all bounds."""
 
     def __init__(self, tick: int) -> None:
         super().__init__("the closed loop is unstable")
@@ -53,7 +54,11 @@ class DivergedError(ValueError):
 
 @dataclass(frozen=True)
 class ClosedLoop:
-    """Settings, per joint where they are arrays. Rates in Hz, noise as standard deviations."""
+    """A robot with its controller and sensors; arrays have one value per joint.
+
+    Gains [N m/rad, N m s/rad, N m/(rad s)], rates and the cut-off [Hz], resolution [rad or m], and
+    noise as standard deviations [rad or m, N m or N].
+    """
 
     robot: Robot
     kp: Array
@@ -75,7 +80,7 @@ class ClosedLoop:
                 raise UsageFault(f"{name.replace('_', ' ')} must not be negative")
 
     def init(self, q: Array) -> LoopState:
-        """At rest at q (joints)."""
+        """The state at rest at q (joints) [rad or m]."""
         position_seed, torque_seed = np.random.SeedSequence(self.seed).spawn(2)
         q = padded(q)
         resolution = padded(self.encoder_resolution)
@@ -89,7 +94,7 @@ class ClosedLoop:
         )
 
     def step(self, state: LoopState, q_ref: Array, dq_ref: Array) -> tuple[LoopState, LoopLog]:
-        """Run over the ticks of a reference (joints, ticks)."""
+        """The state and the signals after the ticks of a reference (joints, ticks)."""
         state = deepcopy(state)
         joints, ticks = q_ref.shape
         reference = np.zeros((ticks, 2 * JOINTS))
@@ -126,12 +131,12 @@ class ClosedLoop:
 
 
 def padded(row: Array) -> Array:
-    """One number per joint of the kernel."""
+    """A row (joints) with a value for each joint of the kernel."""
     return np.concatenate((row, np.zeros(JOINTS - len(row))))
 
 
 def mechanism(robot: Robot) -> Array:
-    """The kernel's model of a robot, at its a priori values."""
+    """The parameters of the kernel's model: the a priori values of the robot."""
     joints = len(robot.joints)
     terms = {parameter.term.NAME for parameter in robot.parameters}
     friction = [

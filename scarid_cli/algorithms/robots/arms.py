@@ -1,15 +1,15 @@
-"""Robots whose rigid bodies a URDF describes: all standard parameters, and the terms of its axes.
+"""Robots with a URDF: the standard parameters of its links, and the terms of its axes.
 
 title = "Staubli TX40"
 urdf = "tx40.urdf"              # beside this file
 gravity = [0.0, 0.0, -9.81]     # m/s2, in the frame of the base
 
-[[joint]]                       # one for each joint that moves, or none at all
-name = "joint_1"                # of the URDF; with names, joints that have no entry are locked
-terms = ["viscous", "coulomb"]  # of TERMS; or with a priori values: { viscous = 8.0 }
+[[joint]]                       # one for each axis, or none at all
+name = "joint_1"                # in the URDF; with names, joints without an entry are locked
+terms = ["viscous", "coulomb"]  # from TERMS; or with a priori values: { viscous = 8.0 }
 
 [[coupling]]
-joints = [5, 6]                 # the motor of joint 6 turns with joint 5 as well
+joints = [5, 6]                 # the motor of joint 6 also turns with joint 5
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ KEYS = ("title", "urdf", "gravity", "joint", "coupling", "log")
 
 
 def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
-    """The robot with its base parameters."""
+    """The robot of a description, with its base parameters; the URDF is beside it in the folder."""
     values.only("a robot with a URDF", document, KEYS)
     entries = values.tables("joint", document.get("joint", []))
     body = Body(
@@ -82,18 +82,21 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
 
 def _wrong_number(entries: int, axes: int, body: Body) -> str:
     locked = f" (locked: {', '.join(body.locked)})" if body.locked else ""
-    return f"{entries} joints for the {axes} of {body.path}{locked}"
+    return (
+        f"{entries} tables [[joint]] for the {axes} axes of {body.path}{locked}; give one for each "
+        "axis, or none"
+    )
 
 
 def _names(entries: list[dict[str, Any]]) -> tuple[str, ...]:
     named = [entry for entry in entries if "name" in entry]
     if named and len(named) != len(entries):
-        raise ValueError("some joints have a name, others none")
+        raise ValueError("some joints have a name and others do not; name all axes, or none")
     return tuple(values.text("name", entry["name"]) for entry in named)
 
 
 def _standard(i: int, apriori: list[float]) -> list[Parameter]:
-    """The ten parameters of link i."""
+    """The ten standard parameters of link i (from 1)."""
     return [
         Parameter(f"{symbol}{i}", unit, apriori[place], StandardTerm(place))
         for place, (symbol, unit) in enumerate(
@@ -103,12 +106,12 @@ def _standard(i: int, apriori: list[float]) -> list[Parameter]:
 
 
 def _terms(i: int, joint: Joint, wanted: Any) -> list[Parameter]:
-    """The terms of axis i: a list of names, or a table with their a priori values."""
+    """The terms of axis i (from 1): a list of names, or a table with their a priori values."""
     aprioris = wanted if isinstance(wanted, dict) else dict.fromkeys(wanted, 0.0)
     parameters = []
     for name, apriori in aprioris.items():
         if name not in TERMS:
-            raise ValueError(f"term {name!r} of an axis; choose {', '.join(TERMS)}")
+            raise ValueError(f"an axis has no term {name!r}; choose {', '.join(TERMS)}")
         term = TERMS[name](i)
         unit = term.UNITS[list(UNITS).index(joint.type)]
         value = values.number(name, apriori)

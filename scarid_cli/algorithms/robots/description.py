@@ -1,4 +1,4 @@
-"""A robot as the commands see it: joints, parameters with their a priori values, regressor."""
+"""A robot as the commands see it: joints, parameters with a priori values, regressor."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Parameter:
 
     @property
     def stands_for(self) -> str:
-        """What it is a combination of, written out; empty for a parameter of one name."""
+        """The combination that a base parameter stands for, written out; empty if it is alone."""
         rest = "".join(
             f" {'-' if x < 0.0 else '+'} {abs(x):.6g} {name}"
             for name, x in self.parts
@@ -56,7 +56,7 @@ class Control:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot whose torques are linear in its parameters: tau = W(q, dq, ddq) theta (eq. 3)."""
+    """A robot; its torques are linear in its parameters, tau = W(q, dq, ddq) theta (eq. 3)."""
 
     name: str
     title: str
@@ -72,7 +72,7 @@ class Robot:
 
     @property
     def apriori(self) -> Array:
-        """A priori values, in the order of the parameters."""
+        """A priori values (parameters), in SI units."""
         return np.array([parameter.apriori for parameter in self.parameters])
 
     def value(self, term: str, joint: int | None = None) -> float:
@@ -108,7 +108,10 @@ class Robot:
         return replace(self, parameters=(*self.parameters, *added))
 
     def regressor(self, q: Array, dq: Array, ddq: Array) -> Array:
-        """W (samples, joints, parameters) from motions (joints, samples); sources in terms.py."""
+        """The regressor W (samples, joints, parameters) of tau = W theta (paper eq. 3 and 25).
+
+        q, dq and ddq are (joints, samples), in rad or m, and per s and s2.
+        """
         joints, samples = q.shape
         W = np.zeros((samples, joints, len(self.parameters)))
         motion = Samples(q, dq, ddq, self.body.columns(q, dq, ddq) if self.body else None)
@@ -118,9 +121,10 @@ class Robot:
         return W
 
     def torques(self, W: Array, theta: Array) -> Array:
-        """W theta as (joints, samples), summed in the order of the parameters.
+        """The torques W theta (joints, samples) [N m or N].
 
-        A matrix product would round differently with the number of rows in a batch.
+        They are summed parameter by parameter: a matrix product would round differently with the
+        number of rows in a batch.
         """
         total = W[:, :, 0] * theta[0]
         for index in range(1, len(theta)):

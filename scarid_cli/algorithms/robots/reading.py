@@ -1,4 +1,4 @@
-"""Robots from TOML files and URDFs, checked value by value: a mistake is told at once."""
+"""Robots from TOML files and URDFs. Every value is checked when it is read."""
 
 from __future__ import annotations
 
@@ -45,8 +45,7 @@ def load(name: str) -> Robot:
         return _robot(name, document)
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
-        told = " ".join(reason.split())
-        raise UsageFault(f"{name}: not a robot description: {told}") from None
+        raise UsageFault(f"{name}: not a robot description: {' '.join(reason.split())}") from None
 
 
 def _robot(name: str, document: dict[str, Any]) -> Robot:
@@ -55,7 +54,7 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
     terms = values.tables("parameter", document["parameter"])
     parameters = tuple(_parameter(entry, len(joints)) for entry in terms)
     if not joints or not parameters:
-        raise ValueError("it needs at least one joint and one parameter")
+        raise ValueError("it has no [[joint]] or no [[parameter]]; give at least one of each")
     values.distinct("name", [parameter.name for parameter in parameters])
     values.distinct("term of a joint", [(p.term.NAME, *p.term.joints) for p in parameters])
     control = document.get("control")
@@ -73,10 +72,10 @@ def _parameter(entry: dict[str, Any], joints: int) -> Parameter:
     name = values.text("name", entry["name"])
     term = _term(name, entry)
     if isinstance(term, PlanarTerm) and joints < max(term.joints):
-        raise ValueError(f"{name} has term {term.NAME}, which needs {max(term.joints)} joints")
+        raise ValueError(f"{name}: term {term.NAME} needs {max(term.joints)} joints")
     for joint in term.joints:
         if not 1 <= joint <= joints:
-            raise ValueError(f"{name} is on joint {joint} of {joints}")
+            raise ValueError(f"{name} is on joint {joint} of a robot with {joints}")
     return Parameter(
         name=name,
         unit=values.text("unit", entry["unit"]),
@@ -89,7 +88,7 @@ def _term(name: str, entry: dict[str, Any]) -> Term:
     """The term that [[parameter]] names, with its constants."""
     wanted = values.text("term", entry["term"])
     if wanted not in TERMS:
-        raise ValueError(f"{name} has term {wanted!r}; choose {', '.join(TERMS)}")
+        raise ValueError(f"{name}: there is no term {wanted!r}; choose {', '.join(TERMS)}")
     term = TERMS[wanted]
     constants = {field.name: field for field in fields(term)}
     known = ("name", "term", "unit", "apriori", *constants)

@@ -1,7 +1,7 @@
-"""The rigid-body part of a regressor from a URDF, through Pinocchio (the extra `urdf`).
+"""The rigid-body part of the regressor of a robot with a URDF, by Pinocchio (the extra `urdf`).
 
-Columns are those of the ten standard parameters of each link, in the order of SYMBOLS: moments of
-inertia about the link's frame [kg m2], first moments [kg m], mass [kg].
+Each link has ten standard parameters, in the order of SYMBOLS: moments and products of inertia in
+the frame of the link [kg m2], first moments [kg m], mass [kg].
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from scarid_cli.errors import UsageFault
 
 SYMBOLS = ("Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz", "mx", "my", "mz", "m")
 UNITS = ("kg m2",) * 6 + ("kg m",) * 3 + ("kg",)
-PINOCCHIO = np.array([4, 5, 7, 6, 8, 9, 1, 2, 3, 0])  # where it keeps them
+PINOCCHIO = np.array([4, 5, 7, 6, 8, 9, 1, 2, 3, 0])  # their places there
 
 GRAVITY = (0.0, 0.0, -9.81)  # m/s2
 
@@ -86,12 +86,12 @@ class Body:
 
     @property
     def model(self) -> Any:
-        """Pinocchio's."""
+        """The model of Pinocchio."""
         return _model(self.path, self.gravity, self.joints)
 
     @property
     def joints_found(self) -> list[Joint]:
-        """With the limits that the URDF has."""
+        """The axes, with the limits that the URDF gives."""
         model = self.model
         names = [joint.shortname() for joint in list(model.joints)[1:]]
         ends = map(_interval, model.lowerPositionLimit, model.upperPositionLimit)
@@ -108,23 +108,23 @@ class Body:
 
     @property
     def standard(self) -> list[float]:
-        """The URDF's own values of the standard parameters, joint after joint."""
+        """The standard parameters that the URDF gives, link after link."""
         inertias = list(self.model.inertias)[1:]
         return [float(x) for own in inertias for x in own.toDynamicParameters()[PINOCCHIO]]
 
     @property
     def locked(self) -> dict[str, str]:
-        """The moving joints that are no axes, and why."""
+        """The moving joints that are not axes, and why each is locked."""
         return _chain(self.path, self.joints).locked
 
     @property
     def joint_names(self) -> list[str]:
-        """Of the URDF."""
+        """The names of the axes in the URDF."""
         return list(self.model.names)[1:]
 
     @property
     def links(self) -> list[tuple[str, list[str]]]:
-        """The link that each joint moves, and those fixed to it."""
+        """The link that each axis moves, and the links that are fixed to it."""
         tree = ElementTree.parse(self.path).getroot()
         child = {j.get("name"): link(j, "child") for j in tree.findall("joint")}
         together: dict[int, list[str]] = {i: [] for i in range(1, self.model.njoints)}
@@ -138,7 +138,10 @@ class Body:
         return found
 
     def columns(self, q: Array, dq: Array, ddq: Array) -> Array:
-        """The regressor of the standard parameters (samples, joints, 10 joints)."""
+        """The regressor of the standard parameters (samples, joints, 10 joints).
+
+        q, dq and ddq are (joints, samples), in rad or m, and per s and s2.
+        """
         import pinocchio
 
         model = self.model
