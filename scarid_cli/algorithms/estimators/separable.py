@@ -67,8 +67,7 @@ class Estimator(Held):
 
 
 def _column(rows: Rows, joint: int, velocity: float) -> tuple[int, Array]:
-    _, dq, ddq, _ = rows.motion
-    return joint, Stribeck(joint, velocity).torque(dq[joint - 1], ddq[joint - 1])
+    return joint, Stribeck(joint, velocity).torque(rows.motion[1][joint - 1])
 
 
 def _slope(rows: Rows, joint: int, velocity: float) -> Array:

@@ -94,10 +94,10 @@ class AxisTerm(Term):
 
     def column(self, samples: Samples) -> Column:
         axis = self.joint - 1
-        return {axis: self.torque(samples.dq[axis], samples.ddq[axis])}
+        return {axis: self.torque(samples.dq[axis])}
 
-    def torque(self, dq: Array, ddq: Array) -> Array:
-        """Per unit of the parameter, from velocity and acceleration of the joint (samples)."""
+    def torque(self, dq: Array) -> Array:
+        """The torque or force per unit of the parameter, from the velocity of the joint."""
         raise NotImplementedError
 
 
@@ -107,7 +107,7 @@ class Viscous(AxisTerm):
     NAME, SYMBOL, UNITS = "viscous", "fv{i}", VISCOUS
     NEVER_NEGATIVE = True
 
-    def torque(self, dq: Array, ddq: Array) -> Array:  # noqa: ARG002
+    def torque(self, dq: Array) -> Array:
         return dq
 
 
@@ -126,7 +126,7 @@ class Coulomb(AxisTerm):
         if not self.velocity >= 0.0:
             raise ValueError("velocity is negative")
 
-    def torque(self, dq: Array, ddq: Array) -> Array:  # noqa: ARG002
+    def torque(self, dq: Array) -> Array:
         direction: Array = np.tanh(dq / self.velocity) if self.velocity > 0.0 else np.sign(dq)
         return direction
 
@@ -142,7 +142,7 @@ class Stribeck(AxisTerm):
         if not self.velocity > 0.0:
             raise ValueError("velocity is not positive")
 
-    def torque(self, dq: Array, ddq: Array) -> Array:  # noqa: ARG002
+    def torque(self, dq: Array) -> Array:
         ratio = dq / self.velocity
         friction: Array = np.sign(dq) * np.exp(-ratio * ratio)
         return friction
@@ -154,7 +154,7 @@ class ViscousForward(AxisTerm):
     NAME, SYMBOL, UNITS = "viscous-forward", "fv{i}+", VISCOUS
     NEVER_NEGATIVE = True
 
-    def torque(self, dq: Array, ddq: Array) -> Array:  # noqa: ARG002
+    def torque(self, dq: Array) -> Array:
         return np.maximum(dq, 0.0)
 
 
@@ -164,7 +164,7 @@ class ViscousBackward(AxisTerm):
     NAME, SYMBOL, UNITS = "viscous-backward", "fv{i}-", VISCOUS
     NEVER_NEGATIVE = True
 
-    def torque(self, dq: Array, ddq: Array) -> Array:  # noqa: ARG002
+    def torque(self, dq: Array) -> Array:
         return np.minimum(dq, 0.0)
 
 
@@ -174,7 +174,7 @@ class CoulombForward(AxisTerm):
     NAME, SYMBOL, UNITS = "coulomb-forward", "fs{i}+", TORQUE
     NEVER_NEGATIVE, JUMPS = True, True
 
-    def torque(self, dq: Array, ddq: Array) -> Array:  # noqa: ARG002
+    def torque(self, dq: Array) -> Array:
         return (dq > 0.0).astype(np.float64)
 
 
@@ -184,7 +184,7 @@ class CoulombBackward(AxisTerm):
     NAME, SYMBOL, UNITS = "coulomb-backward", "fs{i}-", TORQUE
     NEVER_NEGATIVE, JUMPS = True, True
 
-    def torque(self, dq: Array, ddq: Array) -> Array:  # noqa: ARG002
+    def torque(self, dq: Array) -> Array:
         return -(dq < 0.0).astype(np.float64)
 
 
@@ -193,7 +193,7 @@ class Offset(AxisTerm):
 
     NAME, SYMBOL, UNITS = "offset", "off{i}", TORQUE
 
-    def torque(self, dq: Array, ddq: Array) -> Array:  # noqa: ARG002
+    def torque(self, dq: Array) -> Array:
         return np.ones_like(dq)
 
 
@@ -202,8 +202,8 @@ class Mass(AxisTerm):
 
     NAME, SYMBOL, UNITS = "mass", "Ia{i}", INERTIA
 
-    def torque(self, dq: Array, ddq: Array) -> Array:  # noqa: ARG002
-        return ddq
+    def column(self, samples: Samples) -> Column:
+        return {self.joint - 1: samples.ddq[self.joint - 1]}
 
 
 # The terms that [[parameter]] may name; those of the planar arm are in planar.py.
