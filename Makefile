@@ -1,17 +1,18 @@
-# make paper   the paper's identification procedure, from excitation to build/paper/report.html
+# make paper    the paper's identification procedure, from excitation to build/paper/report.html
 # make paper-montecarlo SEEDS=50   the same over many seeds: medians, quartiles, rankings
-# make test    the whole test suite
-# make lint    ruff and mypy
-# make bench   start-up, time per sample, memory
+# make test     the whole test suite
+# make docs-test   the code blocks of the documentation, including those that take long
+# make lint     ruff and mypy
+# make bench    start-up, time per sample, memory
 # make bench-differentiators   every differentiator and its peers on known signals
-# make crossvalidate           online identification of twenty simulated experiments
-# make montecarlo              coverage of the stated intervals, and whether bias is caught
+# make crossvalidate   online identification of twenty simulated experiments
+# make montecarlo      coverage of the stated intervals, and whether bias is detected
 # make emps EMPS=emps_train.csv   every differentiator on the real EMPS log
-# make docs    docs/tables.md from schemas/
-# make samples the small log and parameters under samples/
-# make clean   remove what the above made
+# make docs     generate docs/tables.md from schemas/
+# make samples  generate the small log and its parameters under samples/
+# make clean    remove everything that the other targets made
 #
-# Each does all of its own set-up; it needs Python 3.11 or newer, and a C compiler for speed.
+# Each target does all of its own set-up. It needs Python 3.11 or newer, and a C compiler for speed.
 
 PYTHON ?= python3
 VENV   := .venv
@@ -19,7 +20,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test lint bench bench-differentiators crossvalidate montecarlo emps docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-differentiators crossvalidate montecarlo emps docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -43,6 +44,9 @@ $(VENV)/tested: $(VENV)/installed
 
 test: $(VENV)/tested
 	$(BIN)/python -m pytest -n auto --maxprocesses 4
+
+docs-test: $(VENV)/tested
+	SCARID_DOCS=all $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/docs
 
 lint: $(VENV)/tested
 	$(BIN)/ruff check .
@@ -78,8 +82,8 @@ clean:
 
 # --- the paper's procedure ------------------------------------------------------------------------
 #
-# METHOD.direct.*: on the identification trajectory; METHOD.cross.*: on another one; METHOD.common.*:
-# parameters of METHOD on one motion of the other log for all, zero-phase filtered.
+# METHOD.direct.* is validated on the trajectory of the identification, METHOD.cross.* on another one.
+# METHOD.common.* uses the other trajectory too, but one zero-phase filtered motion for all methods.
 
 P := build/paper
 
@@ -88,15 +92,15 @@ OWN     := p2smd-matched kalman 2smd-mended astd-mended
 ONLINE  := $(PRINTED) $(OWN)
 METHODS := $(ONLINE) kalman-wls
 
-# As in the paper: filtered log, settings of Table 1, derivatives beside the torque as it is.
+# As in the paper: the log is filtered, the settings are those of Table 1, and torques are not matched.
 OPTIONS_ed-fir := --method ed-fir --preset table1 --no-match
 OPTIONS_2smd   := --method 2smd --preset table1 --no-match
 OPTIONS_astd   := --method astd --preset table1 --no-match
 OPTIONS_p2smd  := --method p2smd --preset table1 --no-match
-# The same with gains that can follow the motion.
+# The same, with gains that can follow the motion.
 OPTIONS_2smd-mended := --method 2smd --no-match
 OPTIONS_astd-mended := --method astd --no-match
-# Ours: nothing before the soft sensor.
+# Our methods: the log is not filtered before the soft sensor, and torques are matched.
 OPTIONS_p2smd-matched := --method p2smd --preset table1 --match
 OPTIONS_kalman        := --method kalman --match
 OPTIONS_kalman-wls    := --method kalman --match
@@ -149,7 +153,7 @@ $(foreach e,direct cross,$(eval $(call MOTION,$e)))
 $(P)/%.parameters.parquet $(P)/%.trace.parquet: $(P)/%.direct.motion.parquet
 	$(SCARID) identify --estimator rls --trace $(P)/$*.trace.parquet $< -o $(P)/$*.parameters.parquet
 
-# With the statistics of the rows: weights, slow rows left out, the delay of the torques fitted.
+# Joints are weighted, slow rows are left out, and the delay of the torques is fitted.
 $(P)/kalman-wls.parameters.parquet: $(P)/kalman.direct.motion.parquet
 	$(SCARID) identify --estimator wls --drop-slow 0.1 --align $< -o $@
 
@@ -180,7 +184,7 @@ $(M)/report.html: $(foreach s,$(shell seq $(SEEDS)),$(M)/$s/done) samples/paper/
 	  $(foreach s,$(shell seq $(SEEDS)),$(call of,$(M)/$s)) \
 	  --html $@ --markdown $(M)/report.md --title "The paper's study over $(SEEDS) seeds"
 
-# Seeds 2 s + 1 and 2 s + 2: as of `make crossvalidate`, and apart from those of `make paper`.
+# The seeds are 2 s + 1 and 2 s + 2, as in `make crossvalidate`; `make paper` uses others.
 $(M)/%/done: $(VENV)/installed
 	@mkdir -p $(@D)
 	$(MAKE) --silent P=$(@D) SEED_direct=$$((2 * $* + 1)) SEED_cross=$$((2 * $* + 2)) repetition
@@ -189,7 +193,7 @@ $(M)/%/done: $(VENV)/installed
 
 repetition: $(call of,$(P))
 
-# Keep every table on the way: each can be looked at with `scarid info` or `scarid convert`.
+# Keep all intermediate tables, so that `scarid info` and `scarid convert` can show them.
 .SECONDARY:
 
 # --- samples --------------------------------------------------------------------------------------

@@ -178,7 +178,7 @@ def estimators() -> None:
     def ours(p0: float, *, trace: bool) -> Any:
         rls = ESTIMATORS.load("rls")(p0=p0)
         state, _ = rls.step(rls.init(np.zeros(8)), regression, trace=trace)
-        return rls.fit(state).estimates
+        return rls.fit(state).fit.estimates
 
     def padasip_s() -> Any:
         filtering = padasip.filters.FilterRLS(8, mu=1.0, eps=0.01, w=np.zeros(8))

@@ -62,7 +62,7 @@ def identified(motion: Motion) -> Array:
     rls = ESTIMATORS.load("rls")()
     W = ROBOT.regressor(*kinematics)
     state, _ = rls.step(rls.init(np.zeros(8)), plain(W, np.ascontiguousarray(tau.T)))
-    estimates: Array = rls.fit(state).estimates
+    estimates: Array = rls.fit(state).fit.estimates
     return estimates
 
 

@@ -18,7 +18,7 @@ from crossvalidation import Log, log, seen
 from defaults import PERIOD, ROBOT
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
-from scarid_cli.algorithms.statistics.diagnostics import Z95
+from scarid_cli.algorithms.statistics.jackknife import Z95
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Metadata, Table, doubles
 from scarid_cli.stages.identify import Treatment, identify

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -21,6 +22,7 @@ hypothesis.settings.load_profile("patient")
 
 ROOT = Path(__file__).parent.parent
 SHARED = ROOT.parent / "shared"
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?(?![\w.])")
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,13 @@ def refused(result: Result, status: int, *told: str) -> None:
     assert result.err.count("\n") == 1
     for words in told:
         assert words in result.err
+
+
+def assert_alike(found: str, expected: str) -> None:
+    """Equal texts, but for the last digits of numbers."""
+    assert NUMBER.sub("#", found) == NUMBER.sub("#", expected)
+    numbers = [float(x) for x in NUMBER.findall(found)]
+    assert numbers == pytest.approx([float(x) for x in NUMBER.findall(expected)], 1e-9, 1e-12)
 
 
 @pytest.fixture
@@ -81,7 +90,7 @@ def shell(tmp_path: Path) -> Callable[..., Result]:
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=300,
             check=False,
         )
         return Result(done.returncode, done.stdout, done.stderr)

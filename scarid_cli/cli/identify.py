@@ -103,7 +103,7 @@ def command(
     treatment = treatment_of(rest)
     if trace and not method.RECURSIVE:
         raise UsageFault(f"--trace: {estimator} has no estimates after every sample")
-    if treatment.align and hasattr(method, "for_robot"):
+    if treatment.align and not method.ALIGNS:
         raise UsageFault(f"--align does not go with --estimator {estimator}")
     if (save or resumed or trace) and (treatment.holds or method.HOLDS):
         what = f"--estimator {estimator}" if method.HOLDS else "--decimate or --align"
@@ -118,9 +118,9 @@ def command(
         if initial == "apriori":
             start = arm.apriori
         elif initial:
-            from scarid_cli.stages.validate import estimates
+            from scarid_cli.stages.parameters import identified
 
-            _, start = estimates(run.read(initial, "parameters"), arm)
+            start = identified(run.read(initial, "parameters"), arm).theta
         else:
             start = np.zeros(len(arm.parameters))
         told = {

@@ -37,6 +37,7 @@ def command(
     from scarid_cli.cli.treatment import for_robot, treatment_of
     from scarid_cli.errors import UsageFault
     from scarid_cli.stages import validate as stage
+    from scarid_cli.stages.parameters import identified
 
     treatment = treatment_of(rest)
     if treatment.holds and predictions:
@@ -47,8 +48,8 @@ def command(
         known = run.read(parameters, "parameters")
         table, arm = run.read_for(file, "motion", robot or known.meta.robot, torques=True)
         arm, treatment = for_robot(arm, treatment, rest)
-        arm, theta = stage.estimates(known, arm)
-        result = stage.validate(
-            run.recorded(table), arm, theta, treatment=treatment, predictions=side
-        )
+        model = identified(known, arm)
+        result = stage.validate(run.recorded(table), model, treatment=treatment, predictions=side)
         run.write(result, out)
+        if model.delay:
+            run.say(f"torques are predicted {1e3 * model.delay:.3g} ms early, as identified")

@@ -10,7 +10,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from scarid_cli.algorithms.estimators.ekf import State
+from scarid_cli.algorithms.estimators.ekf import FilterState
 from scarid_cli.algorithms.regression.information import Information
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
@@ -18,7 +18,9 @@ from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.stages.identify import Checkpoint
 
-KNOWN = {kind.__name__: kind for kind in (Blocks, Information, Checkpoint, Rows, State, Subsample)}
+KNOWN = {
+    kind.__name__: kind for kind in (Blocks, Information, Checkpoint, FilterState, Rows, Subsample)
+}
 
 
 def saved(checkpoint: Checkpoint, settings: dict[str, Any]) -> bytes:

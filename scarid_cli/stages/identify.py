@@ -1,47 +1,30 @@
-"""Estimate a robot's parameters from a motion, and say whether to believe them."""
+"""Estimate a robot's parameters from a motion, and judge whether they can be relied on."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
-from typing import Any, ClassVar, Protocol
+from dataclasses import dataclass, replace
+from typing import Any
 
-import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.regression.information import (
-    RESIDUAL,
-    Fit,
-    NotIdentifiableError,
-    weakest,
-)
-from scarid_cli.algorithms.regression.rows import Rows, with_delay
+from scarid_cli.algorithms.regression.estimation import BaseEstimator
+from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiableError
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.diagnostics import LAG, Diagnostics, diagnose
-from scarid_cli.algorithms.statistics.essential import Essential, essential
+from scarid_cli.algorithms.statistics.lag_test import LAG
+from scarid_cli.algorithms.statistics.outcome import Outcome, outcome
 from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
-from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
+from scarid_cli.algorithms.statistics.verdict import InUse, combination
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
-from scarid_cli.io import schemas
-from scarid_cli.io.table import Metadata, Table, doubles, number, segment_field, with_columns
+from scarid_cli.io.table import Table, number, segment_field, with_columns
 from scarid_cli.stages import Sink
+from scarid_cli.stages.parameters import parameters
 from scarid_cli.stages.rows import Treatment, treated
 
-LAGS = 5  # rows that the subsample of a long record has at least in the lag that tells of bias
-ALIGNMENTS = 3  # times that the delay is fitted, each from the estimates before
-
-
-class Estimator(Protocol):
-    """The interface of every estimator (see `algorithms/estimators/__init__.py`)."""
-
-    RECURSIVE: ClassVar[bool]
-    HOLDS: ClassVar[bool]
-
-    def init(self, initial: Array) -> Any: ...
-    def step(self, state: Any, rows: Rows, *, trace: bool = False) -> tuple[Any, Array]: ...
-    def fit(self, state: Any) -> Fit: ...
+LAGS = 5  # rows that the subsample of a long record has at least in the lag of the lag test
 
 
 @dataclass(frozen=True)
@@ -69,7 +52,7 @@ class Checkpoint:
 def identify(
     table: Table,
     robot: Robot,
-    estimator: Estimator,
+    estimator: BaseEstimator,
     initial: Array,
     *,
     treatment: Treatment | None = None,
@@ -84,33 +67,29 @@ def identify(
     estimation left off, `keep` receives where this one does.
     """
     treatment = treatment or Treatment()
-    period = table.meta.period or 0.0
-    if hasattr(estimator, "for_robot"):
-        estimator = estimator.for_robot(robot, period)
+    estimator = estimator.for_robot(robot)
     if trace:
         schema = _trace_schema(robot, table)
         meta = replace(table.meta, kind="trace", robot=robot.name)
         trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    holds = treatment.holds or estimator.HOLDS
-    checkpoint = checkpoint or Checkpoint.begun(estimator.init(initial), period, holds=holds)
+    if checkpoint is None:
+        holds = treatment.holds or estimator.HOLDS
+        state = estimator.init(initial)
+        checkpoint = Checkpoint.begun(state, table.meta.period or 0.0, holds=holds)
     for batch, rows in treated(table, robot, treatment, checkpoint.seen):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))
             trace.write(with_columns(batch, schema, new))
     _check_enough(table, robot, checkpoint.subsample.counted)
-    try:
-        found = _found(estimator, initial, checkpoint, treatment, period)
-    except NotIdentifiableError as error:
-        raise BadData(
-            f"{table.name}: not identifiable: the motion leaves "
-            f"{combination(error.direction[: len(robot.names)], robot.names)} undetermined; "
-            "use a log that excites every joint"
-        ) from None
-    meta = replace(table.meta, kind="parameters", robot=robot.name)
+    found = _outcome(table, robot, estimator, initial, checkpoint, treatment)
     if keep:
         keep(checkpoint)
-    return _parameters(found, robot, meta, variance=variance)
+    meta = replace(table.meta, kind="parameters", robot=robot.name)
+    scores = found.found.scores
+    weighted = scores is not None and scores.whitening is not None
+    in_use = InUse(treatment.slow, treatment.align, weighted, treatment.essential)
+    return parameters(found, robot, meta, in_use, variance=variance)
 
 
 def _check_enough(table: Table, robot: Robot, counted: int) -> None:
@@ -124,7 +103,7 @@ def _check_enough(table: Table, robot: Robot, counted: int) -> None:
 
 
 def _stepped(
-    estimator: Estimator, checkpoint: Checkpoint, rows: Rows, *, trace: bool
+    estimator: BaseEstimator, checkpoint: Checkpoint, rows: Rows, *, trace: bool
 ) -> tuple[Checkpoint, Array]:
     state, estimates = estimator.step(checkpoint.state, rows, trace=trace)
     seen = int(rows.at[-1]) + 1 if rows.samples else checkpoint.seen
@@ -132,148 +111,32 @@ def _stepped(
     return Checkpoint(state, checkpoint.subsample.add(rows), blocks, seen), estimates
 
 
-@dataclass(frozen=True)
-class Found:
-    """What came out: the fit, its statistics, and the delay [s] with its error if it was fitted.
-
-    `excitation` is the root-mean-square torque that a unit of each parameter makes.
-    """
-
-    fit: Fit
-    excitation: Array
-    diagnostics: Diagnostics | None
-    reduced: Essential
-    samples: int
-    delay: tuple[float, float] | None
-
-
-def _found(
-    estimator: Estimator,
+def _outcome(
+    table: Table,
+    robot: Robot,
+    estimator: BaseEstimator,
     initial: Array,
     checkpoint: Checkpoint,
     treatment: Treatment,
-    period: float,
-) -> Found:
-    period *= float(np.prod(treatment.decimate)) if treatment.decimate else 1.0
-    rows = checkpoint.subsample.rows()
-    fit = estimator.fit(checkpoint.state)
-    own = len(fit.estimates)
-    if treatment.align:
-        fit, rows = _aligned(estimator, initial, rows, fit, period)
-    rows = fit.rows or rows
-    diagnostics = None
-    if fit.robust:
-        record = None
-        if checkpoint.blocks and not checkpoint.subsample.complete:
-            record = checkpoint.blocks.whole()
-        diagnostics = diagnose(rows, fit, period * checkpoint.subsample.thin, own, record)
-    delay = None
-    if treatment.align and diagnostics:
-        delay = (float(fit.estimates[own]), float(diagnostics.errors[own]))
-        fit, diagnostics = _without_nuisance(fit, diagnostics, own)
-    reduced = Essential(fit, (), 0.0)
-    if treatment.essential:
-        reduced = essential(fit, float((rows.scales > 0.0).sum()))
-    counted = rows.W[:, :, : len(fit.estimates)] * (rows.scales > 0.0)[:, :, None]
-    excitation = np.sqrt((counted**2).sum(axis=(0, 1)) / max((rows.scales > 0.0).sum(), 1))
-    return Found(fit, excitation, diagnostics, reduced, checkpoint.subsample.total, delay)
-
-
-def _aligned(
-    estimator: Estimator, initial: Array, rows: Rows, fit: Fit, period: float
-) -> tuple[Fit, Rows]:
-    """The fit with the delay of the torques as one more parameter."""
-    start = np.append(initial, 0.0)
-    wide = rows
-    for _ in range(ALIGNMENTS):
-        wide = with_delay(rows, fit.estimates, period)
-        fit = estimator.fit(estimator.step(estimator.init(start), wide)[0])
-    return fit, wide
-
-
-def _without_nuisance(fit: Fit, diagnostics: Diagnostics, own: int) -> tuple[Fit, Diagnostics]:
-    return (
-        replace(
-            fit, estimates=fit.estimates[:own], unit_covariance=fit.unit_covariance[:own, :own]
-        ),
-        replace(diagnostics, errors=diagnostics.errors[:own]),
-    )
+) -> Outcome:
+    try:
+        return outcome(
+            estimator,
+            initial,
+            checkpoint.state,
+            checkpoint.subsample,
+            checkpoint.blocks,
+            align=treatment.align,
+            reduce=treatment.essential,
+        )
+    except NotIdentifiableError as error:
+        raise BadData(
+            f"{table.name}: not identifiable: the motion leaves "
+            f"{combination(error.direction[: len(robot.names)], robot.names)} undetermined; "
+            "use a log that excites every joint"
+        ) from None
 
 
 def _trace_schema(robot: Robot, table: Table) -> pa.Schema:
-    parameters = (number(p.name, p.unit) for p in robot.parameters)
-    return pa.schema([number("t", "s"), *parameters, *segment_field(table)])
-
-
-def _parameters(found: Found, robot: Robot, meta: Metadata, *, variance: str) -> Table:
-    fit, diagnostics = found.reduced.fit, found.diagnostics
-    names = [*robot.names, *(name for name, _ in fit.added)]
-    units = [*(p.unit for p in robot.parameters), *(unit for _, unit in fit.added)]
-    errors = fit.standard_errors(variance=variance)
-    robust = diagnostics.errors.copy() if diagnostics else np.full(len(names), np.nan)
-    robust[list(found.reduced.dropped)] = np.nan
-    half = robust * (diagnostics.quantile if diagnostics else np.nan)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        relative = 100.0 * errors / np.abs(fit.estimates)
-    schema = schemas.load("parameters").arrow()
-    columns = [
-        pa.array(names, pa.string()),
-        pa.array(units, pa.string()),
-        doubles(fit.estimates),
-        known(errors),
-        known(relative),
-        known(robust),
-        known(fit.estimates - half),
-        known(fit.estimates + half),
-    ]
-    if robot.body:
-        written = [p.stands_for or p.name for p in robot.parameters]
-        columns.append(pa.array([*written, *names[len(written) :]], pa.string()))
-    else:
-        schema = schema.remove(schema.get_field_index("stands_for"))
-    batch = pa.RecordBatch.from_arrays(columns, schema=schema)
-    extra = _told(found, robot, names, robust if diagnostics else errors)
-    return Table("identify", schema, replace(meta, extra=extra), iter([batch]))
-
-
-def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[str, Any]:
-    """What the metadata say of the estimation, the verdict among it."""
-    fit, diagnostics = found.fit, found.diagnostics
-    scaled, direction = weakest(fit.unit_covariance)
-    evidence = Evidence(
-        names=[n for i, n in enumerate(names) if i not in found.reduced.dropped],
-        estimates=np.delete(found.reduced.fit.estimates, found.reduced.dropped),
-        errors=np.delete(errors, found.reduced.dropped),
-        condition=fit.condition,
-        scaled_condition=scaled,
-        weak=combination(direction, names),
-        diagnostics=diagnostics,
-    )
-    judged = verdict(evidence, robot)
-    extra: dict[str, Any] = {
-        "condition_number": fit.condition if np.isfinite(fit.condition) else None,
-        "scaled_condition_number": scaled,
-        # Of weighted rows it is near 1 and says nothing; `joints` has theirs.
-        "residual_deviation": float(np.sqrt(fit.variance))
-        if fit.variance >= 0.0 and fit.whitening is None
-        else None,
-        "samples": found.samples,
-        "excitation": dict(zip(names, found.excitation.tolist(), strict=False)),
-        "verdict": judged.grade,
-        "reasons": list(judged.reasons),
-        **fit.extra,
-    }
-    if diagnostics:
-        extra["joints"] = [asdict(joint) for joint in diagnostics.joints]
-        extra["lag_share"] = diagnostics.lag_share
-    if found.delay:
-        extra["delay"], extra["delay_error"] = found.delay
-    if found.reduced.dropped:
-        extra["dropped"] = [names[i] for i in found.reduced.dropped]
-        extra["dropped_cost"] = found.reduced.cost
-    return extra
-
-
-def known(values: Array) -> pa.Array:
-    """A column whose values that do not exist (nan, inf) are empty cells."""
-    return pa.array([x if np.isfinite(x) else None for x in values.tolist()], pa.float64())
+    fields = (number(p.name, p.unit) for p in robot.parameters)
+    return pa.schema([number("t", "s"), *fields, *segment_field(table)])

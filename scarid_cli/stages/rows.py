@@ -22,11 +22,10 @@ GAP = 0.05  # s: more than the statistics of a long record leave between its sam
 class Treatment:
     """What is done to the rows before they are fitted.
 
-    `skip` rows at the start and at the end are left out; W and the torques are decimated by each
-    factor in turn; rows of a joint slower than `slow` (joints) [rad/s or m/s] are left out;
-    `align` fits the time by which the torques lead the motion as well; `essential` drops what is
-    not known.
-    The last two are the estimation's own.
+    `skip` rows at the start and at the end of the table are left out; W and the torques are
+    decimated by each factor in turn; rows of a joint slower than `slow` (joints) [rad/s or m/s] are
+    left out. The other two are the estimation's own: `align` fits the time by which the torques
+    lead the motion as well; `essential` drops what is not known.
     """
 
     skip: tuple[int, int] = (0, 0)
@@ -43,9 +42,10 @@ class Treatment:
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of a motion that a robot's regression needs."""
+    """The columns of a motion that a robot's regression needs; its samples are h [s] apart."""
 
     robot: Robot
+    h: float
 
     @property
     def names(self) -> list[str]:
@@ -70,6 +70,7 @@ class Columns:
             self.robot,
             self.motion(batch),
             np.arange(at, at + batch.num_rows),
+            self.h,
             slow=slow,
             reference=self.references(columns, batch),
         )
@@ -98,11 +99,12 @@ def treated(
 def _treated(
     table: Table, robot: Robot, treatment: Treatment, seen: int
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
-    columns = Columns(robot)
+    columns = Columns(robot, table.meta.period or 0.0)
     slow = np.array(treatment.slow) if treatment.slow else None
     late = None if treatment.decimate else slow
     held, gaps = [], Gaps(table.meta.period or 0.0)
-    for first, kept in _within(settled_runs(table.batches), *treatment.skip):
+    start, end = treatment.skip
+    for first, kept in _after(start, settled_runs(_without_last(end, table.batches))):
         rows = columns.rows(table.columns, kept, seen + first + gaps.before(kept), late)
         if treatment.holds:
             held.append(rows)
@@ -127,28 +129,30 @@ class Gaps:
         return (segment - self._first) * self._jump
 
 
-def _within(
-    parts: Iterator[tuple[int, pa.RecordBatch]], start: int, end: int
-) -> Iterator[tuple[int, pa.RecordBatch]]:
-    """Without the first and the last rows: these are held back until others follow."""
-    held: deque[tuple[int, pa.RecordBatch]] = deque()
-    rows = 0
-    for first, batch in parts:
-        skipped = max(0, start - first)
-        if skipped >= batch.num_rows:
-            continue
-        held.append((first + skipped, batch.slice(skipped)))
-        rows += batch.num_rows - skipped
-        while rows - held[0][1].num_rows >= end:
-            rows -= held[0][1].num_rows
+def _without_last(rows: int, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+    """Without the last rows of a table: these are held back until others follow."""
+    held: deque[pa.RecordBatch] = deque()
+    count = 0
+    for batch in batches:
+        held.append(batch)
+        count += batch.num_rows
+        while count - held[0].num_rows >= rows:
+            count -= held[0].num_rows
             yield held.popleft()
             if not held:
                 break
-        if held and rows > end:
-            at, oldest = held.popleft()
-            yield at, oldest.slice(0, rows - end)
-            held.appendleft((at + rows - end, oldest.slice(rows - end)))
-            rows = end
+    if count > rows:
+        yield held[0].slice(0, count - rows)
+
+
+def _after(
+    start: int, parts: Iterator[tuple[int, pa.RecordBatch]]
+) -> Iterator[tuple[int, pa.RecordBatch]]:
+    """Without the first rows of a table, each part with the number of its first row."""
+    for first, batch in parts:
+        skipped = max(0, start - first)
+        if skipped < batch.num_rows:
+            yield first + skipped, batch.slice(skipped)
 
 
 def _decimated(rows: Rows, factors: tuple[int, ...], slow: Array | None) -> Rows:

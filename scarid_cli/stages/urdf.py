@@ -13,14 +13,13 @@ from scarid_cli.algorithms.robots.physical import Physical, inertia_of, nearest
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table, doubles, number
 from scarid_cli.io.urdf import Inertial, rewritten
-from scarid_cli.stages.identify import known
-from scarid_cli.stages.validate import estimates
+from scarid_cli.stages.parameters import identified, known
 
 
 def physical(table: Table, robot: Robot) -> Physical:
     """The nearest to a table of parameters, in its robust errors, else in its standard errors."""
     batches = list(table.batches)
-    _, theta = estimates(replace(table, batches=iter(batches)), robot)
+    theta = identified(replace(table, batches=iter(batches)), robot).theta
     return nearest(robot, theta, _errors(table.columns, batches, len(theta)))
 
 

@@ -7,23 +7,14 @@ empty directory, with SAMPLES naming the folder samples/, and reading what came 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import Result
+from conftest import Result, assert_alike
 
 HERE = Path(__file__).parent
 CASES = sorted(path.parent.name for path in HERE.glob("*/cmd"))
-NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?(?![\w.])")
-
-
-def assert_alike(found: str, expected: str) -> None:
-    """Equal texts, but for the last digits of numbers."""
-    assert NUMBER.sub("#", found) == NUMBER.sub("#", expected)
-    numbers = [float(x) for x in NUMBER.findall(found)]
-    assert numbers == pytest.approx([float(x) for x in NUMBER.findall(expected)], 1e-9, 1e-12)
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -21,6 +21,7 @@ from scarid_cli.io.table import Table
 from scarid_cli.stages.differentiate import differentiate, matched
 from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
+from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.simulate import simulate
 from scarid_cli.stages.validate import validate
 
@@ -61,7 +62,8 @@ STAGES: dict[str, Stage] = {
     "filter zero-phase": lambda source: filtered(
         source, dict.fromkeys(["q1", "tau2"], ZeroPhase(20.0))
     ),
-    "validate": lambda source: validate(source, SCARA, SCARA.apriori),
+    "validate": lambda source: validate(source, Identified(SCARA, SCARA.apriori, 0.0)),
+    "validate, early": lambda source: validate(source, Identified(SCARA, SCARA.apriori, 2e-3)),
     "simulate": simulated,
     **{f"differentiate {name}": differentiated(name) for name in DIFFERENTIATORS.names},
     **{f"differentiate {name} --match": matching(name) for name in DIFFERENTIATORS.names},

@@ -22,6 +22,7 @@ from scarid_cli.io.table import Table, segments, without
 from scarid_cli.stages.differentiate import differentiate, matched
 from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
+from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.resample import resample
 from scarid_cli.stages.rows import Treatment
 from scarid_cli.stages.validate import validate
@@ -119,7 +120,7 @@ def test_estimates_of_a_gapped_log_are_those_of_its_rows(name: str, treatment: T
 
 def test_predictions_and_traces_tell_their_segment() -> None:
     predictions, trace = Kept(), Kept()
-    collected(validate(gapped(), SCARA, SCARA.apriori, predictions=predictions))
+    collected(validate(gapped(), Identified(SCARA, SCARA.apriori, 1e-3), predictions=predictions))
     identify(gapped(), SCARA, ESTIMATORS.load("rls")(), SCARA.apriori, trace=trace)
     expected = np.repeat(np.arange(len(LENGTHS)), LENGTHS)
     for kept in (predictions, trace):

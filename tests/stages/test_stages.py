@@ -16,6 +16,7 @@ from scarid_cli.io.table import Table, doubles, number
 from scarid_cli.stages.differentiate import differentiate
 from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
+from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.validate import validate
 
 
@@ -92,7 +93,7 @@ def test_parameters_a_motion_cannot_tell_are_named() -> None:
 
 def test_the_true_parameters_predict_exact_torques() -> None:
     kept = Kept()
-    result = validate(table(consistent()), SCARA, SCARA.apriori, predictions=kept)
+    result = validate(table(consistent()), Identified(SCARA, SCARA.apriori, 0.0), predictions=kept)
     metrics = collected(result).to_pydict()
     assert metrics["samples"] == [2000, 2000]
     np.testing.assert_allclose(metrics["r2"], 1.0, atol=1e-12)

@@ -61,7 +61,7 @@ def reference(joints: int, ticks: int) -> tuple[Array, Array]:
 
 
 def inertia(robot: Robot, q: Array) -> Array:
-    """The inertia matrix (samples, 2, 2) of docs/theory.md."""
+    """The inertia matrix of the planar arm (paper eq. 26): (samples, 2, 2)."""
     zz1r, zz2, mx, my = (robot.value(term) for term in ("ZZ1R", "ZZ2", "L1MX2", "L1MY2"))
     coupling = mx * np.cos(q[1]) - my * np.sin(q[1])
     rows = [[zz1r + zz2 + 2.0 * coupling, zz2 + coupling], [zz2 + coupling, zz2 + 0.0 * coupling]]

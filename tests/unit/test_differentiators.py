@@ -116,7 +116,7 @@ def test_setting_without_sense_is_refused(name: str, setting: str, value: float)
 
 
 def observer(q: Array, gamma0: float, gamma1: float, h: float) -> tuple[Array, Array]:
-    """Section D.1 of the equations without its adaptive terms, as transfer functions.
+    """P2SMD (paper eq. 7-8) without its adaptive terms, as transfer functions.
 
     Euler's rule puts w / h for s, with w = z - 1:
     v = gamma0 w (w + h gamma1) / D q, a = gamma0 gamma1 w^2 / D q,

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 import scipy.signal
+from unit.regressions import estimated
+from unit.slow_motions import THETA, P, smooth
 
-from scarid_cli.algorithms.estimators import ekf, iv, separable
+from scarid_cli.algorithms.estimators import ekf, iv, separable, wls
 from scarid_cli.algorithms.estimators.ekf import forward
 from scarid_cli.algorithms.estimators.ls import Estimator as LeastSquares
 from scarid_cli.algorithms.plants.loop import mechanism
 from scarid_cli.algorithms.regression.decimation import decimated
+from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.rows import Rows, plain, rows_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
@@ -40,13 +42,11 @@ def with_torques(extra: Array, noise: float = 0.02, seed: int = 0) -> Rows:
     motion = exact()
     tau = SCARA.torques(SCARA.regressor(*motion), SCARA.apriori) + extra
     tau = tau + noise * np.random.default_rng(seed).standard_normal(tau.shape)
-    return rows_of(SCARA, np.concatenate((motion, tau[None])), np.arange(len(T)))
+    return rows_of(SCARA, np.concatenate((motion, tau[None])), np.arange(len(T)), H)
 
 
-def fitted(estimator: Any, rows: Rows, initial: Array | None = None) -> Any:
-    solver = estimator.for_robot(SCARA, H) if hasattr(estimator, "for_robot") else estimator
-    start = np.zeros(rows.W.shape[2]) if initial is None else initial
-    return solver.fit(solver.step(solver.init(start), rows)[0])
+def found(estimator: BaseEstimator, rows: Rows, initial: Array | None = None) -> Estimation:
+    return estimated(estimator.for_robot(SCARA), rows, initial)
 
 
 # Stribeck friction
@@ -62,14 +62,18 @@ def stribeck(dq: Array) -> Array:
 
 def test_separable_recovers_a_stribeck_curve_and_halves_the_error_of_linear_friction() -> None:
     rows = with_torques(stribeck(exact()[1]))
-    fit = fitted(separable.Estimator(), rows)
+    estimation = found(separable.Estimator(), rows)
+    fit = estimation.fit
+    assert estimation.scores is not None
+    own = estimation.scores.rows
+    assert own is not None
     truth = np.concatenate((SCARA.apriori, list(STRIBECK.values())))
-    assert [name for name, _ in fit.added] == list(STRIBECK)
+    assert [name for name, _ in estimation.added] == list(STRIBECK)
     errors = fit.standard_errors()
     assert np.all(np.abs(fit.estimates - truth) < 4.0 * errors)
     np.testing.assert_allclose(fit.estimates[8:], truth[8:], rtol=0.03)
-    linear = fitted(LeastSquares(), rows)
-    residuals = [rows.y - rows.W @ linear.estimates, fit.rows.y - fit.rows.W @ fit.estimates]
+    linear = found(LeastSquares(), rows).fit
+    residuals = [rows.y - rows.W @ linear.estimates, own.y - own.W @ fit.estimates]
     linear_error, own_error = (np.sqrt((r**2).mean(axis=0)) for r in residuals)
     assert np.all(own_error < 0.5 * linear_error)
     np.testing.assert_allclose(own_error, 0.02, rtol=0.02)
@@ -85,19 +89,37 @@ def test_the_robot_with_stribeck_friction_predicts_what_was_fitted() -> None:
 
 def test_separable_without_dry_friction_is_refused() -> None:
     smooth = replace(SCARA, parameters=SCARA.parameters[:1])
-    with pytest.raises(UsageFault, match="no joint with dry friction"):
-        separable.Estimator().for_robot(smooth, H)
+    with pytest.raises(UsageFault, match="no joint with Coulomb friction"):
+        separable.Estimator().for_robot(smooth)
 
 
 # Instruments
 
 
+def test_instruments_are_not_attenuated_and_hausman_tells() -> None:
+    """Noise in the regressor, none in the instruments: least squares is off, and this is told."""
+    rng = np.random.default_rng(4)
+    W = smooth(8000, P, rng)[:, None, :]
+    y = W @ THETA + rng.standard_normal((8000, 1))
+    spoilt = plain(W + rng.standard_normal(W.shape) * W.std(), y, H)
+    least = estimated(wls.Estimator(), spoilt)
+    instrumental = iv.solved(spoilt, W, least)
+    off = np.abs(instrumental.fit.estimates - THETA)
+    assert np.all(off < 5.0 * instrumental.fit.standard_errors())
+    assert np.abs(least.fit.estimates - THETA).max() > 0.5
+    assert iv.hausman(spoilt, least, instrumental)[1] < 1e-6
+    clean = plain(W, y, H)
+    right = estimated(wls.Estimator(), clean)
+    other = iv.solved(clean, W + rng.standard_normal(W.shape) * W.std(), right)
+    assert iv.hausman(clean, right, other)[1] > 0.01
+
+
 def test_iv_without_a_reference_or_a_controller_is_refused() -> None:
-    solver = iv.Estimator().for_robot(SCARA, H)
+    solver = iv.Estimator().for_robot(SCARA)
     with pytest.raises(UsageFault, match="q1_ref"):
         solver.step(solver.init(np.zeros(8)), with_torques(np.zeros((2, len(T)))))
     with pytest.raises(UsageFault, match="no controller"):
-        iv.Estimator().for_robot(replace(SCARA, control=None), H)
+        iv.Estimator().for_robot(replace(SCARA, control=None))
 
 
 # Kalman filter
@@ -117,8 +139,8 @@ def test_the_forward_model_is_the_plant_s() -> None:
     b1, b2 = tau[0, 0] - rest1, tau[1, 0] - rest2
     determinant = m11 * zz2 - m12**2
     expected = [(zz2 * b1 - m12 * b2) / determinant, (m11 * b2 - m12 * b1) / determinant]
-    found = forward(SCARA, q, dq, tau[:, 0], SCARA.apriori)
-    np.testing.assert_allclose(found, expected, rtol=1e-9)
+    accelerations = forward(SCARA, q, dq, tau[:, 0], SCARA.apriori)
+    np.testing.assert_allclose(accelerations, expected, rtol=1e-9)
 
 
 def test_the_kalman_filter_comes_from_wrong_parameters_to_the_true_ones() -> None:
@@ -127,16 +149,16 @@ def test_the_kalman_filter_comes_from_wrong_parameters_to_the_true_ones() -> Non
     motion = exact()[:, :, :4000]
     tau = smooth.torques(smooth.regressor(*motion), SCARA.apriori)
     tau = tau + 0.02 * np.random.default_rng(0).standard_normal(tau.shape)
-    rows = rows_of(SCARA, np.concatenate((motion, tau[None])), np.arange(4000))
+    rows = rows_of(SCARA, np.concatenate((motion, tau[None])), np.arange(4000), H)
     start = SCARA.apriori * 1.3
-    fit = fitted(ekf.Estimator(acceleration_noise=0.2), rows, start)
+    fit = found(ekf.Estimator(acceleration_noise=0.2), rows, start).fit
     inertias = [SCARA.names.index(name) for name in ("ZZ1R", "ZZ2", "L1MX2")]
     np.testing.assert_allclose(fit.estimates[inertias], SCARA.apriori[inertias], rtol=0.03)
 
 
 def test_the_kalman_filter_needs_initial_parameters() -> None:
     with pytest.raises(UsageFault, match="--initial"):
-        ekf.Estimator().for_robot(SCARA, H).init(np.zeros(8))
+        ekf.Estimator().for_robot(SCARA).init(np.zeros(8))
 
 
 # Decimation

@@ -1,11 +1,12 @@
 """Extended Kalman filter of joint positions, velocities and parameters (the paper's ref. 45).
 
-For comparison: it needs no derivatives, but initial parameters (`--initial`), and is a hundred
-times slower. Reads positions and torques alone; the accelerations are those of the model.
+It is here for comparison: it needs no derivatives, but initial parameters (`--initial`), and takes
+a hundred times as long. It reads positions and torques only; accelerations are those of the model.
+Its errors are its own covariance, not robust ones.
 spread = 0.5: initial standard deviation of a parameter, in parts of its initial value (of 0.1 if
 that is 0).
 acceleration_noise = 2: what the model leaves out, standard deviation per sample [rad/s2 or m/s2].
-smoothing = 0.05: velocity over which dry friction changes its sign [rad/s or m/s].
+smoothing = 0.05: velocity over which Coulomb friction changes its sign [rad/s or m/s].
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import GIVEN, require_positive
+from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
@@ -27,7 +29,7 @@ TINY = 1e-6  # rad or m: least deviation of a position
 
 
 @dataclass(frozen=True)
-class State:
+class FilterState:
     """The state (position, velocity, parameters) and its covariance."""
 
     x: Array
@@ -35,33 +37,35 @@ class State:
 
 
 @dataclass(frozen=True)
-class Estimator:
+class Estimator(BaseEstimator):
     spread: float = 0.5
     acceleration_noise: float = 2.0
     smoothing: float = 0.05
     robot: Robot | None = field(default=None, metadata=GIVEN)
-    h: float = field(default=0.0, metadata=GIVEN)
 
     RECURSIVE: ClassVar[bool] = True
-    HOLDS: ClassVar[bool] = False
+    INITIAL: ClassVar[bool] = True
+    ALIGNS: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         require_positive(self, "spread", "acceleration_noise", "smoothing")
 
-    def for_robot(self, robot: Robot, h: float) -> Estimator:
-        return replace(self, robot=robot.smoothed(self.smoothing), h=h)
+    def for_robot(self, robot: Robot) -> Estimator:
+        return replace(self, robot=robot.smoothed(self.smoothing))
 
-    def init(self, prior: Array) -> State:
-        if not np.any(prior):
+    def init(self, initial: Array) -> FilterState:
+        if not np.any(initial):
             raise UsageFault("ekf needs initial parameters: --initial apriori, or a table")
         assert self.robot is not None
         n = len(self.robot.joints)
-        deviations = self.spread * np.where(prior == 0.0, 0.1, np.abs(prior))
+        deviations = self.spread * np.where(initial == 0.0, 0.1, np.abs(initial))
         # Velocities are not known at the start: nan until the first sample.
-        x = np.concatenate((np.full(2 * n, np.nan), prior))
-        return State(x, np.diag(np.concatenate((np.ones(2 * n), deviations)) ** 2))
+        x = np.concatenate((np.full(2 * n, np.nan), initial))
+        return FilterState(x, np.diag(np.concatenate((np.ones(2 * n), deviations)) ** 2))
 
-    def step(self, state: State, rows: Rows, *, trace: bool = False) -> tuple[State, Array]:
+    def step(
+        self, state: FilterState, rows: Rows, *, trace: bool = False
+    ) -> tuple[FilterState, Array]:
         assert self.robot is not None
         n = len(self.robot.joints)
         noise = self._position_noise()
@@ -77,21 +81,21 @@ class Estimator:
                 x, covariance = _corrected(x, covariance, q, noise)
             if trace:
                 estimates[k] = x[2 * n :]
-            x, covariance = self._predicted(x, covariance, tau)
-        return State(x, covariance), estimates
+            x, covariance = self._predicted(x, covariance, tau, rows.h)
+        return FilterState(x, covariance), estimates
 
-    def fit(self, state: State) -> Fit:
+    def fit(self, state: FilterState) -> Estimation:
         assert self.robot is not None
         n = 2 * len(self.robot.joints)
         if not np.isfinite(state.x).all():
             raise UsageFault("ekf diverged; start nearer (--initial) or smooth friction more")
-        return Fit(
+        fit = Fit(
             estimates=state.x[n:],
             unit_covariance=state.covariance[n:, n:],
             variance=1.0,
             condition=float("nan"),
-            robust=False,
         )
+        return Estimation(fit, scores=None)
 
     def _position_noise(self) -> Array:
         """Variance of a position that an encoder rounds."""
@@ -100,10 +104,10 @@ class Estimator:
         variance: Array = np.maximum(steps / np.sqrt(12.0), TINY) ** 2
         return variance
 
-    def _predicted(self, x: Array, covariance: Array, tau: Array) -> tuple[Array, Array]:
+    def _predicted(self, x: Array, covariance: Array, tau: Array, h: float) -> tuple[Array, Array]:
         """One period on, by the acceleration of the model and its derivatives."""
         assert self.robot is not None
-        n, h = len(self.robot.joints), self.h
+        n = len(self.robot.joints)
         with np.errstate(all="ignore"):
             acceleration, slope = self._acceleration(x, tau)
         F = np.eye(len(x))

@@ -1,19 +1,20 @@
-"""Iteratively reweighted least squares with Huber's weights (Huber 1964): outliers count less.
+"""Iteratively reweighted least squares with Huber's weights (Huber 1964), robust to outliers.
 
-Rows whose residual is beyond k deviations of their joint count k over their size; the deviation
-is the median absolute one over 0.6745. Holds all rows.
-k = 1.345: for 95 % of the efficiency of least squares on normal residuals.
+A row whose residual exceeds k standard deviations of its joint has a weight of k over its size. The
+standard deviation is the median absolute residual over 0.6745. All rows are held in memory.
+k = 1.345: gives 95 % of the efficiency of least squares if the residuals are normal.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import require_positive
-from scarid_cli.algorithms.regression.information import Fit, least_squares
-from scarid_cli.algorithms.regression.rows import Held, Rows, joined
+from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, Scores
+from scarid_cli.algorithms.regression.information import least_squares
+from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.arrays import Array
 
 ITERATIONS = 100
@@ -21,13 +22,13 @@ NORMAL = 0.6744897501960817  # median absolute value of a standard normal variab
 
 
 @dataclass(frozen=True)
-class Estimator(Held):
+class Estimator(HoldingEstimator):
     k: float = 1.345
 
     def __post_init__(self) -> None:
         require_positive(self, "k")
 
-    def fit(self, state: list[Rows]) -> Fit:
+    def fit(self, state: list[Rows]) -> Estimation:
         rows = joined(state)
         theta = least_squares(rows.W, rows.y, rows.scales).estimates
         for _ in range(ITERATIONS):
@@ -41,7 +42,7 @@ class Estimator(Held):
             theta = fit.estimates
             if np.all(moved <= 1e-10 * np.abs(theta)):
                 break
-        return replace(fit, whitening=np.diag(inverse), huber=self.k)
+        return Estimation(fit, Scores(whitening=np.diag(inverse), huber=self.k))
 
 
 def deviations(residual: Array, scales: Array) -> Array:

@@ -1,25 +1,27 @@
 """Instrumental variables from the simulated model, IDIM-IV (Janot, Vandanjon and Gautier 2014).
 
-The instruments are the regressor of a noise-free simulation of the robot in its loop, with the
-estimates before: noise of the measured motion cannot bias what it has no part in. The log must
-have its reference (q1_ref, ...) and the robot description its controller. Joints are weighted by
-their residuals. Comes with the Durbin-Wu-Hausman test against weighted least squares. Holds all
-rows. No settings.
+The instruments are the regressor along a noise-free simulation of the robot in its loop with the
+previous estimates, so noise of the measured motion cannot bias the estimates. The log must have its
+reference (q1_ref, ...) and the robot description its controller. Joints are weighted by their
+residuals. The Durbin-Wu-Hausman test against weighted least squares is reported. All rows are held
+in memory. No settings.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError
-from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableError
-from scarid_cli.algorithms.regression.rows import Held, Rows, joined, runs
+from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator
+from scarid_cli.algorithms.regression.information import NotIdentifiableError
+from scarid_cli.algorithms.regression.rows import Rows, joined, runs
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.diagnostics import shifts
+from scarid_cli.algorithms.statistics.jackknife import shifts
 from scarid_cli.algorithms.trajectories.hermite import refine
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -30,14 +32,15 @@ SETTLING = 0.5  # s: until a simulation that starts at rest follows its referenc
 
 
 @dataclass(frozen=True)
-class Estimator(Held):
+class Estimator(HoldingEstimator):
     robot: Robot | None = field(default=None, metadata=GIVEN)
-    h: float = field(default=0.0, metadata=GIVEN)
 
-    def for_robot(self, robot: Robot, h: float) -> Estimator:
+    ALIGNS: ClassVar[bool] = False
+
+    def for_robot(self, robot: Robot) -> Estimator:
         if robot.control is None:
             raise UsageFault(f"iv: robot {robot.name} has no controller to simulate it with")
-        return replace(self, robot=robot, h=h)
+        return replace(self, robot=robot)
 
     def step(
         self, state: list[Rows], rows: Rows, *, trace: bool = False
@@ -46,21 +49,21 @@ class Estimator(Held):
             raise UsageFault("iv needs the reference that the robot followed: columns q1_ref, ...")
         return super().step(state, rows, trace=trace)
 
-    def fit(self, state: list[Rows]) -> Fit:
+    def fit(self, state: list[Rows]) -> Estimation:
         rows = joined(state)
         start = wls.Estimator()
         plain = start.fit(start.step(start.init(np.zeros(rows.W.shape[2])), rows)[0])
-        theta = plain.estimates
+        theta = plain.fit.estimates
         for _ in range(ITERATIONS):
             instruments = self._simulated(rows, theta)
-            fit = _solved(rows, instruments, plain)
-            moved = np.abs(fit.estimates - theta)
-            theta = fit.estimates
-            if np.all(moved < 1e-3 * fit.standard_errors()):
+            found = solved(rows, instruments, plain)
+            moved = np.abs(found.fit.estimates - theta)
+            theta = found.fit.estimates
+            if np.all(moved < 1e-3 * found.fit.standard_errors()):
                 break
-        statistic, chance = hausman(rows, plain, fit, self.h)
+        statistic, chance = hausman(rows, plain, found)
         return replace(
-            fit, extra={"durbin_wu_hausman": {"statistic": statistic, "p_value": chance}}
+            found, extra={"durbin_wu_hausman": {"statistic": statistic, "p_value": chance}}
         )
 
     def _simulated(self, rows: Rows, theta: Array) -> Array:
@@ -68,11 +71,11 @@ class Estimator(Held):
         assert self.robot is not None
         assert rows.reference is not None
         instruments = np.zeros_like(rows.W)
-        settling = round(SETTLING / self.h)
+        settling = round(SETTLING / rows.h)
         for run in runs(rows.at):
             reference = rows.reference[:, :, run]
             if reference.shape[2] > 2 * settling:
-                motion = _followed(self.robot, theta, reference, self.h)
+                motion = _followed(self.robot, theta, reference, rows.h)
                 instruments[run] = self.robot.regressor(*motion)
                 instruments[run][:settling] = 0.0
         return instruments
@@ -111,9 +114,11 @@ def _followed(robot: Robot, theta: Array, reference: Array, h: float) -> list[Ar
     return [np.ascontiguousarray(np.pad(x[:, ::ratio], ((0, 0), (0, 1)), "edge")) for x in signals]
 
 
-def _solved(rows: Rows, instruments: Array, plain: Fit) -> Fit:
-    assert plain.whitening is not None
-    scales = (rows.scales * np.diag(plain.whitening))[:, :, None]
+def solved(rows: Rows, instruments: Array, plain: Estimation) -> Estimation:
+    """The estimates whose residual is orthogonal to the instruments, weighted as `plain` is."""
+    assert plain.scores is not None
+    assert plain.scores.whitening is not None
+    scales = (rows.scales * np.diag(plain.scores.whitening))[:, :, None]
     p = rows.W.shape[2]
     W, Z = ((x * scales).reshape(-1, p) for x in (rows.W, instruments))
     y = (rows.y[:, :, None] * scales).ravel()
@@ -124,17 +129,16 @@ def _solved(rows: Rows, instruments: Array, plain: Fit) -> Fit:
     theta = np.asarray(np.linalg.solve(gram, Z.T @ y), dtype=np.float64)
     residual = y - W @ theta
     inverse = np.linalg.inv(gram)
-    return replace(
-        plain,
+    fit = replace(
+        plain.fit,
         estimates=theta,
         unit_covariance=inverse @ (Z.T @ Z) @ inverse.T,
         variance=float(residual @ residual) / max(int((scales > 0.0).sum()) - p, 1),
-        rows=rows,
-        instruments=instruments,
     )
+    return Estimation(fit, replace(plain.scores, rows=rows, instruments=instruments))
 
 
-def hausman(rows: Rows, plain: Fit, fit: Fit, h: float) -> tuple[float, float]:
+def hausman(rows: Rows, plain: Estimation, found: Estimation) -> tuple[float, float]:
     """Whether two fits differ by more than chance: the statistic, and the chance of a greater one.
 
     Durbin, Wu and Hausman's, with the covariance of the difference from blocks left out of both, so
@@ -142,8 +146,8 @@ def hausman(rows: Rows, plain: Fit, fit: Fit, h: float) -> tuple[float, float]:
     """
     from scipy.special import fdtrc
 
-    difference = fit.estimates - plain.estimates
-    scatter = shifts(rows, fit, h) - shifts(rows, plain, h)
+    difference = found.fit.estimates - plain.fit.estimates
+    scatter = shifts(rows, found) - shifts(rows, plain)
     blocks, p = scatter.shape
     covariance = (blocks - 1) / blocks * scatter.T @ scatter
     if blocks <= p or not np.isfinite(covariance).all():

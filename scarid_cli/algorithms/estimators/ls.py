@@ -1,26 +1,23 @@
-"""Least squares by streaming orthogonal factorisation (paper eq. 25), never normal equations.
+"""Least squares by streaming orthogonal factorisation (paper eq. 25), without normal equations.
 
-Memory does not depend on the number of rows. No settings.
+The memory does not depend on the number of rows. No settings.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
-from scarid_cli.algorithms.regression.information import Fit, Information, absorb, empty, solve
+from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
+from scarid_cli.algorithms.regression.information import Information, absorb, empty, solve
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 
 
 @dataclass(frozen=True)
-class Estimator:
-    RECURSIVE: ClassVar[bool] = False
-    HOLDS: ClassVar[bool] = False
-
-    def init(self, prior: Array) -> Information:
+class Estimator(BaseEstimator):
+    def init(self, initial: Array) -> Information:
         """Of the initial parameters only their number counts."""
-        return empty(len(prior))
+        return empty(len(initial))
 
     def step(
         self,
@@ -31,5 +28,5 @@ class Estimator:
     ) -> tuple[Information, Array]:
         return absorb(state, rows.W, rows.y, rows.scales)
 
-    def fit(self, state: Information) -> Fit:
-        return solve(state)
+    def fit(self, state: Information) -> Estimation:
+        return Estimation(solve(state))

@@ -1,7 +1,7 @@
-"""Recursive least squares with forgetting (paper section 2.3, and section 5 for several factors).
+"""Recursive least squares with forgetting (paper section 2.3; several factors: section 5).
 
-In factored information form: the covariance stays symmetric positive definite, and bounded
-where forgetting meets no excitation.
+The recursion is in factored information form: the covariance stays symmetric positive definite, and
+bounded when the filter forgets without excitation.
 forgetting = 1: forgetting factor per sample, in (0, 1]; one, or one per parameter.
 p0 = 100: initial covariance, P0 = p0 I.
 """
@@ -14,7 +14,8 @@ from typing import ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import require_positive
-from scarid_cli.algorithms.regression.information import Fit, Information, absorb, prior, solve
+from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation, Scores
+from scarid_cli.algorithms.regression.information import Information, absorb, prior, solve
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -24,12 +25,12 @@ FADED = 1e-10
 
 
 @dataclass(frozen=True)
-class Estimator:
+class Estimator(BaseEstimator):
     forgetting: float | tuple[float, ...] = 1.0
     p0: float = 100.0
 
     RECURSIVE: ClassVar[bool] = True
-    HOLDS: ClassVar[bool] = False
+    INITIAL: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         require_positive(self, "p0")
@@ -63,6 +64,12 @@ class Estimator:
             trace=trace,
         )
 
-    def fit(self, state: Information) -> Fit:
-        # The errors of an estimate that forgets are not those of the whole record.
-        return replace(solve(state), robust=min(self.factors) == 1.0)
+    def widened(self) -> Estimator:
+        """The delay of the torques is forgotten no faster than any parameter."""
+        if not isinstance(self.forgetting, tuple):
+            return self
+        return replace(self, forgetting=(*self.forgetting, max(self.forgetting)))
+
+    def fit(self, state: Information) -> Estimation:
+        # The scores of an estimate that forgets are not those of the whole record.
+        return Estimation(solve(state), Scores() if min(self.factors) == 1.0 else None)

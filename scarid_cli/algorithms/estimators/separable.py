@@ -1,20 +1,22 @@
-"""Separable least squares with Stribeck friction (Golub and Pereyra 1973; paper's ref. 46).
+"""Separable least squares with Stribeck friction (Golub and Pereyra 1973; the paper's ref. 46).
 
-Dry friction gets a part that fades with speed, Fst sign(dq) exp(-(dq / vs)^2), on each joint that
-has dry friction. The velocities vs are searched, everything else is linear and solved for each of
-them. Joints are weighted by their residuals. Holds all rows. No settings.
+Each joint with Coulomb friction gets a part that decays with speed, Fst sign(dq) exp(-(dq / vs)^2).
+The velocities vs are searched; everything else is linear, and solved for each trial of them. Joints
+are weighted by their residuals. All rows are held in memory. No settings.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import GIVEN
-from scarid_cli.algorithms.regression.information import Fit, least_squares
-from scarid_cli.algorithms.regression.rows import Held, Rows, joined
+from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, Scores
+from scarid_cli.algorithms.regression.information import least_squares
+from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.terms import Coulomb, Stribeck
 from scarid_cli.arrays import Array
@@ -25,15 +27,17 @@ RANGE = (0.01, 1.0)  # of the velocities, in parts of the root-mean-square veloc
 
 
 @dataclass(frozen=True)
-class Estimator(Held):
+class Estimator(HoldingEstimator):
     robot: Robot | None = field(default=None, metadata=GIVEN)
 
-    def for_robot(self, robot: Robot, h: float) -> Estimator:  # noqa: ARG002
+    ALIGNS: ClassVar[bool] = False
+
+    def for_robot(self, robot: Robot) -> Estimator:
         if not any(isinstance(p.term, Coulomb) for p in robot.parameters):
-            raise UsageFault(f"separable: robot {robot.name} has no joint with dry friction")
+            raise UsageFault(f"separable: robot {robot.name} has no joint with Coulomb friction")
         return replace(self, robot=robot)
 
-    def fit(self, state: list[Rows]) -> Fit:
+    def fit(self, state: list[Rows]) -> Estimation:
         assert self.robot is not None
         rows = joined(state)
         joints = [p.term.joint for p in self.robot.parameters if isinstance(p.term, Coulomb)]
@@ -54,11 +58,10 @@ class Estimator(Held):
             y[:, j - 1] += slope * v
         whole = replace(_with_columns(linear, slopes), y=y)
         units = [self.robot.joints[j - 1] for j in joints]
-        return replace(
-            least_squares(whole.W, whole.y, rows.scales * inverse),
-            estimates=np.concatenate((theta, found)),
-            whitening=np.diag(inverse),
-            rows=whole,
+        fit = least_squares(whole.W, whole.y, rows.scales * inverse)
+        return Estimation(
+            replace(fit, estimates=np.concatenate((theta, found))),
+            Scores(whitening=np.diag(inverse), rows=whole),
             added=(
                 *((f"Fst{j}", u.torque_unit) for j, u in zip(joints, units, strict=True)),
                 *((f"vs{j}", f"{u.unit}/s") for j, u in zip(joints, units, strict=True)),

@@ -1,8 +1,9 @@
-"""Total least squares (Golub and Van Loan 1980): errors in the regressor as well as in the torque.
+"""Total least squares (Golub and Van Loan 1980), for errors in the regressor and in the torque.
 
-By the smallest singular vector of [W y], each column over its norm, so that all are taken to be
-wrong by the same part of their size. In one pass: the singular values are those of the triangle.
-Its covariance is the first-order one of Van Huffel and Vandewalle (1991, section 8.5). No settings.
+The estimates come from the smallest singular vector of [W y], each column divided by its norm, so
+all columns are assumed to be wrong by the same part of their size. It takes one pass, because the
+singular values are those of the triangle. The covariance is the first-order one of Van Huffel and
+Vandewalle (1991, section 8.5). No settings.
 """
 
 from __future__ import annotations
@@ -12,12 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.regression.estimation import Estimation
 from scarid_cli.algorithms.regression.information import Fit, Information, solve
 
 
 @dataclass(frozen=True)
 class Estimator(ls.Estimator):
-    def fit(self, state: Information) -> Fit:
+    def fit(self, state: Information) -> Estimation:
         plain = solve(state)  # refuses what is not identifiable
         p = state.parameters
         triangle = np.vstack((state.triangle, np.append(np.zeros(p), np.sqrt(state.residual))))
@@ -32,10 +34,10 @@ class Estimator(ls.Estimator):
         unit = gram + spread * gram @ gram * (1.0 + scaled @ scaled)
         rescale = norms[p] / norms[:p]
         freedom = max(state.weight - p, 1.0)
-        return Fit(
+        fit = Fit(
             estimates=scaled * rescale,
             unit_covariance=unit * np.outer(rescale, rescale),
             variance=(1.0 + scaled @ scaled) * spread / freedom,
             condition=plain.condition,
-            robust=False,
         )
+        return Estimation(fit, scores=None)

@@ -1,19 +1,18 @@
-"""Least squares with each joint weighted by its residual (Gautier 1997, "Dynamic identification of
-robots with power model"), in one pass.
+"""Least squares with each joint weighted by its residual (Gautier 1997), in one pass.
 
-The deviation of a joint's torque is that of the residual of its own rows, fitted alone. So that a
-joint with torques of hundreds of N m does not drown one with one N m. No settings.
+"Dynamic identification of robots with power model". The standard deviation of a joint's torque is
+that of the residual of its own rows, fitted alone. A joint with torques of hundreds of N m does not
+hide one with 1 N m. No settings.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation, Scores
 from scarid_cli.algorithms.regression.information import (
-    Fit,
     Information,
     absorb,
     empty,
@@ -24,25 +23,22 @@ from scarid_cli.algorithms.regression.information import (
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 
-State = tuple[Information, ...]
+JointsInformation = tuple[Information, ...]
 
 
 @dataclass(frozen=True)
-class Estimator:
-    RECURSIVE: ClassVar[bool] = False
-    HOLDS: ClassVar[bool] = False
-
-    def init(self, prior: Array) -> State:
+class Estimator(BaseEstimator):
+    def init(self, initial: Array) -> JointsInformation:
         """Of the initial parameters only their number counts: the joints are not known yet."""
-        return (empty(len(prior)),)
+        return (empty(len(initial)),)
 
     def step(
         self,
-        state: State,
+        state: JointsInformation,
         rows: Rows,
         *,
         trace: bool = False,  # noqa: ARG002
-    ) -> tuple[State, Array]:
+    ) -> tuple[JointsInformation, Array]:
         joints = rows.y.shape[1]
         parts = state if len(state) == joints else state * joints
         found = [
@@ -51,13 +47,13 @@ class Estimator:
         ]
         return tuple(part for part, _ in found), np.empty((0, rows.W.shape[2]))
 
-    def fit(self, state: State) -> Fit:
+    def fit(self, state: JointsInformation) -> Estimation:
         deviations = np.array([residual_deviation(part) for part in state])
         # A joint that is fitted exactly (no torque at all) must not outweigh all others.
         least = 1e-6 * max(deviations.max(), np.finfo(float).tiny)
         inverse = 1.0 / np.maximum(deviations, least)
         fit = solve(merged(state, inverse.tolist()))
-        return replace(fit, whitening=np.diag(inverse))
+        return Estimation(fit, Scores(whitening=np.diag(inverse)))
 
 
 def _of(rows: Rows) -> tuple[Array, Array, Array]:

@@ -44,6 +44,7 @@ def _decimated(rows: Rows, factor: int, sections: Array) -> Rows:
         y=lowpassed(rows.y, 0),
         scales=np.ascontiguousarray(rows.scales[kept]),
         at=rows.at[kept] // factor,
+        h=rows.h * factor,
         motion=lowpassed(rows.motion, 2),
         reference=None if rows.reference is None else rows.reference[:, :, kept],
     )

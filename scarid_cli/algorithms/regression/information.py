@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import information
 
 # Of the residual: r - c degrees of freedom, 1 as printed in eq. 32-33, r - 1 degrees of freedom.
 RESIDUAL, UNIT, SAMPLE = "residual", "unit", "sample"
 VARIANCES = (RESIDUAL, UNIT, SAMPLE)
+ROUNDING = 1e-15
 
 
 class NotIdentifiableError(ValueError):
@@ -53,16 +52,12 @@ class Information:
 
 @dataclass(frozen=True)
 class Fit:
-    """Estimates, their covariance for a residual variance of 1 (eq. 33), and the residual.
+    """The numbers of a linear fit.
 
-    `variance` is that of the residual, s^2 = |rho|^2 / (r - c); nan without redundancy;
-    `sample_variance` is |rho|^2 / (r - 1).
-    `condition` is the condition number of the observation matrix. `whitening` (joints, joints) is
-    what the rows of a sample were multiplied by; `huber` the residual [whitened] from which a
-    row counts less. `rows` are those in which the fit is linear, if not those it was given;
-    `instruments` (samples, joints, parameters) take the place of W in the scores.
-    `robust` is whether the estimates are where the scores vanish, so that these tell their errors.
-    `added` names and units of parameters beyond the robot's, `extra` what else there is to say.
+    `estimates` (parameters) and their `unit_covariance`, which is that of a residual variance of 1
+    (eq. 33). `variance` of the residual is s^2 = |rho|^2 / (r - c), nan without redundancy;
+    `sample_variance` is |rho|^2 / (r - 1). `condition` is the condition number of the observation
+    matrix.
     """
 
     estimates: Array
@@ -70,19 +65,17 @@ class Fit:
     variance: float
     condition: float
     sample_variance: float = float("nan")
-    whitening: Array | None = None
-    huber: float = float("inf")
-    rows: Rows | None = None
-    instruments: Array | None = None
-    robust: bool = True
-    added: tuple[tuple[str, str], ...] = ()
-    extra: dict[str, Any] = field(default_factory=dict)
 
     def standard_errors(self, variance: str = RESIDUAL) -> Array:
         """Square roots of the diagonal of the covariance, for one of VARIANCES."""
         size = {UNIT: 1.0, RESIDUAL: self.variance, SAMPLE: self.sample_variance}[variance]
         errors: Array = np.sqrt(size * np.diag(self.unit_covariance))
         return errors
+
+    def part(self, kept: slice | list[int]) -> Fit:
+        """The fit of some of the parameters; what the others cost stays in the numbers."""
+        covariance = self.unit_covariance[kept][:, kept]
+        return replace(self, estimates=self.estimates[kept], unit_covariance=covariance)
 
 
 def empty(parameters: int) -> Information:
@@ -183,11 +176,21 @@ def weakest(covariance: Array) -> tuple[float, Array]:
     From the covariance of the estimates, so that units do not matter.
     """
     errors = np.sqrt(np.diag(covariance))
-    gram = np.linalg.inv(covariance / np.outer(errors, errors))
+    gram = _inverse(covariance / np.outer(errors, errors))
     length = np.sqrt(np.diag(gram))
     values, directions = np.linalg.eigh(gram / np.outer(length, length))
     free = directions[:, 0] / length * errors
     return float(np.sqrt(values[-1] / max(values[0], 1e-300))), free / np.linalg.norm(free)
+
+
+def _inverse(correlation: Array) -> Array:
+    """The inverse of a correlation matrix, positive definite even where rounding left it singular.
+
+    An eigenvalue below the rounding error of the largest is not known better than that.
+    """
+    values, vectors = np.linalg.eigh(correlation)
+    inverse: Array = (vectors / np.maximum(values, ROUNDING * values[-1])) @ vectors.T
+    return inverse
 
 
 def _check_rank(R: Array, rows: float) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import ClassVar
 
 import numpy as np
 
@@ -18,15 +17,17 @@ class Rows:
     """W (samples, joints, parameters), torques y and scales (samples, joints).
 
     A row counts `scales` times, 0 leaves it out. `at` (samples) are the numbers of the samples in
-    the record; where they jump, the record has a gap. `motion` (4, joints, samples): position,
-    velocity, acceleration and torque the rows were made of; `reference` (2, joints, samples):
-    position and velocity that the robot was to follow, where the log has them.
+    the record, which are `h` [s] apart; where the numbers jump, the record has a gap. `motion`
+    (4, joints, samples): position, velocity, acceleration and torque that the rows were made of;
+    `reference` (2, joints, samples): position and velocity that the robot was to follow, where the
+    log has them.
     """
 
     W: Array
     y: Array
     scales: Array
     at: Numbers
+    h: float
     motion: Array
     reference: Array | None = None
 
@@ -41,6 +42,7 @@ class Rows:
             np.ascontiguousarray(self.y[chosen]),
             np.ascontiguousarray(self.scales[chosen]),
             self.at[chosen],
+            self.h,
             self.motion[:, :, chosen],
             None if self.reference is None else self.reference[:, :, chosen],
         )
@@ -52,55 +54,38 @@ class Rows:
             self.y[chosen],
             self.scales[chosen],
             self.at[chosen],
+            self.h,
             np.ascontiguousarray(self.motion[:, :, chosen]),
             None if self.reference is None else self.reference[:, :, chosen],
         )
 
 
-class Held:
-    """An estimator whose state is all rows so far: what it does with them is its `fit`."""
-
-    RECURSIVE: ClassVar[bool] = False
-    HOLDS: ClassVar[bool] = True
-
-    def init(self, prior: Array) -> list[Rows]:  # noqa: ARG002 (their number is that of W's columns)
-        return []
-
-    def step(
-        self,
-        state: list[Rows],
-        rows: Rows,
-        *,
-        trace: bool = False,  # noqa: ARG002 (there is nothing before the end)
-    ) -> tuple[list[Rows], Array]:
-        return [*state, rows], np.empty((0, rows.W.shape[2]))
-
-
-def plain(W: Array, y: Array) -> Rows:
-    """Rows of equal weight without a motion behind them."""
+def plain(W: Array, y: Array, h: float = 1.0) -> Rows:
+    """Rows of equal weight without a motion behind them, every h [s]."""
     samples, joints, _ = W.shape
     motion = np.zeros((4, joints, samples))
     motion[3] = y.T
     W, y = np.ascontiguousarray(W), np.ascontiguousarray(y)
-    return Rows(W, y, np.ones((samples, joints)), np.arange(samples), motion)
+    return Rows(W, y, np.ones((samples, joints)), np.arange(samples), h, motion)
 
 
 def rows_of(
     robot: Robot,
     motion: Array,
     at: Numbers,
+    h: float,
     *,
     slow: Array | None = None,
     reference: Array | None = None,
 ) -> Rows:
     """The rows of a motion (4, joints, samples): position, velocity, acceleration, torque.
 
-    Rows of joints below their velocity `slow` (joints) are left out: there dry friction is not
+    Rows of joints below their velocity `slow` (joints) are left out: there Coulomb friction is not
     sign(dq).
     """
     q, dq, ddq, tau = motion
     y = np.ascontiguousarray(tau.T)
-    rows = Rows(robot.regressor(q, dq, ddq), y, np.ones(y.shape), at, motion, reference)
+    rows = Rows(robot.regressor(q, dq, ddq), y, np.ones(y.shape), at, h, motion, reference)
     return rows if slow is None else without_slow(rows, slow)
 
 
@@ -119,6 +104,7 @@ def joined(parts: Sequence[Rows]) -> Rows:
         np.concatenate([part.y for part in parts]),
         np.concatenate([part.scales for part in parts]),
         np.concatenate([part.at for part in parts]),
+        parts[0].h,
         np.concatenate([part.motion for part in parts], axis=2),
         np.concatenate(references, axis=2) if len(references) == len(parts) else None,
     )
@@ -132,21 +118,25 @@ def runs(at: Numbers) -> Iterator[slice]:
         yield slice(start, end)
 
 
-def with_delay(rows: Rows, theta: Array, h: float) -> Rows:
-    """The rows with one more column: how the torques change if they come a second earlier.
+def with_delay(rows: Rows, theta: Array) -> Rows:
+    """The rows with one more column, whose parameter is the time [s] by which the torques lead."""
+    column = delay_column(rows, rows.W @ theta[: rows.W.shape[2]])
+    return replace(rows, W=np.ascontiguousarray(np.concatenate((rows.W, column[:, :, None]), 2)))
 
-    Its parameter is the time [s] by which the measured torques lead what the motion tells
-    (tau(t) = W(t + delay) theta, to first order). At reversals, where dry friction jumps, the
-    column is 0.
+
+def delay_column(rows: Rows, predicted: Array) -> Array:
+    """How predicted torques (samples, joints) change if they come a second earlier.
+
+    To first order tau(t) = W(t + delay) theta, with the delay by which the measured torques lead
+    the motion. At reversals, where Coulomb friction jumps, the column is 0.
     """
-    predicted = rows.W @ theta[: rows.W.shape[2]]
     column = np.zeros_like(predicted)
     for run in runs(rows.at):
         if run.stop - run.start > 1:
-            column[run] = np.gradient(predicted[run], h, axis=0)
+            column[run] = np.gradient(predicted[run], rows.h, axis=0)
             direction = np.sign(rows.motion[1][:, run].T)
             turns = np.zeros(direction.shape, dtype=bool)
             turns[1:] |= direction[1:] != direction[:-1]
             turns[:-1] |= turns[1:]
             column[run][turns] = 0.0
-    return replace(rows, W=np.ascontiguousarray(np.concatenate((rows.W, column[:, :, None]), 2)))
+    return column

@@ -1,6 +1,6 @@
 """A record of any length as blocks: what each tells of the parameters, joint by joint.
 
-For errors that autocorrelated residuals cannot shrink (`diagnostics.py`), without holding the rows.
+For the errors (`jackknife.py`) and the residuals of a record without holding its rows.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ UNIT = 1024  # samples
 class Blocks:
     """Products of the rows of samples number k `length` to (k + 1) `length` - 1, for each k.
 
-    `products` (blocks, joints, parameters + 1, parameters + 1) of [W, y]; `numbers` are the k.
+    `products` (blocks, joints, parameters + 2, parameters + 2) of [W, y, 1]; `numbers` are the k.
     Always a `unit` of samples is multiplied at once, so that batches do not change a bit; `held`
     are the rows of one that is not full.
     """
@@ -75,6 +75,17 @@ class Blocks:
         counted = replace(self, numbers=tuple(numbers), products=tuple(products), held=())
         return counted if len(numbers) <= MOST else _halved(counted)
 
+    @property
+    def total(self) -> Array:
+        """The products of all rows (joints, parameters + 2, parameters + 2)."""
+        return np.asarray(np.sum(self.products, axis=0), dtype=np.float64)
+
+    def columns(self, kept: list[int]) -> Blocks:
+        """With some of the columns of W alone."""
+        chosen = np.array([*kept, -2, -1])
+        products = tuple(p[:, chosen[:, None], chosen] for p in self.products)
+        return replace(self, products=products)
+
     def grouped(self, count: int) -> list[Array]:
         """The products of at most so many parts of the record, of equal length."""
         first, last = self.numbers[0], self.numbers[-1] + 1
@@ -99,11 +110,11 @@ def _summed(keys: Iterable[int], products: Iterable[Array]) -> dict[int, Array]:
 
 def _products(rows: Rows) -> Array:
     samples, joints, parameters = rows.W.shape
-    found = np.empty((joints, parameters + 1, parameters + 1))
+    found = np.empty((joints, parameters + 2, parameters + 2))
     for j in range(joints):
-        both = np.empty((samples, parameters + 1))
-        both[:, :-1] = rows.W[:, j]
-        both[:, -1] = rows.y[:, j]
+        both = np.ones((samples, parameters + 2))
+        both[:, :-2] = rows.W[:, j]
+        both[:, -2] = rows.y[:, j]
         both *= rows.scales[:, j : j + 1]
         found[j] = both.T @ both
     return found

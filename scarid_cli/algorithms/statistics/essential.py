@@ -1,6 +1,9 @@
 """Essential parameters: those that the data know well enough to keep (Gautier and Khalil).
 
-The worst known is removed while its relative deviation is at least 30 times that of the best.
+The worst known is removed while its relative deviation is at least 30 times that of the best, as
+long as the noise can account for it: all that is removed must together lie within the 95 %
+confidence region of the full model about zero. Where one parameter is known very well, the ratio
+alone would remove parameters that are known to a percent.
 """
 
 from __future__ import annotations
@@ -13,45 +16,95 @@ from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.arrays import Array
 
 RATIO = 30.0
+CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True)
 class Essential:
-    """The fit without what was dropped (estimates 0, no errors), and what that cost.
+    """The fit of what was kept, and what dropping the others cost.
 
-    `dropped` are numbers of parameters in the order they went; `cost` is how much greater the
-    deviation of the residual became, in parts of it.
+    `kept` and `dropped` are numbers of parameters, the latter in the order they went; `cost` is how
+    much greater the deviation of the residual became, and `allowed` how much greater it might have
+    become by noise alone, in parts of it.
     """
 
     fit: Fit
+    kept: list[int]
     dropped: tuple[int, ...]
     cost: float
+    allowed: float
 
 
-def essential(fit: Fit, rows: float) -> Essential:
-    """By the ratio rule, from a fit to so many rows; the rest is fitted again each time."""
+@dataclass(frozen=True)
+class Noise:
+    """How uncertain a fit really is.
+
+    `rows` that were fitted, `inflation` of the variances of the estimates over those of white
+    residuals, from so many independent `blocks`.
+    """
+
+    rows: float
+    inflation: float
+    blocks: int
+
+    def growth(self, dropped: int, variance: float) -> float:
+        """By how much the sum of squares may grow: the F test, for autocorrelated residuals."""
+        from scipy.special import fdtri
+
+        point = fdtri(dropped, self.blocks - 1, CONFIDENCE)
+        return float(dropped * point * self.inflation * variance)
+
+
+def essential(fit: Fit, noise: Noise, own: int) -> Essential:
+    """The first `own` parameters by the ratio rule; the rest is fitted again each time."""
     theta, covariance = fit.estimates.copy(), fit.unit_covariance.copy()
     kept = list(range(len(theta)))
     dropped: list[int] = []
-    squares = fit.variance * (rows - len(theta))
-    first = squares
-    while len(kept) > 1:
-        with np.errstate(divide="ignore"):
-            relative = np.sqrt(np.diag(covariance)[kept]) / np.abs(theta[kept])
-        if not relative.max() >= RATIO * relative.min():
+    first = squares = fit.variance * (noise.rows - len(theta))
+    allowed = 0.0
+    while (worst := _worst(theta, covariance, [i for i in kept if i < own])) is not None:
+        grown = squares + theta[worst] ** 2 / covariance[worst, worst]
+        growth = noise.growth(len(dropped) + 1, fit.variance)
+        if not grown - first <= growth:
             break
-        worst = kept[int(np.argmax(relative))]
-        squares += theta[worst] ** 2 / covariance[worst, worst]
+        squares, allowed = grown, growth
         theta, covariance = without(theta, covariance, worst)
         kept.remove(worst)
         dropped.append(worst)
-    freedom = rows - len(kept)
+    cost, limit = (_relative(part, first) for part in (squares - first, allowed))
+    if not dropped:
+        return Essential(fit, kept, (), cost, limit)
+    freedom = noise.rows - len(kept)
     variance = squares / freedom if freedom > 0 else float("nan")
-    for i in dropped:
-        covariance[i, i] = np.nan
-    cost = float(np.sqrt(squares / first) - 1.0) if first > 0.0 else 0.0
-    found = replace(fit, estimates=theta, unit_covariance=covariance, variance=variance)
-    return Essential(found, tuple(dropped), cost)
+    reduced = replace(
+        fit,
+        estimates=theta[kept],
+        unit_covariance=covariance[np.ix_(kept, kept)],
+        variance=variance,
+        sample_variance=variance * freedom / (noise.rows - 1.0),
+        condition=_condition(covariance[np.ix_(kept, kept)]),
+    )
+    return Essential(reduced, kept, tuple(dropped), cost, limit)
+
+
+def _worst(theta: Array, covariance: Array, kept: list[int]) -> int | None:
+    """The parameter that is known worst, if that is 30 times worse than the best."""
+    if len(kept) < 2:
+        return None
+    with np.errstate(divide="ignore"):
+        relative = np.sqrt(np.diag(covariance)[kept]) / np.abs(theta[kept])
+    return kept[int(np.argmax(relative))] if relative.max() >= RATIO * relative.min() else None
+
+
+def _relative(growth: float, first: float) -> float:
+    """Of the deviation of the residual, from the growth of its sum of squares."""
+    return float(np.sqrt(1.0 + growth / first) - 1.0) if first > 0.0 else 0.0
+
+
+def _condition(covariance: Array) -> float:
+    """Of the observation matrix with these columns."""
+    values = np.linalg.eigvalsh(covariance)
+    return float(np.sqrt(values[-1] / max(values[0], 1e-300)))
 
 
 def without(theta: Array, covariance: Array, i: int) -> tuple[Array, Array]:

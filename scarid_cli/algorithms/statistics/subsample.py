@@ -69,7 +69,7 @@ class Subsample:
     def rows(self) -> Rows:
         """What was kept, as one, numbered by the samples that are as far apart."""
         kept = joined(self.parts)
-        return replace(kept, at=kept.at // self.thin)
+        return replace(kept, at=kept.at // self.thin, h=kept.h * self.thin)
 
 
 def _thinned(parts: list[Rows], thin: int) -> list[Rows]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, Joint
+from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.arrays import Array
 
 GOOD, DOUBTFUL, NOT_IDENTIFIABLE = "good", "doubtful", "not identifiable"
@@ -33,44 +34,58 @@ class Verdict:
 
 
 @dataclass(frozen=True)
+class InUse:
+    """What was asked of the estimation, so that the advice of a verdict is not that again.
+
+    `slow` (joints): velocities [rad/s or m/s] below which rows were left out; whether the delay of
+    the torques was fitted, the joints `weighted` by their residuals, and parameters dropped.
+    """
+
+    slow: tuple[float, ...] = ()
+    align: bool = False
+    weighted: bool = False
+    essential: bool = False
+
+
+@dataclass(frozen=True)
 class Evidence:
-    """What a verdict is made of; errors are robust where known, in the order of the names."""
+    """What a verdict is made of, in the order of the names."""
 
     names: Sequence[str]
     estimates: Array
-    errors: Array
     condition: float
     scaled_condition: float
     weak: str
-    diagnostics: Diagnostics | None
+    diagnostics: Diagnostics
+    in_use: InUse = InUse()
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     """From the worst to the least: what cannot be known, what is wrong, what is uncertain."""
-    joints = evidence.diagnostics.joints if evidence.diagnostics else ()
+    joints = evidence.diagnostics.joints
     hopeless = [*_idle(joints, robot), *_undetermined(evidence)]
     if hopeless:
         return Verdict(NOT_IDENTIFIABLE, (*hopeless, *_summary(evidence)))
     unknown = _unknown(evidence)
     wrong = [
-        *(_biased(evidence.diagnostics) or _moved(evidence.diagnostics, robot)),
+        *(_biased(evidence.diagnostics) or _moved(evidence, robot)),
         *_poor(joints),
         *_impossible(evidence, robot),
     ]
     most = 2 * len(unknown) > len(evidence.names)
     uncertain = [f"not {_listed(unknown)}"] if unknown and not most else []
-    if most and len(unknown) < len(evidence.names):
+    if most and len(unknown) < len(evidence.names) and not evidence.in_use.essential:
         uncertain = ["--essential leaves out what is not known"]
     grade = DOUBTFUL if wrong or most else GOOD
     return Verdict(grade, (*wrong, *_summary(evidence), *uncertain))
 
 
-def _idle(joints: Sequence[Joint], robot: Robot) -> list[str]:
-    """Joints without torque: there parameters of zero fit perfectly."""
+def _idle(joints: Sequence[JointResidual], robot: Robot) -> list[str]:
+    """Joints without torque, to which parameters of zero would fit."""
     return [
         f"joint {i} has hardly any torque ({joint.torque:.3g} {robot.joints[i - 1].torque_unit} "
-        "rms, less than its noise or dry friction), so parameters of zero would fit it: use a log "
-        "in which it is driven"
+        "rms, less than its noise or Coulomb friction), so parameters of zero would fit it: use a "
+        "log in which it is driven"
         for i, joint in enumerate(joints, start=1)
         if joint.torque
         < max(NOISE * robot.joints[i - 1].torque_noise, abs(robot.value("coulomb", i)))
@@ -86,9 +101,14 @@ def _undetermined(evidence: Evidence) -> list[str]:
     ]
 
 
-def _biased(diagnostics: Diagnostics | None) -> list[str]:
-    if diagnostics is None or not diagnostics.lag_share > LAGGED:
+def _biased(diagnostics: Diagnostics) -> list[str]:
+    if diagnostics.lag_share <= LAGGED:
         return []
+    if np.isnan(diagnostics.lag_share):
+        return [
+            "not tested for bias: no row that counts has the rows 25 ms before and after it; use a "
+            "longer log, or leave out fewer rows"
+        ]
     return [
         f"biased: the motion 25 ms before and after explains {100 * diagnostics.lag_share:.0f} % "
         "of the residual (signals of different instants, see scarid differentiate --match; noisy "
@@ -96,35 +116,58 @@ def _biased(diagnostics: Diagnostics | None) -> list[str]:
     ]
 
 
-def _moved(diagnostics: Diagnostics | None, robot: Robot) -> list[str]:
-    """Estimates that rely on what slow rows say of dry friction, or on a delay."""
-    if diagnostics is None or not any(p.term.JUMPS for p in robot.parameters):
+def _moved(evidence: Evidence, robot: Robot) -> list[str]:
+    """Estimates that rely on what slow rows say of Coulomb friction, or on a delay."""
+    diagnostics, in_use = evidence.diagnostics, evidence.in_use
+    if not any(p.term.JUMPS for p in robot.parameters):
         return []
     moved = [
-        name for name, x in zip(robot.names, diagnostics.moved, strict=False) if abs(x) > DEVIATIONS
+        n for n, x in zip(evidence.names, diagnostics.moved, strict=False) if abs(x) > DEVIATIONS
     ]
     if not moved:
         return []
-    slow = ",".join(f"{v:.1g}" for v in diagnostics.slow)
     most = np.nanmax(np.abs(diagnostics.moved))
+    slow = [f"{v:.1g}" for v in diagnostics.slow]
+    options = _untried(slow, in_use)
+    if options:
+        return [
+            f"{_listed(moved)} would move by up to {most:.1f} deviations without the slow rows and "
+            f"with the torques' delay fitted ({' '.join(options)})"
+        ]
+    advice = "" if in_use.weighted else " (--estimator wls)"
     return [
-        f"{_listed(moved)} would move by up to {most:.1f} deviations without the slow rows and "
-        f"with the torques' delay fitted (--drop-slow {slow} --align)"
+        f"{_listed(moved)} would move by up to {most:.1f} deviations in weighted least squares "
+        f"without the rows slower than {', '.join(slow)}{advice}"
     ]
 
 
-def _poor(joints: Sequence[Joint]) -> list[str]:
+def _untried(slow: Sequence[str], in_use: InUse) -> list[str]:
+    """The options that were not given, or with a lower velocity."""
+    options = []
+    if len(in_use.slow) < len(slow) or any(map(_below, in_use.slow, slow)):
+        options.append(f"--drop-slow {','.join(slow)}")
+    if not in_use.align:
+        options.append("--align")
+    return options
+
+
+def _below(given: float, advised: str) -> bool:
+    return given < float(advised)
+
+
+def _poor(joints: Sequence[JointResidual]) -> list[str]:
     return [
         f"the model explains the torque of joint {i} badly (R2 {joint.r2:.3g})"
         for i, joint in enumerate(joints, start=1)
-        if joint.r2 < POOR
+        if not joint.r2 >= POOR
     ]
 
 
 def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
     """Friction that would drive the robot, beyond its error."""
     friction = {p.name for p in robot.parameters if p.term.NEVER_NEGATIVE}
-    rows = zip(evidence.names, evidence.estimates, evidence.errors, strict=True)
+    errors = evidence.diagnostics.errors
+    rows = zip(evidence.names, evidence.estimates, errors, strict=True)
     return [
         f"{name} is negative ({estimate:.3g}), which friction cannot be"
         for name, estimate, error in rows
@@ -135,7 +178,7 @@ def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
 def _unknown(evidence: Evidence) -> list[str]:
     """Parameters whose error is greater than 30 % of them, or has no value."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        relative = 100.0 * evidence.errors / np.abs(evidence.estimates)
+        relative = 100.0 * evidence.diagnostics.errors / np.abs(evidence.estimates)
     return [n for n, r in zip(evidence.names, relative, strict=True) if not r <= DOUBT]
 
 
@@ -143,9 +186,8 @@ def _summary(evidence: Evidence) -> list[str]:
     """The numbers that say how good."""
     known = len(evidence.names) - len(_unknown(evidence))
     parts = [f"{known} of {len(evidence.names)} parameters known within {DOUBT:g} %"]
-    if evidence.diagnostics:
-        r2 = ", ".join(f"{joint.r2:.4f}" for joint in evidence.diagnostics.joints)
-        parts.append(f"R2 {r2}")
+    r2 = ", ".join(f"{joint.r2:.4f}" for joint in evidence.diagnostics.joints)
+    parts.append(f"R2 {r2}")
     if np.isfinite(evidence.condition):
         parts.append(f"condition number {evidence.condition:.3g}")
     return [", ".join(parts)]
@@ -165,5 +207,10 @@ def combination(direction: Array, names: Sequence[str]) -> str:
         ((x, n) for x, n in zip(unit, names, strict=True) if abs(x) > 0.1),
         key=lambda part: -abs(part[0]),
     )
-    text = " ".join(f"{'-' if x < 0 else '+'} {abs(x):.2g} {name}" for x, name in parts)
-    return text.removeprefix("+ ").replace("1 ", "", 1) if text.startswith("+ 1 ") else text
+    text = " ".join(f"{'-' if x < 0 else '+'} {_factor(x)}{name}" for x, name in parts)
+    return text.removeprefix("+ ")
+
+
+def _factor(x: float) -> str:
+    text = f"{abs(x):.2g}"
+    return "" if text == "1" else f"{text} "

@@ -120,6 +120,6 @@ def identified(robot: Robot, motion: Motion, rows: Any) -> Array | None:
     regression = plain(robot.regressor(*kinematics), np.ascontiguousarray(tau.T))
     state, _ = ls.step(start, regression)
     try:
-        return ls.fit(state).estimates
+        return ls.fit(state).fit.estimates
     except NotIdentifiableError:
         return None

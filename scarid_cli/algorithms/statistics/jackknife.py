@@ -1,0 +1,176 @@
+"""The covariance of the estimates by leaving out blocks of time.
+
+Errors from it hold for autocorrelated residuals, which those of white residuals do not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.estimation import Estimation, Scores
+from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.arrays import Array
+
+BLOCK = 0.5  # s: residuals so far apart are taken to be independent
+BLOCKS = (10, 128)  # of a record at least, and at most
+Z95 = 1.959963984540054
+
+
+@dataclass(frozen=True)
+class RobustCovariance:
+    """Of the estimates (parameters, parameters), from so many blocks; nan where that is too few."""
+
+    matrix: Array
+    blocks: int
+
+    @property
+    def errors(self) -> Array:
+        """Standard errors robust to autocorrelated residuals."""
+        return np.asarray(np.sqrt(np.diag(self.matrix)), dtype=np.float64)
+
+    def part(self, own: int) -> RobustCovariance:
+        """Of the first estimates."""
+        return RobustCovariance(self.matrix[:own, :own], self.blocks)
+
+    @property
+    def quantile(self) -> float:
+        """So many errors are half of a 95 % interval."""
+        return t95(self.blocks - 1)
+
+
+def jackknife(rows: Rows, found: Estimation) -> RobustCovariance:
+    """By leaving out blocks of half a second.
+
+    To first order in the scores of a block, with its leverage (the "CR3" of clustered errors; Bell
+    and McCaffrey 2002), so that a few violent moves that carry an estimate widen its error.
+    """
+    return _scatter(shifts(rows, found))
+
+
+def jackknife_of_blocks(record: Blocks, rows: Rows, found: Estimation) -> RobustCovariance:
+    """The same from all rows of a long record, of which `rows` are a subsample.
+
+    The estimator may weight the joints, and do no more.
+    """
+    assert found.scores is not None
+    weights = np.ones(rows.y.shape[1])
+    if found.scores.whitening is not None:
+        weights = np.diag(found.scores.whitening) ** 2
+    parts = [
+        (gram, moment - gram @ found.fit.estimates)
+        for gram, moment in _normal(record, rows, weights)
+    ]
+    return _scatter(_without_each(parts))
+
+
+def inflation(record: Blocks, rows: Rows) -> tuple[int, Array]:
+    """By how much the robust errors of least squares exceed those of white residuals (parameters).
+
+    With the number of blocks, from all rows of the record; nan where they do not determine every
+    parameter.
+    """
+    parts = _normal(record, rows, np.ones(rows.y.shape[1]))
+    gram, moment = (np.sum(x, axis=0) for x in zip(*parts, strict=True))
+    if not _regular(gram):
+        return len(parts), np.full(len(gram), np.nan)
+    inverse = np.linalg.inv(gram)
+    theta = inverse @ moment
+    robust = _scatter(_without_each([(g, m - g @ theta) for g, m in parts])).errors
+    total = record.total.sum(axis=0)
+    squares = max(total[-2, -2] - theta @ moment, 0.0)
+    white = np.sqrt(squares / (total[-1, -1] - len(theta)) * np.diag(inverse))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return len(parts), np.asarray(robust / white, dtype=np.float64)
+
+
+def _normal(record: Blocks, rows: Rows, weights: Array) -> list[tuple[Array, Array]]:
+    """W'W and W'y of each block, the joints weighted."""
+    parts = []
+    for products_of_joints in record.grouped(_count((rows.at[-1] - rows.at[0]) * rows.h)):
+        total = np.tensordot(weights, products_of_joints, 1)
+        parts.append((total[:-2, :-2], total[:-2, -2]))
+    return parts
+
+
+def _scatter(moved: Array) -> RobustCovariance:
+    blocks, p = moved.shape
+    if blocks < 2 or not np.isfinite(moved).all():
+        return RobustCovariance(np.full((p, p), np.nan), max(blocks, 2))
+    return RobustCovariance((blocks - 1) / blocks * moved.T @ moved, blocks)
+
+
+def shifts(rows: Rows, found: Estimation) -> Array:
+    """How far the estimates move without each block (blocks, parameters)."""
+    first, last = rows.at[0], rows.at[-1] + 1
+    count = _count((last - first) * rows.h)
+    block = (rows.at - first) * count // (last - first)
+    edges = np.searchsorted(block, np.arange(count + 1))
+    return _without_each([products(rows, found, slice(a, b)) for a, b in pairwise(edges) if b > a])
+
+
+def _count(duration: float) -> int:
+    """Of the blocks of a record [s]."""
+    return int(np.clip(round(duration / BLOCK), *BLOCKS))
+
+
+def _without_each(parts: list[tuple[Array, Array]]) -> Array:
+    p = len(parts[0][1])
+    total = sum((gram for gram, _ in parts), np.zeros((p, p)))
+    moved = np.full((len(parts), p), np.inf)
+    for i, (gram, score) in enumerate(parts):
+        if _regular(total - gram):
+            moved[i] = np.linalg.solve(total - gram, score)
+    return moved
+
+
+def _regular(gram: Array) -> bool:
+    size = np.sqrt(np.abs(np.diag(gram)))
+    if not np.all(size > 0.0):
+        return False
+    return bool(np.linalg.cond(gram / np.outer(size, size)) < 1e14)
+
+
+def products(rows: Rows, found: Estimation, chosen: slice) -> tuple[Array, Array]:
+    """Z'W and Z'rho of some samples, whitened; Z is W unless the fit has instruments."""
+    scores = found.scores
+    assert scores is not None
+    part = rows.part(chosen)
+    W, residual = _whitened(part, found.fit.estimates, scores)
+    weights = np.minimum(1.0, scores.huber / np.maximum(np.abs(residual), 1e-300))
+    left = W
+    if scores.instruments is not None:
+        left = _times(scores.instruments[chosen], part.scales, scores.whitening)
+    flat = (left * weights[:, :, None]).reshape(-1, W.shape[2])
+    return flat.T @ W.reshape(-1, W.shape[2]), flat.T @ residual.ravel()
+
+
+def _whitened(rows: Rows, estimates: Array, scores: Scores) -> tuple[Array, Array]:
+    residual = rows.y - rows.W @ estimates
+    scaled = _times(residual[:, :, None], rows.scales, scores.whitening)[:, :, 0]
+    return _times(rows.W, rows.scales, scores.whitening), scaled
+
+
+def _times(W: Array, scales: Array, whitening: Array | None) -> Array:
+    """Each sample's rows times its scales, then mixed as the fit did."""
+    scaled = W * scales[:, :, None]
+    if whitening is None:
+        return scaled
+    if np.count_nonzero(whitening - np.diag(np.diag(whitening))):
+        scaled = scaled * np.all(scales > 0.0, axis=1).reshape(-1, 1, 1)
+    mixed: Array = np.einsum("ij,kjp->kip", whitening, scaled)
+    return mixed
+
+
+def t95(freedom: int) -> float:
+    """The 97.5 % point of Student's t (Abramowitz and Stegun 26.7.5)."""
+    z, n = Z95, float(max(freedom, 1))
+    return float(
+        z
+        + (z**3 + z) / (4.0 * n)
+        + (5.0 * z**5 + 16.0 * z**3 + 3.0 * z) / (96.0 * n**2)
+        + (3.0 * z**7 + 19.0 * z**5 + 17.0 * z**3 - 15.0 * z) / (384.0 * n**3)
+    )

@@ -1,0 +1,71 @@
+"""The lag test: whether torques and derivatives belong to the same instant.
+
+Torques and derivatives of different instants, or derivatives that are mostly noise, make the motion
+a little before and after a row explain what the row itself leaves of its torque.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.rows import Rows, runs
+from scarid_cli.arrays import Array
+
+LAG = 0.025  # s: what soft sensors delay
+PIECE = 1024  # samples that are worked on at once
+FLAT = 1e-9  # of the greatest eigenvalue: directions that the lagged motion does not have
+
+
+def lag_share(rows: Rows, weights: Array, parameters: int) -> float:
+    """The part of the residual that W a lag earlier and later explains; nan if no row tells.
+
+    The rows of a joint are weighted by `weights` (joints), the inverse deviations of the residuals.
+    Slow rows should have been left out: what Coulomb friction does at rest is another matter.
+    `parameters`: how many of the columns are the robot's; the others are not lagged.
+    """
+    if not weights.any():
+        return 0.0  # no joint has a residual to explain
+    lag = max(1, round(LAG / rows.h))
+    p = rows.W.shape[2]
+    total = np.zeros((p + 2 * parameters + 1,) * 2)
+    for run in runs(rows.at):
+        for part in _pieces(rows.part(run), lag):
+            wide = _lagged(part, lag, weights, parameters)
+            total += wide.T @ wide
+    if not total[-1, -1] > 0.0:
+        return float("nan")
+    own = [*range(p), -1]
+    plain = _unexplained(total[np.ix_(own, own)])
+    return 1.0 - _unexplained(total) / plain if plain > 0.0 else 0.0
+
+
+def _pieces(rows: Rows, lag: int) -> Iterator[Rows]:
+    """Parts that overlap by the lag on both sides."""
+    for start in range(0, rows.samples, PIECE):
+        part = rows.part(slice(max(0, start - lag), start + PIECE + lag))
+        if part.samples > 2 * lag:
+            yield part
+
+
+def _lagged(rows: Rows, lag: int, weights: Array, parameters: int) -> Array:
+    """Rows of [W, W before - W, W after - W, y], of the samples that have both neighbours."""
+    inner = slice(lag, rows.samples - lag)
+    W, own = rows.W[inner], rows.W[inner, :, :parameters]
+    before = rows.W[: -2 * lag, :, :parameters] - own
+    after = rows.W[2 * lag :, :, :parameters] - own
+    wide = np.concatenate((W, before, after, rows.y[inner, :, None]), axis=2)
+    wide *= (rows.scales[inner] * weights)[:, :, None]
+    return wide.reshape(-1, wide.shape[2])
+
+
+def _unexplained(moments: Array) -> float:
+    """Sum of squares of the last column that the others leave, from the products of all."""
+    gram, with_y = moments[:-1, :-1], moments[:-1, -1]
+    size = np.sqrt(np.diag(gram))
+    size[size == 0.0] = 1.0
+    values, vectors = np.linalg.eigh(gram / np.outer(size, size))
+    kept = values > FLAT * values[-1]
+    along = vectors[:, kept].T @ (with_y / size)
+    return float(max(moments[-1, -1] - np.sum(along**2 / values[kept]), 0.0))

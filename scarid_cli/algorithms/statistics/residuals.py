@@ -1,0 +1,82 @@
+"""The residual of each joint: how well the model explains its torque, and what is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.arrays import Array, Marks, Numbers
+
+
+@dataclass(frozen=True)
+class JointResidual:
+    """The residual of one joint: R2 (eq. 36) and deviation over the rows that count.
+
+    `autocorrelation` from one sample to the next and excess `kurtosis`: 0 for white normal noise.
+    `relative_error` is 100 |rho| / |tau| [%], `torque` the root-mean-square torque.
+    """
+
+    rows: int
+    r2: float
+    deviation: float
+    relative_error: float
+    autocorrelation: float
+    kurtosis: float
+    torque: float
+
+
+def residuals(
+    rows: Rows, estimates: Array, record: Blocks | None = None
+) -> tuple[JointResidual, ...]:
+    """Of each joint; sums are of all rows of the `record`, where `rows` are a subsample of it."""
+    left = rows.y - rows.W @ estimates
+    joints = [
+        _joint(rows.y[:, j], left[:, j], rows.scales[:, j] > 0.0, rows.at)
+        for j in range(rows.y.shape[1])
+    ]
+    if record is None:
+        return tuple(joints)
+    pairs = zip(joints, record.total, strict=True)
+    return tuple(_over_all_rows(joint, products, estimates) for joint, products in pairs)
+
+
+def _over_all_rows(joint: JointResidual, products: Array, estimates: Array) -> JointResidual:
+    """With the sums of all rows, from the products of [W, y, 1]."""
+    along = np.concatenate((-estimates, [1.0, 0.0]))
+    rows, total, squares = products[-1, -1], products[-1, -2], products[-2, -2]
+    if not rows > 1.0:
+        return joint
+    left = max(float(along @ products @ along), 0.0)
+    about = squares - total**2 / rows
+    return replace(
+        joint,
+        rows=int(rows),
+        r2=float(1.0 - left / about) if about > 0.0 else float("nan"),
+        deviation=float(np.sqrt(left / rows)),
+        relative_error=float(100.0 * np.sqrt(left / squares)) if squares > 0.0 else float("nan"),
+        torque=float(np.sqrt(squares / rows)),
+    )
+
+
+def _joint(y: Array, residual: Array, counts: Marks, at: Numbers) -> JointResidual:
+    y, r, at = y[counts], residual[counts], at[counts]
+    nan = float("nan")
+    if len(y) < 2:
+        return JointResidual(len(y), nan, nan, nan, nan, nan, nan)
+    about = float(np.sum((y - y.mean()) ** 2))
+    squares = float(r @ r)
+    next_to = np.diff(at) == 1
+    spread = float(np.mean((r - r.mean()) ** 2))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return JointResidual(
+            rows=len(y),
+            r2=1.0 - squares / about if about > 0.0 else nan,
+            deviation=float(np.sqrt(squares / len(r))),
+            relative_error=float(100.0 * np.sqrt(squares / (y @ y))) if np.any(y) else nan,
+            autocorrelation=float(np.sum((r[1:] * r[:-1])[next_to]) / squares) if squares else 0.0,
+            kurtosis=float(np.mean((r - r.mean()) ** 4) / spread**2 - 3.0) if spread else 0.0,
+            torque=float(np.sqrt(np.mean(y * y))),
+        )

@@ -1,0 +1,159 @@
+"""The table of identified parameters: made of an estimation's outcome, and read again."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.algorithms.regression.information import weakest
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.outcome import Outcome
+from scarid_cli.algorithms.statistics.verdict import Evidence, InUse, combination, verdict
+from scarid_cli.arrays import Array
+from scarid_cli.errors import bad_data
+from scarid_cli.io import schemas
+from scarid_cli.io.table import Metadata, Table, doubles
+
+
+@dataclass(frozen=True)
+class Identified:
+    """What a parameter table says: the robot as it was identified, and its parameters.
+
+    `theta` (parameters); `delay` [s] by which the torques led the motion, 0 if it was not fitted.
+    """
+
+    robot: Robot
+    theta: Array
+    delay: float
+
+
+def identified(table: Table, robot: Robot) -> Identified:
+    """The content of a parameter table, whose parameters must be those of this robot.
+
+    Coulomb friction may have got a part that fades with speed (`separable`).
+    """
+    batches = list(table.batches)
+    names = [name for batch in batches for name in batch.column("parameter").to_pylist()]
+    values = np.concatenate([batch.column("estimate").to_numpy() for batch in batches])
+    found = dict(zip(names, values.tolist(), strict=True))
+    joints = range(1, len(robot.joints) + 1)
+    velocities = {i: found[f"vs{i}"] for i in joints if f"vs{i}" in found}
+    wanted = [*robot.names, *(f"{kind}{i}" for kind in ("Fst", "vs") for i in velocities)]
+    if names != wanted:
+        raise bad_data(
+            table.name,
+            f"the parameters {', '.join(names)}",
+            expected=f"those of {robot.name}: {', '.join(robot.names)}",
+            remedy="choose the robot they were identified for with --robot",
+            column="parameter",
+        )
+    theta = values[: len(values) - len(velocities)]
+    delay = float(table.meta.extra.get("delay") or 0.0)
+    return Identified(robot.with_stribeck(velocities), theta, delay)
+
+
+@dataclass(frozen=True)
+class Labels:
+    """Names and units of all parameters of an outcome, and the places of those that were kept."""
+
+    names: list[str]
+    units: list[str]
+    kept: list[int]
+
+    @classmethod
+    def of(cls, found: Outcome, robot: Robot) -> Labels:
+        names = [*robot.names, *(name for name, _ in found.found.added)]
+        units = [*(p.unit for p in robot.parameters), *(unit for _, unit in found.found.added)]
+        return cls(names, units, found.kept)
+
+    def placed(self, values: Array, otherwise: float) -> Array:
+        """Values of the kept parameters among those of all."""
+        row = np.full(len(self.names), otherwise)
+        row[self.kept] = values
+        return row
+
+
+def parameters(
+    found: Outcome, robot: Robot, meta: Metadata, in_use: InUse, *, variance: str
+) -> Table:
+    """The table, with the verdict in its metadata."""
+    labels = Labels.of(found, robot)
+    covariance = found.diagnostics.covariance
+    nan = np.full(len(found.kept), np.nan)
+    robust = covariance.errors if covariance else nan
+    half = robust * covariance.quantile if covariance else nan
+    estimates = found.found.fit.estimates
+    errors = found.found.fit.standard_errors(variance=variance)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = 100.0 * errors / np.abs(estimates)
+    statistics = (errors, relative, robust, estimates - half, estimates + half)
+    columns = [
+        pa.array(labels.names, pa.string()),
+        pa.array(labels.units, pa.string()),
+        doubles(labels.placed(estimates, 0.0)),
+        *(known(labels.placed(values, np.nan)) for values in statistics),
+    ]
+    schema = schemas.load("parameters").arrow()
+    if robot.body:
+        written = [p.stands_for or p.name for p in robot.parameters]
+        columns.append(pa.array([*written, *labels.names[len(written) :]], pa.string()))
+    else:
+        schema = schema.remove(schema.get_field_index("stands_for"))
+    batch = pa.RecordBatch.from_arrays(columns, schema=schema)
+    extra = _judged(found, robot, labels, in_use) | _facts(found, labels)
+    return Table("identify", schema, replace(meta, extra=extra), iter([batch]))
+
+
+def _judged(found: Outcome, robot: Robot, labels: Labels, in_use: InUse) -> dict[str, Any]:
+    """The verdict, and what it is made of."""
+    fit = found.found.fit
+    names = [labels.names[i] for i in labels.kept]
+    scaled, direction = weakest(fit.unit_covariance)
+    evidence = Evidence(
+        names=names,
+        estimates=fit.estimates,
+        condition=fit.condition,
+        scaled_condition=scaled,
+        weak=combination(direction, names),
+        diagnostics=found.diagnostics,
+        in_use=in_use,
+    )
+    judged = verdict(evidence, robot)
+    return {
+        "condition_number": fit.condition if np.isfinite(fit.condition) else None,
+        "scaled_condition_number": scaled,
+        "verdict": judged.grade,
+        "reasons": list(judged.reasons),
+    }
+
+
+def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
+    """What else the metadata say of the estimation."""
+    fit, scores = found.found.fit, found.found.scores
+    # Of weighted rows it is near 1 and says nothing; `joints` has theirs.
+    weighted = scores is not None and scores.whitening is not None
+    extra: dict[str, Any] = {
+        "residual_deviation": float(np.sqrt(fit.variance))
+        if fit.variance >= 0.0 and not weighted
+        else None,
+        "samples": found.samples,
+        "excitation": dict(zip(labels.names, found.excitation.tolist(), strict=False)),
+        "joints": [asdict(joint) for joint in found.diagnostics.joints],
+        "lag_share": found.diagnostics.lag_share,
+        **found.found.extra,
+    }
+    if found.delay:
+        extra["delay"], extra["delay_error"] = found.delay
+    if found.reduction and found.reduction.dropped:
+        extra["dropped"] = [labels.names[i] for i in found.reduction.dropped]
+        extra["dropped_cost"] = found.reduction.cost
+        extra["dropped_allowed"] = found.reduction.allowed
+    return extra
+
+
+def known(values: Array) -> pa.Array:
+    """A column whose values that do not exist (nan, inf) are empty cells."""
+    return pa.array([x if np.isfinite(x) else None for x in values.tolist()], pa.float64())

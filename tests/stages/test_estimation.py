@@ -1,0 +1,180 @@
+"""Identification of simulated experiments: delays, long records, essential parameters, verdicts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from crossvalidation import log, seen
+from defaults import PERIOD
+
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.arrays import Array
+from scarid_cli.io.table import Metadata, Table, doubles
+from scarid_cli.stages.identify import identify
+from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.rows import Treatment
+from scarid_cli.stages.validate import validate
+
+SCARA = load("scara2")
+COLUMNS = [f"{signal}{i}" for signal in ("q", "dq", "ddq", "tau") for i in (1, 2)]
+
+
+@cache
+def signals(name: str, seed: int, *, match: bool) -> Array:
+    """Those of an experiment through a soft sensor (columns, rows)."""
+    method = DIFFERENTIATORS.load(name)(**DIFFERENTIATORS.load(name).PRESETS.get("table1", {}))
+    motion = seen(method, *log(seed), match=match)
+    return np.concatenate(motion.signals)[:, motion.settled]
+
+
+def motion(
+    name: str = "kalman",
+    seed: int = 1,
+    *,
+    match: bool = True,
+    late: int = 0,
+    rows: int | None = None,
+) -> Table:
+    """A motion whose torques are late by so many samples."""
+    x = signals(name, seed, match=match).copy()
+    x[-2:] = np.roll(x[-2:], late, axis=1)
+    batch = pa.RecordBatch.from_arrays([doubles(row[late:rows]) for row in x], COLUMNS)
+    batch = batch.add_column(0, "t", doubles(PERIOD * np.arange(batch.num_rows)))
+    meta = Metadata(kind="motion", period=PERIOD)
+    return Table("motion", batch.schema, meta, iter([batch]))
+
+
+def found(
+    source: Table, estimator: str = "rls", settings: dict[str, Any] | None = None, **options: Any
+) -> Table:
+    """The parameters, all of them at once."""
+    solver = ESTIMATORS.load(estimator)(**(settings or {}))
+    result = identify(source, SCARA, solver, SCARA.apriori, treatment=Treatment(**options))
+    return replace(result, batches=list(result.batches))  # type: ignore[arg-type]
+
+
+def column(result: Table, name: str) -> Array:
+    values: Array = next(iter(result.batches)).column(name).to_numpy(zero_copy_only=False)
+    return values
+
+
+WITHOUT_SCORES = [("rls", {"forgetting": 0.999}), ("tls", {}), ("ekf", {})]
+
+
+@pytest.mark.parametrize(("estimator", "settings"), WITHOUT_SCORES, ids=lambda x: str(x))
+def test_an_unmatched_soft_sensor_is_called_biased_by_every_estimator(
+    estimator: str, settings: dict[str, float]
+) -> None:
+    extra = found(motion("p2smd", match=False), estimator, settings).meta.extra
+    assert extra["verdict"] == "doubtful"
+    assert extra["reasons"][0].startswith("biased")
+
+
+def test_a_late_torque_is_never_good_with_forgetting() -> None:
+    """10 ms: every parameter is more than 10 % off, over ten experiments."""
+    verdicts = [
+        found(motion(seed=seed, late=2), "rls", {"forgetting": 0.999}).meta.extra["verdict"]
+        for seed in range(1, 11)
+    ]
+    assert "good" not in verdicts
+
+
+@pytest.mark.parametrize(
+    ("estimator", "settings"),
+    [("tls", {}), ("rls", {"forgetting": 0.999}), ("rls", {"forgetting": (0.99, *[0.999] * 7)})],
+    ids=["tls", "forgetting", "forgetting of one"],
+)
+def test_the_delay_is_fitted_with_every_estimator_that_can(
+    estimator: str, settings: dict[str, Any]
+) -> None:
+    """Torques 5 ms late, and half a millisecond early by the controller's hold."""
+    result = found(motion(late=1), estimator, settings, align=True, slow=(0.1, 0.1))
+    assert len(column(result, "estimate")) == 8
+    assert result.meta.extra["delay"] == pytest.approx(-4.5e-3, abs=1e-3)
+
+
+def test_torques_without_noise_are_fitted_by_maximum_likelihood() -> None:
+    x = signals("kalman", 1, match=True)
+    exact = SCARA.torques(SCARA.regressor(*(np.ascontiguousarray(s) for s in np.split(x[:6], 3))),
+                          SCARA.apriori)  # fmt: skip
+    batch = pa.RecordBatch.from_arrays([doubles(row) for row in (*x[:6], *exact)], COLUMNS)
+    meta = Metadata(kind="motion", period=PERIOD)
+    result = found(Table("motion", batch.schema, meta, iter([batch])), "ml")
+    np.testing.assert_allclose(column(result, "estimate"), SCARA.apriori, atol=1e-6)
+
+
+def test_barely_excited_rows_with_a_delay_get_a_verdict() -> None:
+    """A quarter of a second, of which few rows are fast; the triangle is singular to rounding."""
+    for rows in range(30, 80, 5):
+        source = motion(rows=rows)
+        try:
+            result = found(source, "wls", slow=(0.1, 0.1), align=True)
+        except Exception as error:
+            assert type(error).__name__ == "BadData"  # noqa: PT017
+        else:
+            assert result.meta.extra["scaled_condition_number"] > 0.0
+
+
+def test_validation_applies_the_delay_that_was_fitted() -> None:
+    """On the rows it was identified from, R2 is the one that identify tells."""
+    parameters = found(motion(late=2), "wls", align=True)
+    expected = [joint["r2"] for joint in parameters.meta.extra["joints"]]
+    model = identified(parameters, SCARA)
+    assert model.delay == parameters.meta.extra["delay"] < -5e-3
+    late = column(validate(motion(late=2), model), "r2")
+    np.testing.assert_allclose(late, expected, atol=2e-5)
+    at_once = column(validate(motion(late=2), replace(model, delay=0.0)), "r2")
+    assert np.all(at_once < late - 1e-3)
+
+
+def test_rows_at_the_end_are_skipped_whether_settled_or_not() -> None:
+    """The last ten of the table, of which a soft sensor left five unsettled."""
+    batch = next(motion(rows=1000).batches)
+    marks = np.ones(1000, dtype=np.int64)
+    marks[-5:] = 0
+    marked = batch.append_column("settled", pa.array(marks))
+    result = found(Table("motion", marked.schema, motion().meta, iter([marked])), skip=(0, 10))
+    assert result.meta.extra["samples"] == 990
+
+
+def test_r2_of_a_long_record_is_that_of_all_rows() -> None:
+    """The statistics keep a part of the rows; validate takes all of them."""
+    (batch,) = motion().batches
+    times = 8
+    long = pa.Table.from_batches([batch] * times).combine_chunks().to_batches()[0]
+    noise = np.random.default_rng(0).standard_normal((2, long.num_rows))
+    noise[:, long.num_rows // 2 :] *= 3.0  # the subsample leaves out other parts than the noise
+    for i in (1, 2):
+        at = long.schema.get_field_index(f"tau{i}")
+        tau = long.column(at).to_numpy() + 0.2 * noise[i - 1]
+        long = long.set_column(at, f"tau{i}", doubles(tau))
+    long = long.set_column(0, "t", doubles(PERIOD * np.arange(long.num_rows)))
+
+    def source() -> Table:
+        return Table("motion", long.schema, motion().meta, iter([long]))
+
+    parameters = found(source(), "ls")
+    assert parameters.meta.extra["samples"] == long.num_rows > 16_384
+    expected = column(validate(source(), identified(parameters, SCARA)), "r2")
+    r2 = [joint["r2"] for joint in parameters.meta.extra["joints"]]
+    np.testing.assert_allclose(r2, expected, rtol=1e-9)
+
+
+def test_essential_parameters_are_judged_by_their_own_figures() -> None:
+    full = found(motion(), "wls", slow=(0.1, 0.1), align=True)
+    reduced = found(motion(), "wls", slow=(0.1, 0.1), align=True, essential=True)
+    extra = reduced.meta.extra
+    assert extra["dropped"] == ["L1MY2"]
+    assert 0.0 < extra["dropped_cost"] <= extra["dropped_allowed"]
+    assert extra["condition_number"] < full.meta.extra["condition_number"]
+    assert "of 7 parameters known" in " ".join(extra["reasons"])
+    model = identified(reduced, SCARA)
+    assert model.theta[SCARA.names.index("L1MY2")] == 0.0
+    expected = column(validate(motion(), model, treatment=Treatment(slow=(0.1, 0.1))), "r2")
+    np.testing.assert_allclose([joint["r2"] for joint in extra["joints"]], expected, atol=1e-6)

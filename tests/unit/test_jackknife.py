@@ -1,0 +1,131 @@
+"""Errors that hold for autocorrelated residuals, and the residuals themselves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.stats
+from unit.regressions import estimated
+from unit.slow_motions import THETA, H, P, least_squares, regression, smooth
+
+from scarid_cli.algorithms.estimators import irls, ml, rls, tls, wls
+from scarid_cli.algorithms.regression.estimation import BaseEstimator
+from scarid_cli.algorithms.regression.rows import plain
+from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.diagnostics import diagnose
+from scarid_cli.algorithms.statistics.jackknife import inflation, jackknife, t95
+from scarid_cli.algorithms.statistics.residuals import residuals
+
+
+def test_leaving_blocks_out_is_a_refit_without_them() -> None:
+    """The first-order formula is exact for least squares: against refits without each block."""
+    rows = regression()
+    found = least_squares(rows)
+    covariance = jackknife(rows, found)
+    blocks, refits = covariance.blocks, []
+    for b in range(blocks):
+        kept = np.arange(rows.samples) * blocks // rows.samples != b
+        refit = least_squares(plain(rows.W[kept], rows.y[kept])).fit
+        refits.append(refit.estimates - found.fit.estimates)
+    expected = (blocks - 1) / blocks * np.array(refits).T @ np.array(refits)
+    np.testing.assert_allclose(covariance.matrix, expected, rtol=1e-8)
+
+
+def test_errors_of_autocorrelated_residuals_are_those_that_occur() -> None:
+    """Over 300 experiments: the robust ones are right, those of white residuals far too small."""
+    runs = []
+    for seed in range(300):
+        rows = regression(seed=seed)
+        found = least_squares(rows)
+        errors = jackknife(rows, found).errors
+        runs.append((found.fit.estimates - THETA, errors, found.fit.standard_errors()))
+    errors, robust, white = (np.array(x) for x in zip(*runs, strict=True))
+    occurred = errors.std(axis=0)
+    np.testing.assert_allclose(np.median(robust, axis=0), occurred, rtol=0.2)
+    assert np.all(np.median(white, axis=0) < 0.4 * occurred)
+
+
+def test_errors_of_white_residuals_are_the_classical_ones() -> None:
+    rows = regression(20_000, coloured=False)
+    found = least_squares(rows)
+    errors = jackknife(rows, found).errors
+    np.testing.assert_allclose(errors, found.fit.standard_errors(), rtol=0.25)
+
+
+@pytest.mark.parametrize("estimator", [wls, ml, irls], ids=["wls", "ml", "irls"])
+def test_robust_errors_follow_the_weights_of_the_estimator(estimator: object) -> None:
+    """White noise: they are near the classical ones, for which the weights are as they are."""
+    rng = np.random.default_rng(0)
+    W = np.stack([smooth(8000, P, rng) for _ in range(2)], axis=1)
+    rows = plain(W, W @ THETA + rng.standard_normal((8000, 2)) * [10.0, 0.1], H)
+    found = estimated(estimator.Estimator(), rows)  # type: ignore[attr-defined]
+    errors = jackknife(rows, found).errors
+    np.testing.assert_allclose(errors, found.fit.standard_errors(), rtol=0.25)
+
+
+def test_the_inflation_of_least_squares_is_that_of_its_errors() -> None:
+    """From the products of blocks, against the rows themselves."""
+    rows = regression()
+    found = least_squares(rows)
+    blocks, ratio = inflation(Blocks.every(H).add(rows).whole(), rows)
+    robust = jackknife(rows, found)
+    assert blocks == robust.blocks
+    np.testing.assert_allclose(ratio, robust.errors / found.fit.standard_errors(), rtol=0.05)
+
+
+@pytest.mark.parametrize(
+    "estimator", [tls.Estimator(), rls.Estimator(forgetting=0.999)], ids=["tls", "forgetting"]
+)
+def test_an_estimator_without_scores_is_examined_all_the_same(estimator: BaseEstimator) -> None:
+    """Its residual is there, and its errors are not taken for those of white noise."""
+    rows = regression(4000)
+    found = estimated(estimator, rows)
+    judged = diagnose(rows, found, P)
+    assert judged.covariance is None
+    left = (rows.y - rows.W @ found.fit.estimates)[:, 0]
+    about = np.sum((rows.y - rows.y.mean()) ** 2)
+    assert judged.joints[0].r2 == pytest.approx(1.0 - left @ left / about)
+    assert np.isfinite(judged.lag_share)
+    assert np.isfinite(judged.moved).all()
+    assert np.all(judged.errors > 2.0 * found.fit.standard_errors())
+
+
+@pytest.mark.parametrize("freedom", [5, 9, 19, 39, 127])
+def test_quantiles_of_student_are_those_of_scipy(freedom: int) -> None:
+    assert t95(freedom) == pytest.approx(scipy.stats.t.ppf(0.975, freedom), rel=2e-3)
+
+
+def test_residual_facts_are_those_of_numpy() -> None:
+    rows = regression()
+    found = least_squares(rows)
+    (joint,) = residuals(rows, found.fit.estimates)
+    residual = (rows.y - rows.W @ found.fit.estimates)[:, 0]
+    y = rows.y[:, 0]
+    assert joint.rows == len(y)
+    assert joint.r2 == pytest.approx(1.0 - residual.var() / y.var(), abs=1e-3)
+    assert joint.deviation == pytest.approx(np.sqrt(np.mean(residual**2)))
+    neighbours = np.corrcoef(residual[1:], residual[:-1])[0, 1]
+    assert joint.autocorrelation == pytest.approx(neighbours, abs=0.01)
+    assert joint.kurtosis == pytest.approx(scipy.stats.kurtosis(residual))
+
+
+def test_the_residual_of_a_long_record_is_that_of_all_its_rows() -> None:
+    """A subsample misses the half with more noise; the products of the blocks do not."""
+    rows = regression(4000)
+    rows.y[2000:] += 3.0 * smooth(2000, 1, np.random.default_rng(5))
+    theta = least_squares(rows).fit.estimates
+    record = Blocks.every(H).add(rows).whole()
+    (whole,) = residuals(rows, theta)
+    (found,) = residuals(rows.part(slice(0, 2000)), theta, record)
+    for fact in ("rows", "r2", "deviation", "relative_error", "torque"):
+        assert getattr(found, fact) == pytest.approx(getattr(whole, fact), rel=1e-9), fact
+
+
+def test_errors_of_a_long_record_are_those_of_its_rows() -> None:
+    """By blocks, and by the rows themselves: blocks end elsewhere, so to a tenth."""
+    rows = regression(40_000)
+    found = least_squares(rows)
+    by_rows = diagnose(rows, found, P)
+    by_blocks = diagnose(rows, found, P, Blocks.every(H).add(rows).whole())
+    np.testing.assert_allclose(by_blocks.errors, by_rows.errors, rtol=0.3)
+    assert by_blocks.errors.mean() == pytest.approx(by_rows.errors.mean(), rel=0.1)
