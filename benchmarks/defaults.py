@@ -6,11 +6,12 @@ import numpy as np
 import scipy.signal
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.excitations.quintic import Excitation
 from scarid_cli.algorithms.filters.butterworth import Butterworth
-from scarid_cli.algorithms.plants.loop import ClosedLoop, Log
+from scarid_cli.algorithms.plants.loop import ClosedLoop, LoopLog
 from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.trajectories.hermite import refine
-from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path
+from scarid_cli.algorithms.trajectories.limits import Limits
 
 ROBOT = reading.load("scara2")
 PERIOD, RATIO = 0.005, 5
@@ -27,13 +28,10 @@ SETTINGS: list[tuple[str, str, dict[str, float]]] = [
 ]
 
 
-def experiment(seed: int, segment: tuple[float, float], cutoff: float = 20.0) -> Log:
+def experiment(seed: int, segment: tuple[float, float], cutoff: float = 20.0) -> LoopLog:
     """Twenty seconds of the simulated robot in its default control loop, at the control rate."""
-    limits = [
-        np.array([getattr(joint, f"{name}_limit") for joint in ROBOT.joints])
-        for name in ("position", "velocity", "acceleration")
-    ]
-    path = random_path(Bounds(*limits), 20.0, segment, np.random.default_rng(seed))
+    limits, rng = Limits.of(ROBOT.joints), np.random.default_rng(seed)
+    path = Excitation(*segment).trajectory(limits, limits.home, 20.0, rng)
     q, dq, _ = refine(*path.sample(np.arange(4001) * PERIOD), PERIOD, RATIO)
     assert ROBOT.control is not None
     loop = ClosedLoop(
@@ -50,7 +48,7 @@ def experiment(seed: int, segment: tuple[float, float], cutoff: float = 20.0) ->
     return loop.step(loop.init(q[:, 0]), q, dq)[1]
 
 
-def errors(log: Log, method: str, settings: dict[str, float]) -> list[tuple[float, float]]:
+def errors(log: LoopLog, method: str, settings: dict[str, float]) -> list[tuple[float, float]]:
     """NRMSE of velocity and acceleration for each joint, without the first second."""
     found = []
     for joint in range(2):

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from defaults import PERIOD, RATIO, experiment
 
-from scarid_cli.algorithms.trajectories.quintic import Bounds, random_path
+from scarid_cli.algorithms.excitations.quintic import Excitation
+from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.arrays import Array
 
 Derivatives = tuple[Array, Array]  # velocities and accelerations
@@ -35,8 +36,9 @@ def motions() -> list[TrueMotion]:
 
 def quintic(seed: int) -> TrueMotion:
     """Point-to-point moves, each in 1 to 3 s."""
-    bounds = Bounds(np.array([1.2]), np.array([4.0]), np.array([20.0]))
-    path = random_path(bounds, SECONDS, (1.0, 3.0), np.random.default_rng(seed))
+    limits = Limits(*np.array([[-1.2], [1.2], [4.0], [20.0]]))
+    rng = np.random.default_rng(seed)
+    path = Excitation(1.0, 3.0).trajectory(limits, limits.home, SECONDS, rng)
     q, v, a = (row[0] for row in path.sample(np.arange(round(SECONDS / H)) * H))
     return TrueMotion(f"quintic {seed}", q, v, a)
 

@@ -12,12 +12,13 @@ from scarid_cli.cli import options
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
-    from scarid_cli.algorithms.robots.logs import Log
+    from scarid_cli.algorithms.robots.joints import Joint
+    from scarid_cli.algorithms.robots.logs import LogFormat
 
 
 @click.group(name="robot")
 def command() -> None:
-    """Robot descriptions: what a name, a TOML file or a URDF stands for.
+    """Check robot descriptions.
 
     \b
       scarid robot check scara2
@@ -29,15 +30,17 @@ def command() -> None:
 @click.argument("robot", metavar="ROBOT", type=options.ROBOT)
 @options.common
 def check(robot: str, **_rest: Any) -> None:
-    """Tell what was understood of a robot description.
+    """Show how a robot description was understood.
 
     \b
       scarid robot check planar2-gravity
       scarid robot check mine.toml
 
-    What its logs hold (see convert --robot), joints with their limits, and the parameters that
-    identify estimates: name, unit, a priori value, and, for a URDF, the standard parameters that
-    each base parameter stands for.
+    ROBOT is the name of a robot that comes with scarid (scara2, emps, planar2-gravity), a TOML file
+    or a URDF. The command shows what the logs of the robot hold (see `scarid convert --robot`), its
+    joints with their limits, and the parameters that `scarid identify` estimates: name, unit and a
+    priori value. For a robot with a URDF it also shows which joints are locked and why, and the
+    combination of standard parameters that each base parameter stands for.
     """
     from scarid_cli.algorithms.robots.reading import load
 
@@ -45,8 +48,8 @@ def check(robot: str, **_rest: Any) -> None:
         click.echo(line)
 
 
-def _told(log: Log) -> str:
-    """What the robot's logs hold."""
+def _contents(log: LogFormat) -> str:
+    """What the logs of the robot hold."""
     from scarid_cli.algorithms.robots.logs import CURRENT
 
     parts = [f"positions of {log.positions}s"]
@@ -57,25 +60,35 @@ def _told(log: Log) -> str:
     return ", ".join(parts)
 
 
+def _limits(joint: Joint) -> Iterator[str]:
+    """The limits that the description gives."""
+    if isfinite(joint.lower) or isfinite(joint.upper):
+        yield f"position {joint.lower:g} to {joint.upper:g} {joint.unit}"
+    for name, limit, unit in (
+        ("velocity", joint.velocity_limit, f"{joint.unit}/s"),
+        ("acceleration", joint.acceleration_limit, f"{joint.unit}/s2"),
+        ("torque", joint.torque_limit, joint.torque_unit),
+    ):
+        if isfinite(limit):
+            yield f"{name} {limit:g} {unit}"
+
+
 def described(robot: Robot) -> Iterator[str]:
-    """A line for the robot, each joint and each parameter."""
+    """The lines on the robot, each of its joints and each of its parameters."""
     joints, parameters = len(robot.joints), len(robot.parameters)
     yield f"robot       {robot.name}: {robot.title}"
     yield f"freedom     {joints} joint{'s' if joints > 1 else ''}, {parameters} parameters"
-    yield f"controller  {'described' if robot.control else 'none: it cannot be simulated'}"
+    controller = "described" if robot.control else "none, so the robot cannot be simulated"
+    yield f"controller  {controller}"
     if robot.body:
         yield f"gravity     {' '.join(f'{x:g}' for x in robot.body.gravity)} m/s2"
     if robot.log:
-        yield f"logs        {_told(robot.log)}"
+        yield f"logs        {_contents(robot.log)}"
     yield "joints"
     for i, joint in enumerate(robot.joints, start=1):
-        limits = (
-            ("position", joint.position_limit, joint.unit),
-            ("velocity", joint.velocity_limit, f"{joint.unit}/s"),
-            ("torque", joint.torque_limit, joint.torque_unit),
-        )
-        known = ", ".join(f"{name} {x:g} {unit}" for name, x, unit in limits if isfinite(x))
-        yield f"  {i}  {joint.type:<9}  {known or 'no limits'}"
+        yield f"  {i}  {joint.type:<9}  {', '.join(_limits(joint)) or 'no limits'}"
+    for name, why in (robot.body.locked if robot.body else {}).items():
+        yield f"  locked: {name} ({why})"
     yield "parameters"
     width = max(len(parameter.name) for parameter in robot.parameters)
     for parameter in robot.parameters:

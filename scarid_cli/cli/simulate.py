@@ -19,46 +19,59 @@ from scarid_cli.cli.options import NUMBERS
     "--control-rate", type=float, default=1000.0, show_default=True, help="Control rate [Hz]."
 )
 @click.option(
-    "--log-rate", type=float, default=200.0, show_default=True, help="Rows a second [Hz]."
+    "--log-rate",
+    type=float,
+    default=200.0,
+    show_default=True,
+    help="Rows of the log per second [Hz].",
 )
 @click.option(
     "--substeps",
     type=click.IntRange(min=1),
     default=4,
     show_default=True,
-    help="Runge-Kutta steps per control period.",
+    help="Runge-Kutta steps per period of the controller.",
 )
 @click.option(
     "--encoder-bits",
     type=click.IntRange(0, 40),
-    help="Bits a turn of revolute joints; 0: perfect.  [default: the robot's resolution]",
+    help="Resolution of the encoders of revolute joints, in bits per turn; 0 for perfect ones.  "
+    "[default: the robot's resolution]",
 )
 @click.option(
     "--position-noise",
     type=NUMBERS,
     default="0",
     show_default=True,
-    help="Standard deviation before quantisation [rad or m].",
+    help="Standard deviation of the position before the encoder quantises it [rad or m].",
 )
 @click.option(
     "--torque-noise",
     type=NUMBERS,
-    help="Standard deviation of the logged torque [N m or N].  [default: the robot's]",
+    help="Standard deviation of the noise of the logged torque [N m or N].  [default: the robot's]",
 )
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of the noise.")
-@click.option("--truth", is_flag=True, help="Add the true q, dq, ddq and tau as *_true columns.")
+@click.option(
+    "--truth", is_flag=True, help="Add the true q, dq, ddq and tau as columns q1_true, ..."
+)
 @options.table_output
 @options.common
 def command() -> None:
-    """Let a simulated robot follow a trajectory, in closed loop, and log its sensors.
+    """Simulate a robot that follows a trajectory in closed loop, and log its sensors.
 
     \b
       scarid trajgen --seed 1 | scarid simulate --seed 1 -o log.parquet
       scarid simulate --encoder-bits 13 --truth reference.parquet > log.csv
-      scarid simulate --kp 6.5,155 --kd 5,25 reference.csv   # the gains the paper prints
+      scarid simulate --kp 6.5,155 --kd 5,25 reference.csv   # the gains printed in the paper
 
-    The robot has the a priori parameters of its description. Control is proportional-derivative,
-    with integral action on request (paper eq. 29 with the sign of the error mended): tau =
-    Kp (q_ref - q) + Kd (dq_ref - dq) + Ki integral(q_ref - q), dq from the encoder. Friction is
-    viscous and dry (eq. 2), and sticks. The plant is integrated by fourth-order Runge-Kutta.
+    The robot has the a priori parameters of its description and starts at rest at the first
+    position of the trajectory. Its controller is proportional-derivative, with an integral part on
+    request (paper eq. 29, its sign corrected):
+
+    \b
+      tau = Kp (q_ref - q) + Kd (dq_ref - dq) + Ki integral(q_ref - q)
+
+    where dq is the differentiated and smoothed reading of the encoder. Joints have viscous and
+    Coulomb friction (eq. 2), and stick at rest. The motion is integrated by the Runge-Kutta method
+    of fourth order.
     """

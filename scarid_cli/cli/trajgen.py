@@ -4,14 +4,30 @@ from __future__ import annotations
 
 import click
 
+from scarid_cli.algorithms.choices.registry import EXCITATIONS
 from scarid_cli.cli import options
 from scarid_cli.cli.declare import declare
+from scarid_cli.cli.described import describing
 from scarid_cli.cli.options import NUMBERS
 
 
-@declare("trajgen")
+@declare("trajgen", describing(EXCITATIONS, "Excitations and their settings"))
 @options.robot
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the via points.")
+@click.option(
+    "--excitation",
+    type=click.Choice(EXCITATIONS.names),
+    default="quintic",
+    show_default=True,
+    help="The kind of motion; see below.",
+)
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="A setting of the excitation; may be repeated.",
+)
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random motion.")
 @click.option(
     "--duration", type=float, default=20.0, show_default=True, help="Length of the motion [s]."
 )
@@ -19,39 +35,53 @@ from scarid_cli.cli.options import NUMBERS
     "--segment",
     type=float,
     nargs=2,
-    default=(0.8, 2.0),
-    show_default=True,
     metavar="SHORTEST LONGEST",
-    help="Time from one via point to the next [s].",
+    help="Range of the time from one via point to the next [s]; short for --set shortest=SHORTEST "
+    "--set longest=LONGEST.  [default: 0.8 2.0]",
 )
 @click.option(
     "--sequential",
     is_flag=True,
-    help="Move one joint at a time while the others are locked (the paper's test movements).",
+    help="Move one joint at a time, as in the paper; short for --excitation sequential.",
 )
 @click.option(
     "--via",
     type=options.INPUT,
     metavar="FILE",
-    help="Take the via points from a table with columns t, q1, q2, ...",
+    help="Take the via points from a table with columns t, q1, q2, ... instead of random ones.",
+)
+@click.option(
+    "--home",
+    type=NUMBERS,
+    help="Position at which the motion starts and ends [rad or m].  [default: zero where the "
+    "limits allow it, else the middle between them]",
 )
 @click.option("--rate", type=float, default=200.0, show_default=True, help="Rows per second [Hz].")
-@click.option("--q-max", type=NUMBERS, help="Bound on |q| [rad or m].  [default: the robot's]")
-@click.option("--dq-max", type=NUMBERS, help="Bound on |dq| [1/s].  [default: the robot's]")
-@click.option("--ddq-max", type=NUMBERS, help="Bound on |ddq| [1/s2].  [default: the robot's]")
+@click.option(
+    "--q-max",
+    type=NUMBERS,
+    help="Upper position limit [rad or m]; without --q-min, its negative is the lower one.  "
+    "[default: the robot's]",
+)
+@click.option(
+    "--q-min", type=NUMBERS, help="Lower position limit [rad or m].  [default: the robot's]"
+)
+@click.option("--dq-max", type=NUMBERS, help="Limit on |dq| [1/s].  [default: the robot's]")
+@click.option("--ddq-max", type=NUMBERS, help="Limit on |ddq| [1/s2].  [default: the robot's]")
 @options.table_output
 @options.common
 def command() -> None:
-    """Generate an excitation trajectory.
+    """Generate a trajectory that excites a robot, within its limits.
 
     \b
       scarid trajgen --seed 1 -o reference.parquet
       scarid trajgen --robot emps --duration 30 --segment 1 4 | scarid simulate
       scarid trajgen --via points.csv --rate 500
+      scarid trajgen --robot arm.urdf --ddq-max 5 --home 0,-0.5 -o reference.csv
 
-    Fifth-order polynomials between via points, at rest at each of them, starting and ending at
-    zero (paper eq. 28). The bounds on position, velocity and acceleration hold by construction;
-    via points of yours that break them are refused. The condition number of the observation
-    matrix W that the trajectory gives the robot is told on standard error; below about 100 is well
-    excited.
+    The motion starts and ends at rest at the home position and stays within the limits on position,
+    velocity and acceleration, which are those of the robot's description unless an option gives
+    others. A motion that would leave its limits is refused before anything is written. The
+    condition number of the observation matrix W that the motion gives the robot is reported on
+    standard error; a motion with a condition number below about 100 excites the robot well.
     """

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pyarrow as pa
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.logs import JOINT, Log
+from scarid_cli.algorithms.robots.logs import JOINT, LogFormat
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.table import Table, matrix, number, with_columns
@@ -41,7 +41,7 @@ def as_described(
     return at_joints(table, robot, log)
 
 
-def at_joints(table: Table, robot: Robot, log: Log) -> Table:
+def at_joints(table: Table, robot: Robot, log: LogFormat) -> Table:
     """Angles, torques or currents of motors become positions [rad or m] and torques of joints.
 
     Signals that the log already has of the joints stay as they are.
@@ -69,7 +69,7 @@ def at_joints(table: Table, robot: Robot, log: Log) -> Table:
     return replace(table, schema=schema, meta=meta, batches=_rows(table, schema, transforms))
 
 
-def _groups(log: Log) -> Iterator[tuple[tuple[str, ...], Transform]]:
+def _groups(log: LogFormat) -> Iterator[tuple[tuple[str, ...], Transform]]:
     if log.positions != JOINT:
         yield ("q{i}", "q{i}_ref"), log.positions_of_joints
         yield ("dq{i}", "ddq{i}", "dq{i}_ref", "ddq{i}_ref"), log.velocities_of_joints

@@ -1,4 +1,4 @@
-"""Let a simulated robot follow a trajectory, and log what its sensors say."""
+"""Let a simulated robot follow a trajectory, and log its sensors."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, State
+from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, LoopState
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
 from scarid_cli.errors import BadData, UsageFault
@@ -18,9 +18,10 @@ SIGNALS = ("q", "dq", "ddq")
 
 
 def simulate(table: Table, loop: ClosedLoop, log_rate: float, *, truth: bool) -> Table:
-    """A measurement at the log rate [Hz] of the loop following a trajectory.
+    """The log, at the log rate [Hz], of a robot that follows a trajectory in closed loop.
 
-    The reference columns stay beside the measured ones; `truth` adds the true ones.
+    The robot starts at rest at the first position of the trajectory. The log has the reference
+    beside the measured columns; `truth` adds the true ones.
     """
     period = table.period
     ratio = _whole(loop.control_rate * period, "the trajectory's rate")
@@ -53,7 +54,7 @@ def _schema(robot: Robot, *, truth: bool) -> pa.Schema:
 def _rows(
     table: Table, loop: ClosedLoop, ratio: int, keep: int, schema: pa.Schema
 ) -> Iterator[pa.RecordBatch]:
-    state: State | None = None
+    state: LoopState | None = None
     tick = 0
     for start, reference in _references(table, len(loop.robot.joints), ratio):
         if state is None:
@@ -76,7 +77,7 @@ def _rows(
 
 
 def _references(table: Table, joints: int, ratio: int) -> Iterator[tuple[float, Motion]]:
-    """The time of the first row, and the reference at the control ticks, chunk by chunk."""
+    """The time [s] of the first row, and the reference at the ticks of the loop, in chunks."""
     columns = [f"{name}{i}_ref" for name in SIGNALS for i in range(1, joints + 1)]
     period = table.period
     start: float | None = None

@@ -1,4 +1,4 @@
-"""Tabulate a trajectory, and judge how well it excites a robot."""
+"""Check a trajectory, tabulate it, and judge how well it excites a robot."""
 
 from __future__ import annotations
 
@@ -9,50 +9,62 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.regression.information import NotIdentifiableError, absorb, empty, solve
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.trajectories.quintic import Path
+from scarid_cli.algorithms.trajectories.limits import Limits
+from scarid_cli.algorithms.trajectories.trajectory import Trajectory
+from scarid_cli.algorithms.trajectories.via import ViaPath
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Metadata, Table, doubles, number
 
 ROWS = 4096
 
 
-def via_points(table: Table, robot: Robot) -> Path:
+def via_points(table: Table, robot: Robot) -> ViaPath:
     """The via points of a table with columns t, q1, q2, ..."""
     joints = range(1, len(robot.joints) + 1)
     batches = list(table.batches)
     times = np.concatenate([batch.column("t").to_numpy() for batch in batches])
     columns = [np.concatenate([b.column(f"q{i}").to_numpy() for b in batches]) for i in joints]
-    return Path(times - times[0], np.column_stack(columns))
+    return ViaPath(times - times[0], np.column_stack(columns))
 
 
-def tabulate(path: Path, robot: Robot, rate: float, meta: Metadata) -> Table:
+def checked(trajectory: Trajectory, limits: Limits, rate: float) -> Trajectory:
+    """The trajectory itself, if every row of its table, at the rate [Hz], keeps the limits."""
+    for t, motion in _samples(trajectory, rate):
+        limits.require(t, *motion)
+    return trajectory
+
+
+def tabulate(trajectory: Trajectory, robot: Robot, rate: float, meta: Metadata) -> Table:
     """The reference as a table, one row every 1 / rate [s]."""
     units = [joint.unit for joint in robot.joints]
     fields = [number("t", "s")]
     for name, per_time in (("q", ""), ("dq", "/s"), ("ddq", "/s2")):
         fields += [number(f"{name}{i}_ref", u + per_time) for i, u in enumerate(units, start=1)]
     schema = pa.schema(fields)
-    return Table("trajgen", schema, meta, _rows(path, rate, schema))
+    return Table("trajgen", schema, meta, _rows(trajectory, rate, schema))
 
 
-def _rows(path: Path, rate: float, schema: pa.Schema) -> Iterator[pa.RecordBatch]:
-    count = round(path.duration * rate) + 1
-    for start in range(0, count, ROWS):
-        t = np.arange(start, min(start + ROWS, count)) / rate
-        columns: list[Array] = [t]
-        for signal in path.sample(t):
-            columns += list(signal)
+def _rows(trajectory: Trajectory, rate: float, schema: pa.Schema) -> Iterator[pa.RecordBatch]:
+    for t, motion in _samples(trajectory, rate):
+        columns = [t, *(row for signal in motion for row in signal)]
         yield pa.RecordBatch.from_arrays([doubles(c) for c in columns], schema=schema)
 
 
-def excitation(path: Path, robot: Robot, rate: float) -> str:
-    """The condition number of the observation matrix that following the path would give."""
+def conditioning(trajectory: Trajectory, robot: Robot, rate: float) -> str:
+    """The condition number of the observation matrix W along the trajectory, in words."""
     state = empty(len(robot.parameters))
-    count = round(path.duration * rate) + 1
-    for start in range(0, count, ROWS):
-        W = robot.regressor(*path.sample(np.arange(start, min(start + ROWS, count)) / rate))
+    for _, motion in _samples(trajectory, rate):
+        W = robot.regressor(*motion)
         state, _ = absorb(state, W, np.zeros(W.shape[:2]))
     try:
         return f"condition number of W {solve(state).condition:.4g}"
     except NotIdentifiableError:
         return "W is singular: not every parameter is excited"
+
+
+def _samples(trajectory: Trajectory, rate: float) -> Iterator[tuple[Array, tuple[Array, ...]]]:
+    """The times [s] of the rows of the table, and the motion at these times, in batches."""
+    count = round(trajectory.duration * rate) + 1
+    for start in range(0, count, ROWS):
+        t = np.arange(start, min(start + ROWS, count)) / rate
+        yield t, trajectory.sample(t)

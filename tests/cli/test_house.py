@@ -18,7 +18,12 @@ from conftest import ROOT, Result
 from importlinter.cli import lint_imports
 
 from scarid_cli import __version__
-from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, Registry
+from scarid_cli.algorithms.choices.registry import (
+    DIFFERENTIATORS,
+    ESTIMATORS,
+    EXCITATIONS,
+    Registry,
+)
 from scarid_cli.cli import COMMANDS, options
 from scarid_cli.cli import scarid as scarid_group
 from scarid_cli.io import schemas, writer
@@ -117,7 +122,8 @@ def test_an_action_takes_the_options_that_its_command_declares(name: str) -> Non
 
 
 @pytest.mark.parametrize(
-    ("command", "registry"), [("differentiate", DIFFERENTIATORS), ("identify", ESTIMATORS)]
+    ("command", "registry"),
+    [("differentiate", DIFFERENTIATORS), ("identify", ESTIMATORS), ("trajgen", EXCITATIONS)],
 )
 def test_the_help_describes_every_choice(command: str, registry: Registry, scarid: Run) -> None:
     text = scarid(command, "--help").out

@@ -10,7 +10,7 @@ import pytest
 from conftest import ROOT
 from docs.pages import PAGES, prose
 
-from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, EXCITATIONS
 from scarid_cli.algorithms.robots.reading import built_in
 from scarid_cli.cli import COMMANDS
 
@@ -18,6 +18,7 @@ NAMES = {
     "command": list(COMMANDS),
     "differentiator": DIFFERENTIATORS.names,
     "estimator": ESTIMATORS.names,
+    "excitation": EXCITATIONS.names,
     "robot": built_in(),
 }
 USERS = [page for page in PAGES if page not in ("CONTRIBUTING.md", "DESIGN.md")]

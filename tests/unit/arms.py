@@ -21,6 +21,16 @@ URDF = """<robot name="two">
     <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.03"/></inertial></link>
 </robot>"""
 
+# A hand on link two: two fingers, the second of which mimics the first.
+FINGERS = "".join(
+    f"""
+  <joint name="{name}" type="prismatic"><parent link="two"/><child link="{name} finger"/>
+    <axis xyz="0 1 0"/><limit lower="0" upper="0.04" effort="9" velocity="1"/>{mimic}</joint>
+  <link name="{name} finger"><inertial><mass value="0.1"/>
+    <inertia ixx="1e-5" ixy="0" ixz="0" iyy="1e-5" iyz="0" izz="1e-5"/></inertial></link>"""
+    for name, mimic in (("left", ""), ("right", '<mimic joint="left" offset="0.02"/>'))
+)
+
 
 def described_arm(urdf: str, tmp_path: Path, lines: str) -> Robot:
     path = tmp_path / "robot.toml"

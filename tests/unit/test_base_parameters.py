@@ -11,9 +11,9 @@ import pytest
 from unit.arms import URDF, described_arm
 
 from scarid_cli.algorithms.robots.base import independent
-from scarid_cli.algorithms.robots.description import Parameter
+from scarid_cli.algorithms.robots.coupled import CoupledInertia
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.robots.terms import TERMS
+from scarid_cli.algorithms.robots.terms import Samples, StandardTerm
 from scarid_cli.cli.robot import described
 from scarid_cli.errors import UsageFault
 
@@ -58,7 +58,7 @@ def written_out(combination: str, values: dict[str, float]) -> float:
 
 def test_base_parameters_are_those_of_a_planar_arm_and_always_the_same(urdf: str) -> None:
     robot = load(urdf)
-    bodies = [p.name for p in robot.parameters if p.column >= 0]
+    bodies = [p.name for p in robot.parameters if isinstance(p.term, StandardTerm)]
     assert bodies == ["Iyy1", "mx1", "mz1", "Iyy2", "mx2", "mz2"]
     assert robot.parameters[0].stands_for == "Iyy1 + 1 Ia1 + 0.09 m2"
     again = load(urdf)
@@ -86,7 +86,7 @@ def test_dependent_columns_are_counted_to_those_before_them() -> None:
     ],
     ids=["broken", "floating"],
 )
-def test_what_is_no_arm_is_told(content: str, told: str, tmp_path: Path) -> None:
+def test_what_is_no_arm_is_refused(content: str, told: str, tmp_path: Path) -> None:
     path = tmp_path / "x.urdf"
     path.write_text(content)
     with pytest.raises(UsageFault, match=told):
@@ -102,15 +102,15 @@ def test_a_prismatic_joint_is_known_by_its_type(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("lines", "told"),
     [
-        ("[[joint]]", "1 joints for the 2"),
-        ("[[joint]]\n[[joint]]\nterms = ['magic']", "term 'magic' of an axis"),
+        ("[[joint]]", "1 tables [[joint]] for the 2 axes of"),
+        ("[[joint]]\n[[joint]]\nterms = ['magic']", "an axis has no term 'magic'; choose viscous"),
         ("[[coupling]]\njoints = [1, 3]", "joints 1 and 3 cannot be coupled"),
         ("[[joint]]\nname = 'a'\n[[joint]]", "some joints have a name"),
         (
             "[[joint]]\nname = 'b'\n[[joint]]\nname = 'a'",
             "no joints b, a in this order; it has a, b",
         ),
-        ("[[joint]]\nmass = 3.0\n[[joint]]", "mass is not of [[joint]]"),
+        ("[[joint]]\nmass = 3.0\n[[joint]]", "mass is not a key of [[joint]]; its keys are type"),
         ("gravity = [0.0, 9.81]", "not a list of 3 numbers"),
         ("joint = [1, 2]", "joint is 1, not a table"),
         ("coupling = 3", "coupling is 3, not tables [[coupling]]"),
@@ -123,7 +123,7 @@ def test_a_prismatic_joint_is_known_by_its_type(tmp_path: Path) -> None:
     ],
     ids=lambda value: value.replace("\n", " ") if "[" in value else "",
 )
-def test_a_description_that_does_not_fit_is_told(
+def test_a_description_that_does_not_fit_is_refused(
     lines: str, told: str, urdf: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "robot.toml"
@@ -136,8 +136,8 @@ def test_a_description_that_does_not_fit_is_told(
 def test_a_check_writes_the_base_parameters_out(urdf: str) -> None:
     lines = list(described(load(urdf)))
     assert "freedom     2 joints, 13 parameters" in lines
-    assert "controller  none: it cannot be simulated" in lines
-    assert "  1  revolute   position 3 rad, velocity 9 rad/s, torque 9 N m" in lines
+    assert "controller  none, so the robot cannot be simulated" in lines
+    assert "  1  revolute   position -3 to 3 rad, velocity 9 rad/s, torque 9 N m" in lines
     assert "  Iyy1  kg m2      0.31  = Iyy1 + 1 Ia1 + 0.09 m2" in lines
     assert "  mx2   kg m       0.1" in lines
 
@@ -148,7 +148,7 @@ def test_a_joint_without_end_is_an_angle(urdf: str, tmp_path: Path) -> None:
     turning, limited = load(str(path)), load(urdf)
     motion = np.random.default_rng(0).standard_normal((3, 2, 5))
     np.testing.assert_array_equal(turning.regressor(*motion), limited.regressor(*motion))
-    assert turning.joints[1].position_limit == np.inf
+    assert (turning.joints[1].lower, turning.joints[1].upper) == (-np.inf, np.inf)
 
 
 def test_joints_without_an_entry_are_locked(urdf: str, tmp_path: Path) -> None:
@@ -170,7 +170,7 @@ def test_gravity_pulls_where_the_description_says(urdf: str, tmp_path: Path) -> 
     upright = described_arm(urdf, tmp_path, "")
     lying = described_arm(urdf, tmp_path, "gravity = [0.0, 9.81, 0.0]")
     assert np.abs(upright.regressor(q, rest, rest)[:, :, :6]).max() > 1.0
-    bodies = [i for i, p in enumerate(lying.parameters) if p.column >= 0]
+    bodies = [i for i, p in enumerate(lying.parameters) if isinstance(p.term, StandardTerm)]
     np.testing.assert_allclose(lying.regressor(q, rest, rest)[:, :, bodies], 0.0, atol=1e-12)
 
 
@@ -205,8 +205,7 @@ def test_a_coupled_motor_is_felt_by_both_joints(urdf: str, tmp_path: Path) -> No
     np.testing.assert_allclose(column["fsm2"], slopes * np.sign(angle_rate))
     own = np.array([k * k * dq[0], dq[1]])  # what the axes' own columns have
     np.testing.assert_allclose(column["fvm2"], slopes * angle_rate - own)
-    inertia = Parameter("Iam2", "coupled-inertia", "kg m2", 0.0, joint=1, other=2, ratio=k)
-    both = TERMS["coupled-inertia"](dq, dq, ddq, inertia)
+    both = CoupledInertia(joint=1, other=2, ratio=k).column(Samples(dq, dq, ddq))
     own = np.array([k * k * ddq[0], ddq[1]])
     np.testing.assert_allclose([both[0], both[1]], slopes * (k * ddq[0] + ddq[1]) - own)
 

@@ -10,12 +10,18 @@ from typing import Any
 
 import pytest
 
-from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, FOLDER, Registry
+from scarid_cli.algorithms.choices.registry import (
+    DIFFERENTIATORS,
+    ESTIMATORS,
+    EXCITATIONS,
+    FOLDER,
+    Registry,
+)
 from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.processes.method import Matching, Method
 from scarid_cli.errors import UsageFault
 
-REGISTRIES = {"differentiators": DIFFERENTIATORS, "estimators": ESTIMATORS}
+REGISTRIES = {registry.folder: registry for registry in (DIFFERENTIATORS, ESTIMATORS, EXCITATIONS)}
 CHOICES = [
     pytest.param(registry, name, id=name)
     for registry in REGISTRIES.values()

@@ -1,4 +1,4 @@
-"""Excitation: within its bounds whatever is asked, and exact between its samples."""
+"""Excitation: within its limits whatever is asked, from home to home, exact between samples."""
 
 from __future__ import annotations
 
@@ -10,107 +10,190 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from scarid_cli.algorithms.trajectories import hermite
-from scarid_cli.algorithms.trajectories.quintic import Bounds, Path, random_path, through
+from scarid_cli.algorithms.choices.registry import EXCITATIONS
+from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.robots.joints import Joint
+from scarid_cli.algorithms.trajectories.limits import Limits
+from scarid_cli.algorithms.trajectories.trajectory import Trajectory
+from scarid_cli.algorithms.trajectories.via import ViaPath
+from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
-# Bounds hold by construction, but for the rounding of a few multiplications.
+# Limits hold by construction, but for the rounding of a few multiplications.
 ROUNDING = 1.0 + 1e-12
 
-limits = st.floats(1e-3, 1e3)
+sizes = st.floats(1e-3, 1e3)
 lengths = st.floats(0.1, 5.0)
 seeds = st.integers(0, 2**32 - 1)
 laws = settings(max_examples=100, deadline=None)
 
 
 @st.composite
-def bounds(draw: st.DrawFn, joints: int | None = None) -> Bounds:
-    """Bounds of one to three joints, position bounds perhaps infinite."""
+def limits(draw: st.DrawFn, joints: int | None = None) -> Limits:
+    """Limits of one to three joints, whose intervals contain zero or not."""
     count = joints or draw(st.integers(1, 3))
-    rows = [draw(st.lists(limits, min_size=count, max_size=count)) for _ in range(3)]
-    q, dq, ddq = (np.array(row) for row in rows)
-    return Bounds(q, dq, ddq)
+    lower = np.array(draw(st.lists(st.floats(-10.0, 10.0), min_size=count, max_size=count)))
+    rows = [draw(st.lists(sizes, min_size=count, max_size=count)) for _ in range(3)]
+    room, dq, ddq = (np.array(row) for row in rows)
+    return Limits(lower, lower + room, dq, ddq)
 
 
 @st.composite
-def requests(draw: st.DrawFn) -> tuple[float, tuple[float, float], bool]:
-    """A duration, the range of its segments, and whether the joints take turns (3 at most)."""
-    shortest = draw(lengths)
-    longest = shortest + draw(st.floats(0.0, 3.0))
-    sequential = draw(st.booleans())
-    least = 6.0 * shortest if sequential else 2.0 * shortest
-    return draw(st.floats(least, least + 60.0)), (shortest, longest), sequential
+def homes(draw: st.DrawFn, limits: Limits) -> Array:
+    """Any position within the limits, their ends included, or the default."""
+    shares = st.lists(st.floats(0.0, 1.0), min_size=len(limits.dq), max_size=len(limits.dq))
+    share = np.array(draw(shares))
+    anywhere = (1.0 - share) * limits.lower + share * limits.upper
+    home: Array = draw(
+        st.sampled_from([limits.home, np.clip(anywhere, limits.lower, limits.upper)])
+    )
+    return home
 
 
-def at_points(path: Path) -> tuple[np.ndarray, ...]:
-    return path.sample(path.times)
+@st.composite
+def requests(draw: st.DrawFn) -> tuple[Limits, Array, float, Trajectory]:
+    """A random motion, with what was asked of it: limits, home and duration."""
+    box = draw(limits())
+    home = draw(homes(box))
+    name = draw(st.sampled_from(EXCITATIONS.names))
+    excitation, shortest = EXCITATIONS.load(name), draw(lengths)
+    given = {"shortest": shortest, "longest": shortest + draw(st.floats(0.0, 3.0))}
+    settings = {key: given[key] for key in names_of(excitation) if key in given}
+    least = 2.0 * shortest * (len(home) if name == "sequential" else 1)
+    duration = draw(st.floats(least, least + 60.0))
+    rng = np.random.default_rng(draw(seeds))
+    return box, home, duration, excitation(**settings).trajectory(box, home, duration, rng)
 
 
-@given(bounds=bounds(), request=requests(), seed=seeds)
-@laws
-def test_random_path_keeps_its_bounds(
-    bounds: Bounds, request: tuple[float, tuple[float, float], bool], seed: int
-) -> None:
-    duration, segment, sequential = request
+def around_zero(joints: int, size: float = 1.0) -> Limits:
+    """All limits of one size."""
+    ones = np.full(joints, size)
+    return Limits(-ones, ones, ones, ones)
+
+
+def random_path(
+    limits: Limits,
+    duration: float,
+    segment: tuple[float, float],
+    seed: int,
+    excitation: str = "quintic",
+) -> ViaPath:
+    method = EXCITATIONS.load(excitation)(*segment)
     rng = np.random.default_rng(seed)
-    path = random_path(bounds, duration, segment, rng, sequential=sequential)
-    # Twenty times a segment, its middle (peak velocity) and both peaks of the acceleration.
-    inner = np.concatenate((np.linspace(0.0, 1.0, 21), 0.5 + np.array([-1, 1]) * np.sqrt(1 / 12)))
-    t = (path.times[:-1, None] + np.diff(path.times)[:, None] * inner).ravel()
-    for signal, limit in zip(path.sample(t), (bounds.q, bounds.dq, bounds.ddq), strict=True):
-        assert np.all(np.abs(signal).max(axis=1) <= limit * ROUNDING)
+    path: ViaPath = method.trajectory(limits, limits.home, duration, rng)
+    return path
 
 
-@given(bounds=bounds(), request=requests(), seed=seeds)
+@given(request=requests())
 @laws
-def test_random_path_begins_and_ends_at_rest_at_zero(
-    bounds: Bounds, request: tuple[float, tuple[float, float], bool], seed: int
+def test_every_random_motion_keeps_its_limits(
+    request: tuple[Limits, Array, float, Trajectory],
 ) -> None:
-    duration, segment, sequential = request
-    rng = np.random.default_rng(seed)
-    path = random_path(bounds, duration, segment, rng, sequential=sequential)
-    assert path.times[0] == 0.0
-    assert path.duration == duration
-    ends = np.array([0.0, duration])
-    np.testing.assert_array_equal(path.sample(ends), 0.0)
-    # Every via point in between is one at rest, too.
-    np.testing.assert_array_equal(at_points(path)[1:], 0.0)
-    np.testing.assert_array_equal(at_points(path)[0], path.points.T)
+    box, _, duration, trajectory = request
+    q, dq, ddq = trajectory.sample(np.linspace(0.0, duration, 2000))
+    slack = 1e-12 * np.maximum(np.abs(box.lower), np.abs(box.upper))
+    assert np.all(box.lower - slack <= q.T)
+    assert np.all(box.upper + slack >= q.T)
+    # Distances are rounded as positions are, and the derivatives with them.
+    for signal, limit, power in ((dq, box.dq, 1), (ddq, box.ddq, 2)):
+        rounding = 1e-14 * np.maximum(np.abs(box.lower), np.abs(box.upper)) * 60.0 / 0.1**power
+        assert np.all(limit * ROUNDING + rounding >= np.abs(signal).T)
 
 
-@given(request=requests(), seed=seeds)
-@example(request=(2.9, (1.0, 1.05), False), seed=0)
+@given(request=requests())
+@laws
+def test_every_random_motion_starts_and_ends_at_rest_at_home(
+    request: tuple[Limits, Array, float, Trajectory],
+) -> None:
+    _, home, duration, trajectory = request
+    assert trajectory.duration == duration
+    q, dq, ddq = trajectory.sample(np.array([0.0, duration]))
+    # The end is the last via point but one and the way to it: exact for a home at zero.
+    np.testing.assert_allclose(q, np.column_stack((home, home)), rtol=0.0, atol=1e-12)
+    np.testing.assert_array_equal(q[home == 0.0], 0.0)
+    np.testing.assert_array_equal([dq, ddq], 0.0)
+
+
+@given(box=limits(), seed=seeds)
+@laws
+def test_a_quintic_is_at_rest_at_every_via_point(box: Limits, seed: int) -> None:
+    path = random_path(box, 20.0, (0.5, 2.0), seed)
+    q, dq, ddq = path.sample(path.times)
+    np.testing.assert_allclose(q, path.points.T, rtol=0.0, atol=1e-12)
+    np.testing.assert_array_equal([dq, ddq], 0.0)
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "home"),
+    [(-1.0, 2.0, 0.0), (0.0, 0.04, 0.0), (-3.0, -1.0, -2.0), (1.0, 1.5, 1.25)],
+)
+def test_home_is_zero_where_it_is_allowed_and_else_the_middle(
+    lower: float, upper: float, home: float
+) -> None:
+    joint = Joint("revolute", lower, upper, velocity_limit=1.0, acceleration_limit=1.0)
+    assert Limits.of([joint]).home.tolist() == [home]
+
+
+LIMITED = Limits(*np.array([[-1.0, -2.0], [0.5, -0.5], [2.0, 3.0], [4.0, 5.0]]))
+
+
+@pytest.mark.parametrize(
+    ("signal", "joint", "value", "complaint"),
+    [
+        (0, 0, 0.51, "the position of joint 1 is 0.51, allowed is -1 to 0.5"),
+        (0, 1, 0.0, "the position of joint 2 is 0, allowed is -2 to -0.5"),
+        (0, 1, np.nan, "the position of joint 2 is nan, allowed is -2 to -0.5"),
+        (1, 0, -2.1, "the velocity of joint 1 is -2.1, allowed is at most 2"),
+        (2, 1, 6.0, "the acceleration of joint 2 is 6, allowed is at most 5"),
+    ],
+)
+def test_a_motion_that_leaves_its_limits_is_refused_where_it_does(
+    signal: int, joint: int, value: float, complaint: str
+) -> None:
+    motion = np.zeros((3, 2, 10))
+    motion[0, 1] = -1.0
+    t = np.arange(10) * 0.1
+    LIMITED.require(t, *motion)
+    motion[signal, joint, 7] = value
+    with pytest.raises(UsageFault, match=re.escape(f"at t = 0.7 s {complaint}")):
+        LIMITED.require(t, *motion)
+
+
+@given(
+    shortest=lengths,
+    more=st.floats(0.0, 3.0),
+    excitation=st.sampled_from(["quintic", "sequential"]),
+    beyond=st.floats(0.0, 60.0),
+    seed=seeds,
+)
+@example(shortest=1.0, more=0.05, excitation="quintic", beyond=0.9, seed=0)
 @laws
 def test_segments_last_as_long_as_requested(
-    request: tuple[float, tuple[float, float], bool], seed: int
+    shortest: float, more: float, excitation: str, beyond: float, seed: int
 ) -> None:
     """Whenever a whole number of them makes the duration: at least there and back, per joint."""
-    duration, (shortest, longest), sequential = request
-    least = 6 if sequential else 2
+    joints = 3 if excitation == "sequential" else 1
+    least, longest = 2 * joints, shortest + more
+    duration = least * shortest + beyond
     assume(max(least, ceil(duration / longest)) <= floor(duration / shortest))
-    joints = 3 if sequential else 1
-    box = Bounds(*np.ones((3, joints)))
-    rng = np.random.default_rng(seed)
-    path = random_path(box, duration, (shortest, longest), rng, sequential=sequential)
+    path = random_path(around_zero(joints), duration, (shortest, longest), seed, excitation)
     T = np.diff(path.times)
     assert shortest * (1.0 - 1e-9) <= T.min()
     assert T.max() <= longest * (1.0 + 1e-9)
 
 
-@given(bounds=bounds(joints=3), seed=seeds)
+@given(box=limits(joints=3), seed=seeds)
 @laws
-def test_sequential_joints_move_one_at_a_time(bounds: Bounds, seed: int) -> None:
-    path = random_path(bounds, 20.0, (0.5, 2.0), np.random.default_rng(seed), sequential=True)
+def test_sequential_joints_move_one_at_a_time(box: Limits, seed: int) -> None:
+    path = random_path(box, 20.0, (0.5, 2.0), seed, "sequential")
     moving = np.diff(path.points, axis=0) != 0.0
     assert np.all(moving.sum(axis=1) <= 1)
     assert np.all(moving.any(axis=0))
 
 
 def test_same_seed_gives_the_same_path() -> None:
-    box = Bounds(*np.ones((3, 2)))
     first, same, other = (
-        random_path(box, 20.0, (0.5, 2.0), np.random.default_rng(seed)).points.tolist()
-        for seed in (1, 1, 2)
+        random_path(around_zero(2), 20.0, (0.5, 2.0), seed).points.tolist() for seed in (1, 1, 2)
     )
     assert first == same != other
 
@@ -127,129 +210,7 @@ def test_impossible_random_path_is_refused(
     duration: float, segment: tuple[float, float], complaint: str
 ) -> None:
     with pytest.raises(UsageFault, match=complaint):
-        random_path(Bounds(*np.ones((3, 1))), duration, segment, np.random.default_rng(0))
-
-
-@given(distance=st.floats(0.01, 10.0), T=lengths)
-@laws
-def test_segment_attains_the_peaks_of_the_closed_form(distance: float, T: float) -> None:
-    """15/8 D/T in the middle; 10/sqrt(3) D/T^2 at 1/2 - 1/sqrt(12), and the opposite after it."""
-    path = Path(np.array([0.0, T]), np.array([[0.0], [distance]]))
-    peaks = T * (0.5 + np.array([-1.0, 0.0, 1.0]) / np.sqrt(12.0))
-    _, dq, ddq = path.sample(peaks)
-    largest = 10.0 / np.sqrt(3.0) * distance / T**2
-    assert dq[0, 1] == pytest.approx(15.0 / 8.0 * distance / T, rel=1e-12)
-    np.testing.assert_allclose(ddq[0], [largest, 0.0, -largest], rtol=1e-12, atol=1e-9 * largest)
-
-
-@given(bounds=bounds(joints=2), T=lengths)
-@laws
-def test_reach_is_as_far_as_velocity_and_acceleration_allow(bounds: Bounds, T: float) -> None:
-    reach = bounds.reach(T)
-    fastest = 15.0 / 8.0 * reach / T / bounds.dq
-    hardest = 10.0 / np.sqrt(3.0) * reach / T**2 / bounds.ddq
-    np.testing.assert_allclose(np.maximum(fastest, hardest), 1.0, rtol=1e-12)
-
-
-def test_velocity_and_acceleration_are_the_slopes_of_the_position() -> None:
-    path = Path(np.array([0.0, 0.7, 2.0]), np.array([[0.0], [0.4], [-0.3]]))
-    t, h = np.linspace(0.05, 0.65, 50), 1e-4
-    (before, v_before, _), (_, v, a), (after, v_after, _) = (
-        path.sample(t + k * h) for k in (-1, 0, 1)
-    )
-    # Central differences: h^2 / 6 times the third derivative, of some hundred, is some 1e-7.
-    np.testing.assert_allclose((after - before) / (2.0 * h), v, rtol=0.0, atol=1e-6)
-    np.testing.assert_allclose((v_after - v_before) / (2.0 * h), a, rtol=0.0, atol=1e-5)
-
-
-# Via points of one's own
-
-BOX = Bounds(q=np.array([1.0, 2.0]), dq=np.array([2.0, 2.0]), ddq=np.array([8.0, 8.0]))
-
-
-def via(*points: tuple[float, float], T: float = 2.0) -> Path:
-    return Path(T * np.arange(len(points)), np.array(points))
-
-
-def test_via_points_within_the_bounds_are_taken_as_they_are() -> None:
-    path = via((0.0, 0.0), (1.0, -2.0), (0.0, 0.0))
-    assert through(path, BOX) is path
-
-
-@pytest.mark.parametrize(
-    ("path", "complaint"),
-    [
-        (via((0.1, 0.0), (0.0, 0.0)), "must begin at zero in every joint"),
-        (via((0.0, 0.0), (0.0, 0.1)), "must end at zero in every joint"),
-        (via((0.0, 0.0)), "two via points or more"),
-        (via((0.0, 0.0), (0.0, 0.0), T=0.0), "times that increase"),
-        (
-            via((0.0, 0.0), (0.0, 2.1), (0.0, 0.0)),
-            "via point 2: joint 2 at 2.1 is beyond its position bound of 2",
-        ),
-        (
-            via((0.0, 0.0), (0.0, 0.2), (1.0, 0.2), (0.0, 0.0), T=0.5),
-            "segment 2: joint 1 would reach velocity 3.75 and acceleration 23.09, "
-            "its bounds are 2 and 8; give the segment at least",
-        ),
-    ],
-)
-def test_via_points_beyond_the_bounds_are_refused(path: Path, complaint: str) -> None:
-    with pytest.raises(UsageFault, match=re.escape(complaint)):
-        through(path, BOX)
-
-
-@given(distance=st.floats(0.01, 10.0), limit=st.tuples(limits, limits))
-@laws
-def test_advice_on_a_fast_segment_is_good_advice(
-    distance: float, limit: tuple[float, float]
-) -> None:
-    """The time it asks for, as printed, is enough."""
-    box = Bounds(np.array([100.0]), *(np.array([x]) for x in limit))
-    points = np.array([[0.0], [distance], [0.0]])
-    with pytest.raises(UsageFault) as refused:
-        through(Path(1e-3 * np.arange(3.0), points), box)
-    advice = re.search(r"give the segment at least (\S+) s", str(refused.value))
-    assert advice is not None
-    through(Path(float(advice[1]) * np.arange(3.0), points), box)
-
-
-# Refinement
-
-
-@given(
-    coefficients=st.lists(st.floats(-2.0, 2.0), min_size=6, max_size=6),
-    period=st.floats(0.01, 2.0),
-    ratio=st.integers(1, 12),
-)
-@laws
-def test_refine_is_exact_for_a_quintic(
-    coefficients: list[float], period: float, ratio: int
-) -> None:
-    polynomial = np.polynomial.Polynomial(coefficients)
-    motion = [polynomial, polynomial.deriv(1), polynomial.deriv(2)]
-    coarse, fine = (period * np.arange(4.0), period / ratio * np.arange(3.0 * ratio))
-    refined = hermite.refine(*(x(coarse)[None] for x in motion), period, ratio)
-    for power, (got, x) in enumerate(zip(refined, motion, strict=True)):
-        # Rounding is that of the positions, and each derivative divides it by the period.
-        scale = np.abs(motion[0](fine)).max() + 1.0
-        atol = 1e-12 * scale / period**power
-        np.testing.assert_allclose(got, x(fine)[None], rtol=1e-12, atol=atol)
-
-
-def test_refine_keeps_the_joints_apart() -> None:
-    both = np.random.default_rng(0).standard_normal((3, 2, 5))
-    together = hermite.refine(*both, 0.1, 4)
-    apart = [hermite.refine(*(x[joint : joint + 1] for x in both), 0.1, 4) for joint in range(2)]
-    np.testing.assert_array_equal(together, np.concatenate(apart, axis=1))
-
-
-def test_refine_rounds_alike_however_many_rows_there_are() -> None:
-    """What makes a simulation independent of the chunks its reference comes in."""
-    motion = np.random.default_rng(0).standard_normal((3, 2, 9))
-    whole = hermite.refine(*motion, 0.1, 4)
-    halves = [hermite.refine(*motion[:, :, rows], 0.1, 4) for rows in (np.s_[:5], np.s_[4:])]
-    np.testing.assert_array_equal(np.concatenate(halves, axis=2), whole)
+        random_path(around_zero(1), duration, segment, 0)
 
 
 @pytest.mark.parametrize(
@@ -264,6 +225,5 @@ def test_path_that_must_return_as_fast_as_it_can_is_made(
     duration: float, segment: tuple[float, float], seed: int
 ) -> None:
     """The furthest point to come back from is known to rounding only: numpy: high - low < 0."""
-    box = Bounds(*np.ones((3, 1)))
-    path = random_path(box, duration, segment, np.random.default_rng(seed))
+    path = random_path(around_zero(1), duration, segment, seed)
     np.testing.assert_array_equal(path.points[-1], 0.0)

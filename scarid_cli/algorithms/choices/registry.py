@@ -54,3 +54,4 @@ def _stem(name: str) -> str:
 
 DIFFERENTIATORS = Registry("differentiators", "Differentiator")
 ESTIMATORS = Registry("estimators", "Estimator")
+EXCITATIONS = Registry("excitations", "Excitation")

@@ -17,8 +17,8 @@ from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, Scores
 from scarid_cli.algorithms.regression.information import least_squares
 from scarid_cli.algorithms.regression.rows import Rows, joined
-from scarid_cli.algorithms.robots.description import Parameter, Robot
-from scarid_cli.algorithms.robots.terms import stribeck
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.terms import Coulomb, Stribeck
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
@@ -33,14 +33,14 @@ class Estimator(HoldingEstimator):
     ALIGNS: ClassVar[bool] = False
 
     def for_robot(self, robot: Robot) -> Estimator:
-        if not any(p.term == "coulomb" for p in robot.parameters):
+        if not any(isinstance(p.term, Coulomb) for p in robot.parameters):
             raise UsageFault(f"separable: robot {robot.name} has no joint with Coulomb friction")
         return replace(self, robot=robot)
 
     def fit(self, state: list[Rows]) -> Estimation:
         assert self.robot is not None
         rows = joined(state)
-        joints = [p.joint for p in self.robot.parameters if p.term == "coulomb"]
+        joints = [p.term.joint for p in self.robot.parameters if isinstance(p.term, Coulomb)]
         inverse = _inverse_deviations(rows)
         velocities = _searched(rows, joints, inverse)
         linear = _with_columns(rows, [_column(rows, j, v) for j, v in velocities.items()])
@@ -70,9 +70,7 @@ class Estimator(HoldingEstimator):
 
 
 def _column(rows: Rows, joint: int, velocity: float) -> tuple[int, Array]:
-    q, dq, ddq, _ = rows.motion
-    fading = Parameter("", "stribeck", "", 0.0, joint, velocity)
-    return joint, stribeck(q, dq, ddq, fading)[joint - 1]
+    return joint, Stribeck(joint, velocity).torque(rows.motion[1][joint - 1])
 
 
 def _slope(rows: Rows, joint: int, velocity: float) -> Array:

@@ -1,8 +1,9 @@
-"""A robot in closed loop (paper section 3.1 and eq. 29, with the sign of its error mended).
+"""A simulated robot in closed loop (paper section 3.1 and eq. 29, with its sign corrected).
 
-tau = Kp (q_ref - q) + Kd (dq_ref - dq_est) + Ki integral(q_ref - q), at the control rate; dq_est
-is the smoothed backward difference of the encoder. The plant is integrated by fourth-order
-Runge-Kutta between the control ticks, with dry friction that sticks.
+tau = Kp (q_ref - q) + Kd (dq_ref - dq_est) + Ki integral(q_ref - q), at the control rate. dq_est is
+the backward difference of the encoder, smoothed by a low-pass. Between the ticks of the controller
+the robot is integrated by the Runge-Kutta method of fourth order, and Coulomb friction sticks
+(docs/theory.md, "Robot, control and regression").
 """
 
 from __future__ import annotations
@@ -13,18 +14,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.terms import PLANAR_TERMS
+from scarid_cli.algorithms.robots.planar import HORIZONTAL
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.kernels import plant
 
-JOINTS = 2  # of the kernel; an axis alone takes the first
+JOINTS = 2  # of the kernel; a single axis uses the first one
 LARGE = 1e300
 
 
 @dataclass(frozen=True)
-class State:
-    """Where the robot and its controller are, and the sources of noise."""
+class LoopState:
+    """The state of the robot and its controller (of the kernel), and the sources of noise."""
 
     values: Array
     position_noise: np.random.Generator
@@ -32,8 +33,8 @@ class State:
 
 
 @dataclass(frozen=True)
-class Log:
-    """What happened at each tick: arrays (joints, ticks)."""
+class LoopLog:
+    """The signals at each tick of the controller: arrays (joints, ticks), in SI units."""
 
     q: Array
     tau: Array
@@ -44,7 +45,7 @@ class Log:
 
 
 class DivergedError(ValueError):
-    """The loop is unstable; `tick` is where its state left all bounds."""
+    """The loop is unstable; `tick` is when its state left all bounds."""
 
     def __init__(self, tick: int) -> None:
         super().__init__("the closed loop is unstable")
@@ -53,7 +54,11 @@ class DivergedError(ValueError):
 
 @dataclass(frozen=True)
 class ClosedLoop:
-    """Settings, per joint where they are arrays. Rates in Hz, noise as standard deviations."""
+    """A robot with its controller and sensors; arrays have one value per joint.
+
+    Gains [N m/rad, N m s/rad, N m/(rad s)], rates and the cut-off [Hz], resolution [rad or m], and
+    noise as standard deviations [rad or m, N m or N].
+    """
 
     robot: Robot
     kp: Array
@@ -74,22 +79,22 @@ class ClosedLoop:
             if np.any(getattr(self, name) < 0.0):
                 raise UsageFault(f"{name.replace('_', ' ')} must not be negative")
 
-    def init(self, q: Array) -> State:
-        """At rest at q (joints)."""
+    def init(self, q: Array) -> LoopState:
+        """The state at rest at q (joints) [rad or m]."""
         position_seed, torque_seed = np.random.SeedSequence(self.seed).spawn(2)
         q = padded(q)
         resolution = padded(self.encoder_resolution)
         steps = np.where(resolution > 0.0, resolution, 1.0)
         # Rounded as the kernel does, or the first velocity would be that of a jump.
         reading = np.where(resolution > 0.0, np.floor(q / steps + 0.5) * steps, q)
-        return State(
+        return LoopState(
             np.concatenate((q, np.zeros(2), reading, np.zeros(4))),
             np.random.default_rng(position_seed),
             np.random.default_rng(torque_seed),
         )
 
-    def step(self, state: State, q_ref: Array, dq_ref: Array) -> tuple[State, Log]:
-        """Run over the ticks of a reference (joints, ticks)."""
+    def step(self, state: LoopState, q_ref: Array, dq_ref: Array) -> tuple[LoopState, LoopLog]:
+        """The state and the signals after the ticks of a reference (joints, ticks)."""
         state = deepcopy(state)
         joints, ticks = q_ref.shape
         reference = np.zeros((ticks, 2 * JOINTS))
@@ -114,7 +119,7 @@ class ClosedLoop:
         torque_noise = state.torque_noise.standard_normal((ticks, joints)) * self.torque_noise
         columns = [np.ascontiguousarray(log[:, i : i + joints].T) for i in range(0, 10, JOINTS)]
         q, tau, q_true, dq_true, ddq_true = columns
-        return state, Log(q, tau + torque_noise.T, q_true, dq_true, ddq_true, tau)
+        return state, LoopLog(q, tau + torque_noise.T, q_true, dq_true, ddq_true, tau)
 
     def _control(self) -> Array:
         limits = [min(joint.torque_limit, LARGE) for joint in self.robot.joints]
@@ -126,19 +131,19 @@ class ClosedLoop:
 
 
 def padded(row: Array) -> Array:
-    """One number per joint of the kernel."""
+    """A row (joints) with a value for each joint of the kernel."""
     return np.concatenate((row, np.zeros(JOINTS - len(row))))
 
 
 def mechanism(robot: Robot) -> Array:
-    """The kernel's model of a robot, at its a priori values."""
+    """The parameters of the kernel's model: the a priori values of the robot."""
     joints = len(robot.joints)
-    terms = {parameter.term for parameter in robot.parameters}
+    terms = {parameter.term.NAME for parameter in robot.parameters}
     friction = [
         robot.value(term, joint) for term in ("viscous", "coulomb", "offset") for joint in (1, 2)
     ]
-    if joints == 2 and terms >= set(PLANAR_TERMS) and "mass" not in terms:
-        inertia = [robot.value(term) for term in PLANAR_TERMS]
+    if joints == 2 and terms >= set(HORIZONTAL) and "mass" not in terms:
+        inertia = [robot.value(term) for term in HORIZONTAL]
     elif joints == 1 and "mass" in terms:
         # The second joint is there for the kernel only: L1MX2 = -ZZ2 uncouples it (M12 = 0).
         inertia = [robot.value("mass", 1) + 1.0, 1.0, -1.0, 0.0]

@@ -1,1 +1,1 @@
-"""Robots: one TOML file each, read (`reading.py`) into one interface (`description.py`)."""
+"""Robots: descriptions in TOML or URDF (`reading.py`) behind one interface (`description.py`)."""

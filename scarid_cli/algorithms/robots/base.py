@@ -1,8 +1,8 @@
-"""Base parameters: the fewest that the torques depend on (Gautier 1991, by QR decomposition).
+"""Base parameters: the smallest set that the torques depend on (Gautier 1991, by QR).
 
-Columns of the regressor along random motions, one after the other: one that the columns before it
-make up is left out, and its parameter counted to theirs. The motions are always the same, so the
-set is too. Its a priori values are those of the same torques.
+The columns of the regressor are computed at random samples and taken in order. A column that is a
+linear combination of the columns before it is dropped, and its parameter is added to theirs. The
+random samples are always the same, and so is the set (docs/theory.md, "Base parameters").
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from scarid_cli.arrays import Array
 
 SAMPLES = 400
 REACH = 3.0  # rad or m, and per s and s2
-DEPENDENT = 1e-8  # of a column of unit length
-NONE = 1e-12  # of the longest column: rounding alone
+DEPENDENT = 1e-8  # rest of a column of unit length that counts as none
+NONE = 1e-12  # times the longest column: a column that is rounding alone
 ROUNDING = 1e-12
-ABSENT = 1e-6  # times its neighbour: not a part of a combination
+ABSENT = 1e-6  # factor of a parameter that is not part of a combination
 
 
 def with_base_parameters(robot: Robot) -> Robot:
-    """The robot with its base parameters alone, each written out in those it stands for."""
+    """The robot with its base parameters only, each with the combination that it stands for."""
     rng = np.random.default_rng(0)
     motion = rng.uniform(-REACH, REACH, (3, len(robot.joints), SAMPLES))
     W = robot.regressor(*motion).reshape(-1, len(robot.parameters))
@@ -42,15 +42,16 @@ def with_base_parameters(robot: Robot) -> Robot:
 
 
 def _sum(values: list[float]) -> float:
-    """Without the rounding that is left where all of it cancels."""
+    """The sum, or 0 where the terms cancel to within rounding."""
     total = fsum(values)
     return total if abs(total) > ROUNDING * fsum(map(abs, values)) else 0.0
 
 
 def independent(W: Array) -> tuple[list[int], Array]:
-    """The columns that those before them do not make up, and how they make up the others.
+    """The columns that are independent of those before them, and the others in terms of them.
 
-    The second (kept columns, columns) has zeros where a column is kept or always zero.
+    W is (rows, columns). The second result B (kept columns, columns) gives the dropped columns,
+    W_dropped = W_kept B; it is zero for columns that are kept or always zero.
     """
     lengths = np.linalg.norm(W, axis=0)
     basis = np.empty((len(W), 0))
@@ -59,7 +60,7 @@ def independent(W: Array) -> tuple[list[int], Array]:
         if not length > NONE * lengths.max():
             continue
         rest = W[:, i] / length
-        for _ in range(2):  # once more, for the digits that the first projection loses
+        for _ in range(2):  # twice, for the digits that the first projection loses
             rest = rest - basis @ (basis.T @ rest)
         size = float(np.linalg.norm(rest))
         if size > DEPENDENT:

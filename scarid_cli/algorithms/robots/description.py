@@ -1,4 +1,4 @@
-"""A robot as the commands see it: joints, parameters with their a priori values, regressor."""
+"""A robot as the commands see it: joints, parameters with a priori values, regressor."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from scarid_cli.algorithms.robots.joints import Joint
-from scarid_cli.algorithms.robots.logs import Log
-from scarid_cli.algorithms.robots.terms import TERMS
+from scarid_cli.algorithms.robots.logs import LogFormat
+from scarid_cli.algorithms.robots.terms import Coulomb, Samples, Stribeck, Term
 from scarid_cli.arrays import Array
 
 if TYPE_CHECKING:
@@ -18,29 +18,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One base parameter: its term of the regressor, the joint (from 1) of a friction term.
+    """A parameter with its a priori value, and the term of the torques that it multiplies.
 
-    `parts` are the parameters it stands for, with their factors; `column` is its place among the
-    standard parameters of a URDF, `other` the joint that a coupled term is coupled to by `ratio`.
-    `velocity` [rad/s or m/s], `length` [m] and `gravity` [m/s2] shape the term: see terms.py.
+    A base parameter is a combination: `parts` are the parameters it stands for, with their factors.
     """
 
     name: str
-    term: str
     unit: str
     apriori: float
-    joint: int = 0
-    velocity: float = 0.0
-    length: float = 0.0
-    gravity: float = 0.0
-    other: int = 0
-    ratio: float = 1.0
-    column: int = -1
+    term: Term
     parts: tuple[tuple[str, float], ...] = ()
 
     @property
     def stands_for(self) -> str:
-        """What it is a combination of, written out; empty for a parameter of one name."""
+        """The combination that a base parameter stands for, written out; empty if it is alone."""
         rest = "".join(
             f" {'-' if x < 0.0 else '+'} {abs(x):.6g} {name}"
             for name, x in self.parts
@@ -51,7 +42,11 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Control:
-    """Gains per joint of eq. 29 [N m/rad, N m s/rad, N m/(rad s)]; smoothing of dq [Hz]."""
+    """The controller of the simulated robot (paper eq. 29).
+
+    Gains per joint [N m/rad, N m s/rad, N m/(rad s)], or with N and m for prismatic ones; the
+    cut-off [Hz] of the low-pass of the differentiated encoder.
+    """
 
     kp: tuple[float, ...]
     kd: tuple[float, ...]
@@ -61,7 +56,7 @@ class Control:
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot whose torques are linear in its parameters: tau = W(q, dq, ddq) theta (eq. 3)."""
+    """A robot; its torques are linear in its parameters, tau = W(q, dq, ddq) theta (eq. 3)."""
 
     name: str
     title: str
@@ -69,7 +64,7 @@ class Robot:
     parameters: tuple[Parameter, ...]
     control: Control | None
     body: Body | None = None
-    log: Log | None = None
+    log: LogFormat | None = None
 
     @property
     def names(self) -> list[str]:
@@ -77,49 +72,59 @@ class Robot:
 
     @property
     def apriori(self) -> Array:
-        """A priori values, in the order of the parameters."""
+        """A priori values (parameters), in SI units."""
         return np.array([parameter.apriori for parameter in self.parameters])
 
-    def value(self, term: str, joint: int = 0) -> float:
-        """The a priori value of a term; 0 if the robot has no such parameter."""
-        found = (p.apriori for p in self.parameters if (p.term, p.joint) == (term, joint))
+    def value(self, term: str, joint: int | None = None) -> float:
+        """The a priori value of a term, of a joint (from 1); 0 if there is no such parameter."""
+        found = (
+            p.apriori
+            for p in self.parameters
+            if term == p.term.NAME and (joint is None or joint in p.term.joints)
+        )
         return next(found, 0.0)
 
     def smoothed(self, velocity: float) -> Robot:
-        """The robot whose dry friction changes over this velocity [rad/s or m/s], not at once."""
+        """The robot with tanh(dq / velocity) for the sign in Coulomb friction [rad/s or m/s]."""
         parameters = (
-            replace(p, velocity=velocity) if p.term == "coulomb" else p for p in self.parameters
+            replace(p, term=replace(p.term, velocity=velocity))
+            if isinstance(p.term, Coulomb)
+            else p
+            for p in self.parameters
         )
         return replace(self, parameters=tuple(parameters))
 
     def with_stribeck(self, velocities: dict[int, float]) -> Robot:
-        """The robot with more dry friction at low speed, on joints (from 1) by their velocity."""
+        """The robot with Stribeck friction on joints (from 1), each with its velocity."""
         added = (
-            Parameter(f"Fst{i}", "stribeck", self.joints[i - 1].torque_unit, 0.0, i, velocity)
+            Parameter(
+                Stribeck.SYMBOL.format(i=i),
+                self.joints[i - 1].torque_unit,
+                0.0,
+                Stribeck(i, velocity),
+            )
             for i, velocity in velocities.items()
         )
         return replace(self, parameters=(*self.parameters, *added))
 
     def regressor(self, q: Array, dq: Array, ddq: Array) -> Array:
-        """W (samples, joints, parameters) from motions (joints, samples); sources in terms.py."""
+        """The regressor W (samples, joints, parameters) of tau = W theta (paper eq. 3 and 25).
+
+        q, dq and ddq are (joints, samples), in rad or m, and per s and s2.
+        """
         joints, samples = q.shape
         W = np.zeros((samples, joints, len(self.parameters)))
-        standard = [(i, p.column) for i, p in enumerate(self.parameters) if p.column >= 0]
-        if self.body and standard:
-            places, columns = zip(*standard, strict=True)
-            W[:, :, list(places)] = self.body.columns(q, dq, ddq)[:, :, list(columns)]
+        motion = Samples(q, dq, ddq, self.body.columns(q, dq, ddq) if self.body else None)
         for index, parameter in enumerate(self.parameters):
-            if parameter.column >= 0:
-                continue
-            column = TERMS[parameter.term](q, dq, ddq, parameter)
-            for joint, values in column.items():
+            for joint, values in parameter.term.column(motion).items():
                 W[:, joint, index] = values
         return W
 
     def torques(self, W: Array, theta: Array) -> Array:
-        """W theta as (joints, samples), summed in the order of the parameters.
+        """The torques W theta (joints, samples) [N m or N].
 
-        A matrix product would round differently with the number of rows in a batch.
+        They are summed parameter by parameter: a matrix product would round differently with the
+        number of rows in a batch.
         """
         total = W[:, :, 0] * theta[0]
         for index in range(1, len(theta)):

@@ -1,8 +1,8 @@
-"""The joints of a description."""
+"""The joints of a robot description, with their limits."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import inf
 from typing import Any
 
@@ -10,14 +10,26 @@ from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.logs import AXIS
 
 UNITS = {"revolute": ("rad", "N m"), "prismatic": ("m", "N")}
+NUMBERS = (
+    "velocity_limit",
+    "acceleration_limit",
+    "torque_limit",
+    "encoder_resolution",
+    "torque_noise",
+)
 
 
 @dataclass(frozen=True)
 class Joint:
-    """One joint: limits in its own units (rad or m, N m or N); infinite where not given."""
+    """One joint; quantities are in its own units (rad or m, N m or N).
+
+    The position may lie anywhere from `lower` to `upper`; velocity, acceleration and torque are
+    limited in magnitude. A limit that the description does not give is infinite.
+    """
 
     type: str
-    position_limit: float = inf
+    lower: float = -inf
+    upper: float = inf
     velocity_limit: float = inf
     acceleration_limit: float = inf
     torque_limit: float = inf
@@ -26,24 +38,37 @@ class Joint:
 
     @property
     def unit(self) -> str:
-        """Of the position."""
+        """The unit of the position."""
         return UNITS[self.type][0]
 
     @property
     def torque_unit(self) -> str:
+        """The unit of the torque or force."""
         return UNITS[self.type][1]
 
 
-NUMBERS = tuple(field.name for field in fields(Joint) if field.name != "type")
-
-
 def joint_of(entry: dict[str, Any], known: Joint | None = None) -> Joint:
-    """From [[joint]], with the limits of a joint that is `known` where it has none itself."""
-    values.only("[[joint]]", entry, ("type", *NUMBERS, *AXIS))
+    """The joint of a [[joint]] table; what the table does not give is taken from `known`."""
+    values.only("[[joint]]", entry, ("type", "position_limit", *NUMBERS, *AXIS))
     kind = values.choice("joint type", entry["type"], UNITS)
     numbers = {key: values.number(key, entry[key]) for key in NUMBERS if key in entry}
     for key, value in numbers.items():
         if value < 0.0:
             raise ValueError(f"{key} is negative")
-    otherwise = {key: getattr(known, key) for key in NUMBERS} if known else {}
-    return Joint(type=kind, **{**otherwise, **numbers})
+    if "position_limit" in entry:
+        numbers["lower"], numbers["upper"] = _interval(entry["position_limit"])
+    otherwise = {**vars(known)} if known else {}
+    return Joint(**{**otherwise, "type": kind, **numbers})
+
+
+def _interval(value: Any) -> tuple[float, float]:
+    """`1.2` stands for -1.2 to 1.2; `[-3.07, -0.07]` gives both ends."""
+    if not isinstance(value, list):
+        reach = values.number("position_limit", value)
+        if reach < 0.0:
+            raise ValueError("position_limit is negative")
+        return -reach, reach
+    lower, upper = values.row("position_limit", value, 2)
+    if lower > upper:
+        raise ValueError(f"position_limit {value}: the lower end is above the upper one")
+    return lower, upper

@@ -1,22 +1,24 @@
-"""What the logs of a robot hold, where that is not the joints' positions and torques in SI units.
+"""Logs that hold something other than positions and torques of the joints in SI units.
+
+A description says in [log] what its robot's logs hold:
 
     [log]
-    rate = 1000               # Hz, of a log without a time column
-    positions = "motor"       # angles of motors: q of the motors = R (q of the joints - zero)
-    torques = "current"       # of motors [A]; or "motor": torques of motors
+    rate = 1000               # Hz, for a log without a time column
+    positions = "motor"       # angles of the motors, q_motor = R (q - zero)
+    torques = "current"       # currents of the motors [A]; or "motor": their torques
     columns = { q1 = "enc_1", tau1 = "amp_1" }
     units = { "q*" = "deg" }
 
     [[joint]]
-    gear_ratio = -48.0        # turns of the motor in one of the joint, negative if it turns back
+    gear_ratio = -48.0        # turns of the motor per turn of the joint; negative: reversed
     torque_constant = 0.05    # N m/A
-    zero = 1.5708             # rad or m: the joint where its motor is at 0
+    zero = 1.5708             # rad or m: position of the joint when its motor is at 0
 
     [[coupling]]
-    joints = [5, 6]           # the motor of joint 6 turns with joint 5 as well,
-    ratio = 32.0              # so much; by default as much as with joint 6
+    joints = [5, 6]           # the motor of joint 6 also turns with joint 5, by
+    ratio = 32.0              # this ratio; by default that of joint 6
 
-Power is the same on both sides: torques of the joints = R' torques of the motors.
+Power is the same on both sides, so tau = R' tau_motor.
 """
 
 from __future__ import annotations
@@ -34,10 +36,11 @@ AXIS = ("gear_ratio", "torque_constant", "zero")  # of [[joint]]
 
 
 @dataclass(frozen=True)
-class Log:
-    """Names and units as `convert` takes them, and the motors behind the joints.
+class LogFormat:
+    """The columns and units of a log, as `convert` takes them, and the motors of the joints.
 
-    `ratios` is R above (joints, joints), `constants` (joints) [N m/A], `zero` (joints) [rad or m].
+    `ratios` is the matrix R above (joints, joints), `constants` the torque constants (joints)
+    [N m/A], `zero` (joints) is in rad or m.
     """
 
     columns: dict[str, str] = field(default_factory=dict)
@@ -50,30 +53,30 @@ class Log:
     zero: tuple[float, ...] = ()
 
     def positions_of_joints(self, q: Array) -> Array:
-        """Positions (joints, samples) from angles of motors."""
+        """Positions (joints, samples) [rad or m] from angles of the motors [rad]."""
         positions: Array = self.velocities_of_joints(q) + np.array(self.zero)[:, None]
         return positions
 
     def velocities_of_joints(self, dq: Array) -> Array:
-        """Velocities or accelerations likewise."""
+        """Velocities or accelerations (joints, samples) from those of the motors."""
         return _mixed(np.linalg.inv(np.array(self.ratios)), dq)
 
     def torques_of_joints(self, tau: Array) -> Array:
-        """Torques (joints, samples) from torques or currents of motors."""
+        """Torques (joints, samples) [N m or N] from torques [N m] or currents [A] of the motors."""
         constants = np.array(self.constants) if self.torques == CURRENT else 1.0
         return _mixed(np.transpose(self.ratios) * constants, tau)
 
 
 def _mixed(matrix: Array, x: Array) -> Array:
-    """Their product, summed in the same order for any number of samples."""
+    """The product, summed in the same order for any number of samples."""
     total = matrix[:, :1] * x[0]
     for k in range(1, len(x)):
         total = total + matrix[:, k : k + 1] * x[k]
     return np.asarray(total, dtype=np.float64)
 
 
-def log_of(document: dict[str, Any], joints: int) -> Log | None:
-    """What a description says of its logs."""
+def log_of(document: dict[str, Any], joints: int) -> LogFormat | None:
+    """The [log] of a description, for a robot with so many joints; None if it has none."""
     if "log" not in document:
         return None
     axes = values.tables("joint", document.get("joint", [])) or [{}] * joints
@@ -85,7 +88,7 @@ def log_of(document: dict[str, Any], joints: int) -> Log | None:
     rate = values.number("rate", entry["rate"]) if "rate" in entry else None
     if rate is not None and rate <= 0.0:
         raise ValueError("rate is not positive")
-    return Log(
+    return LogFormat(
         columns={new: values.text(new, old) for new, old in columns.items()},
         units=tuple((pattern, values.text(pattern, unit)) for pattern, unit in units.items()),
         rate=rate,
@@ -112,7 +115,7 @@ def _ratios(
 
 
 def gear_ratio(axis: dict[str, Any]) -> float:
-    """Of a [[joint]]."""
+    """The gear ratio of a [[joint]]."""
     ratio = values.number("gear_ratio", axis.get("gear_ratio", 1.0))
     if not ratio:
         raise ValueError("gear_ratio is 0")
@@ -120,10 +123,12 @@ def gear_ratio(axis: dict[str, Any]) -> float:
 
 
 def coupled(entry: dict[str, Any], axes: list[dict[str, Any]]) -> tuple[int, int, float]:
-    """The joints of a [[coupling]], from 0, and the ratio of the second's motor to the first."""
+    """The two joints of a [[coupling]] (from 0) and its ratio, that of the second joint's motor."""
     values.only("[[coupling]]", entry, ("joints", "ratio"))
     one, two = (values.whole("coupling", x) for x in entry["joints"])
     if not {one, two} <= set(range(1, len(axes) + 1)) or one == two:
-        raise ValueError(f"joints {one} and {two} cannot be coupled")
+        raise ValueError(
+            f"joints {one} and {two} cannot be coupled; give two different ones of 1 to {len(axes)}"
+        )
     ratio = entry.get("ratio", gear_ratio(axes[two - 1]))
     return one - 1, two - 1, values.number("ratio", ratio)

@@ -1,8 +1,9 @@
-"""Robots from TOML files and URDFs, checked value by value: a mistake is told at once."""
+"""Robots from TOML files and URDFs. Every value is checked when it is read."""
 
 from __future__ import annotations
 
 import tomllib
+from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,12 @@ from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.description import Control, Parameter, Robot
 from scarid_cli.algorithms.robots.joints import joint_of
 from scarid_cli.algorithms.robots.logs import log_of
-from scarid_cli.algorithms.robots.terms import GRAVITY_TERMS, PLANAR_JOINTS, PLANAR_TERMS, TERMS
+from scarid_cli.algorithms.robots.planar import PLANAR_TERMS, PlanarTerm
+from scarid_cli.algorithms.robots.terms import AXIS_TERMS, Term
 from scarid_cli.errors import UsageFault
 
 FOLDER = Path(__file__).parent
+TERMS: dict[str, type[Term]] = {**AXIS_TERMS, **PLANAR_TERMS}  # that [[parameter]] may name
 DEFAULT = "scara2"
 
 
@@ -44,8 +47,7 @@ def load(name: str) -> Robot:
         return _robot(name, document)
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
-        told = " ".join(reason.split())
-        raise UsageFault(f"{name}: not a robot description: {told}") from None
+        raise UsageFault(f"{name}: not a robot description: {' '.join(reason.split())}") from None
 
 
 def _robot(name: str, document: dict[str, Any]) -> Robot:
@@ -54,9 +56,9 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
     terms = values.tables("parameter", document["parameter"])
     parameters = tuple(_parameter(entry, len(joints)) for entry in terms)
     if not joints or not parameters:
-        raise ValueError("it needs at least one joint and one parameter")
+        raise ValueError("it has no [[joint]] or no [[parameter]]; give at least one of each")
     values.distinct("name", [parameter.name for parameter in parameters])
-    values.distinct("term of a joint", [(p.term, p.joint) for p in parameters])
+    values.distinct("term of a joint", [(p.term.NAME, *p.term.joints) for p in parameters])
     control = document.get("control")
     return Robot(
         name=name,
@@ -69,30 +71,39 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
 
 
 def _parameter(entry: dict[str, Any], joints: int) -> Parameter:
-    known = ("name", "term", "unit", "apriori", "joint", "velocity", "length", "gravity")
-    values.only("[[parameter]]", entry, known)
-    parameter = Parameter(
-        name=values.text("name", entry["name"]),
-        term=values.text("term", entry["term"]),
+    name = values.text("name", entry["name"])
+    term = _term(name, entry)
+    if isinstance(term, PlanarTerm) and joints < max(term.joints):
+        raise ValueError(f"{name}: term {term.NAME} needs {max(term.joints)} joints")
+    for joint in term.joints:
+        if not 1 <= joint <= joints:
+            raise ValueError(f"{name} is on joint {joint} of a robot with {joints}")
+    return Parameter(
+        name=name,
         unit=values.text("unit", entry["unit"]),
         apriori=values.number("apriori", entry["apriori"]),
-        joint=values.whole("joint", entry.get("joint", 0)),
-        velocity=values.number("velocity", entry.get("velocity", 0.0)),
-        length=values.number("length", entry.get("length", 0.0)),
-        gravity=values.number("gravity", entry.get("gravity", 0.0)),
+        term=term,
     )
-    if parameter.term not in TERMS:
-        raise ValueError(f"{parameter.name} has term {parameter.term!r}; choose {', '.join(TERMS)}")
-    if parameter.velocity < 0.0 or (parameter.term == "stribeck" and not parameter.velocity):
-        raise ValueError(f"{parameter.name} needs a positive velocity")
-    planar = parameter.term in (*PLANAR_TERMS, *GRAVITY_TERMS)
-    if planar and joints < PLANAR_JOINTS:
-        raise ValueError(
-            f"{parameter.name} has term {parameter.term}, which needs {PLANAR_JOINTS} joints"
-        )
-    if not (0 if planar else 1) <= parameter.joint <= joints:
-        raise ValueError(f"{parameter.name} is on joint {parameter.joint} of {joints}")
-    return parameter
+
+
+def _term(name: str, entry: dict[str, Any]) -> Term:
+    """The term that [[parameter]] names, with its constants."""
+    wanted = values.text("term", entry["term"])
+    if wanted not in TERMS:
+        raise ValueError(f"{name}: there is no term {wanted!r}; choose {', '.join(TERMS)}")
+    term = TERMS[wanted]
+    constants = {field.name: field for field in fields(term)}
+    known = ("name", "term", "unit", "apriori", *constants)
+    values.only(f"a [[parameter]] with term {wanted}", entry, known)
+    given = {
+        key: (values.whole if field.type == "int" else values.number)(key, entry[key])
+        for key, field in constants.items()
+        if key in entry or field.default is MISSING
+    }
+    try:
+        return term(**given)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
 
 
 def _control(entry: dict[str, Any], joints: int) -> Control:

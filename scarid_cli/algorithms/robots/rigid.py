@@ -1,7 +1,7 @@
-"""The rigid-body part of a regressor from a URDF, through Pinocchio (the extra `urdf`).
+"""The rigid-body part of the regressor of a robot with a URDF, by Pinocchio (the extra `urdf`).
 
-Columns are those of the ten standard parameters of each link, in the order of SYMBOLS: moments of
-inertia about the link's frame [kg m2], first moments [kg m], mass [kg].
+Each link has ten standard parameters, in the order of SYMBOLS: moments and products of inertia in
+the frame of the link [kg m2], first moments [kg m], mass [kg].
 """
 
 from __future__ import annotations
@@ -9,76 +9,76 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from math import inf
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
+from scarid_cli.algorithms.robots.chain import Chain, named, serial
 from scarid_cli.algorithms.robots.joints import Joint
+from scarid_cli.algorithms.robots.tree import ENDLESS, link, read
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
 SYMBOLS = ("Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz", "mx", "my", "mz", "m")
 UNITS = ("kg m2",) * 6 + ("kg m",) * 3 + ("kg",)
-PINOCCHIO = np.array([4, 5, 7, 6, 8, 9, 1, 2, 3, 0])  # where it keeps them
+PINOCCHIO = np.array([4, 5, 7, 6, 8, 9, 1, 2, 3, 0])  # their places there
 
-
-ENDLESS = 1e9  # rad: urdfdom does not read inf
 GRAVITY = (0.0, 0.0, -9.81)  # m/s2
 
 
 @cache
-def _model(path: str, gravity: tuple[float, ...], joints: tuple[str, ...]) -> Any:
-    """Pinocchio's model: of all joints that move, or of some, the others locked at 0."""
-    try:
-        import pinocchio
-    except ImportError:
-        raise UsageFault(f"{path}: a URDF needs Pinocchio: pip install 'scarid[urdf]'") from None
-    if not Path(path).exists():
-        raise UsageFault(f"{path}: no such file")
-    try:
-        model = pinocchio.buildModelFromXML(_with_limits(Path(path).read_text("utf-8")))
-    except (RuntimeError, SyntaxError, ValueError) as error:
-        raise UsageFault(f"{path}: not a URDF: {' '.join(str(error).split())}") from None
-    if not model.nq or model.nq != model.nv:
-        raise UsageFault(f"{path}: only revolute, continuous and prismatic joints are understood")
-    if joints:
-        names = list(model.names)[1:]
-        kept = [name for name in names if name in joints]
-        if kept != list(joints):
+def _chain(path: str, wanted: tuple[str, ...]) -> Chain:
+    """The axes: the joints of some names, or else those of the serial arm."""
+    tree = read(path)
+    names = list(tree.model.names)[1:]
+    if wanted:
+        if [name for name in names if name in wanted] != list(wanted):
             raise UsageFault(
-                f"{path}: no joints {', '.join(joints)} in this order; it has {', '.join(names)}"
+                f"{path}: no joints {', '.join(wanted)} in this order; it has {', '.join(names)}"
             )
-        locked = [i for i, name in enumerate(names, start=1) if name not in joints]
-        model = pinocchio.buildReducedModel(model, locked, pinocchio.neutral(model))
+        return named(names, wanted)
+    chain = serial(names, list(tree.model.parents)[1:], tree.drivers, tree.frames)
+    if not chain.axes:
+        raise UsageFault(
+            f"{path}: the moving joints branch at the base, so that it is not clear which are the "
+            f"arm's; name them in a description ([[joint]] name = ...): {', '.join(names)}"
+        )
+    return chain
+
+
+@cache
+def _model(path: str, gravity: tuple[float, ...], wanted: tuple[str, ...]) -> Any:
+    """Pinocchio's model of the axes; other joints are locked at 0, or at the offset of a mimic."""
+    tree = read(path)
+    import pinocchio  # after it has been found there
+
+    place = pinocchio.neutral(tree.model)
+    locked = []
+    for name in _chain(path, wanted).locked:
+        number = tree.model.getJointId(name)
+        place[tree.model.joints[number].idx_q] = tree.offsets.get(name, 0.0)
+        locked.append(number)
+    model = pinocchio.buildReducedModel(tree.model, locked, place) if locked else tree.model.copy()
     model.gravity.linear = np.array(gravity)
     return model
 
 
-def _with_limits(text: str) -> str:
-    """Joints without end are revolute ones: their position is an angle, not a point of a circle."""
-    tree = ElementTree.fromstring(text)
-    for joint in tree.iter("joint"):
-        if joint.get("type") == "continuous":
-            joint.set("type", "revolute")
-            limit = joint.find("limit")
-            limit = ElementTree.SubElement(joint, "limit") if limit is None else limit
-            for key, value in (("lower", -ENDLESS), ("upper", ENDLESS)):
-                limit.set(key, str(value))
-            for key in ("effort", "velocity"):
-                limit.set(key, limit.get(key, "0"))
-    return ElementTree.tostring(tree, encoding="unicode")
-
-
 def _limit(value: float) -> float:
-    """0 is a limit that was not given."""
+    """A limit of the URDF; 0 stands for one that was not given."""
     return float(value) if 0.0 < value < ENDLESS else inf
+
+
+def _interval(lower: float, upper: float) -> tuple[float, float]:
+    """Position limits of the URDF; both are 0 where they were not given."""
+    if lower == upper == 0.0:
+        return -inf, inf
+    return (float(lower) if lower > -ENDLESS else -inf, float(upper) if upper < ENDLESS else inf)
 
 
 @dataclass(frozen=True)
 class Body:
-    """A serial arm as a URDF describes it: all joints that move, or those of some names."""
+    """A serial arm as a URDF describes it; `joints` names its axes, or leaves them to chain.py."""
 
     path: str
     gravity: tuple[float, ...] = GRAVITY
@@ -86,55 +86,62 @@ class Body:
 
     @property
     def model(self) -> Any:
-        """Pinocchio's."""
+        """The model of Pinocchio."""
         return _model(self.path, self.gravity, self.joints)
 
     @property
     def joints_found(self) -> list[Joint]:
-        """With the limits that the URDF has."""
+        """The axes, with the limits that the URDF gives."""
         model = self.model
         names = [joint.shortname() for joint in list(model.joints)[1:]]
-        reach = np.maximum(np.abs(model.lowerPositionLimit), np.abs(model.upperPositionLimit))
-        limits = zip(names, reach, model.velocityLimit, model.effortLimit, strict=True)
+        ends = map(_interval, model.lowerPositionLimit, model.upperPositionLimit)
+        limits = zip(names, ends, model.velocityLimit, model.effortLimit, strict=True)
         return [
             Joint(
-                type="prismatic" if "JointModelP" in name else "revolute",
-                position_limit=_limit(position),
+                "prismatic" if "JointModelP" in name else "revolute",
+                *interval,
                 velocity_limit=_limit(velocity),
                 torque_limit=_limit(torque),
             )
-            for name, position, velocity, torque in limits
+            for name, interval, velocity, torque in limits
         ]
 
     @property
     def standard(self) -> list[float]:
-        """The URDF's own values of the standard parameters, joint after joint."""
+        """The standard parameters that the URDF gives, link after link."""
         inertias = list(self.model.inertias)[1:]
         return [float(x) for own in inertias for x in own.toDynamicParameters()[PINOCCHIO]]
 
     @property
+    def locked(self) -> dict[str, str]:
+        """The moving joints that are not axes, and why each is locked."""
+        return _chain(self.path, self.joints).locked
+
+    @property
     def joint_names(self) -> list[str]:
-        """Of the URDF."""
+        """The names of the axes in the URDF."""
         return list(self.model.names)[1:]
 
     @property
     def links(self) -> list[tuple[str, list[str]]]:
-        """The link that each joint moves, and those fixed to it."""
+        """The link that each axis moves, and the links that are fixed to it."""
         tree = ElementTree.parse(self.path).getroot()
-        child = {j.get("name"): j.find("child") for j in tree.findall("joint")}
+        child = {j.get("name"): link(j, "child") for j in tree.findall("joint")}
         together: dict[int, list[str]] = {i: [] for i in range(1, self.model.njoints)}
         for frame in self.model.frames:
             if str(frame.type) == "BODY" and frame.parentJoint:
                 together[frame.parentJoint].append(frame.name)
         found = []
         for i, name in enumerate(self.joint_names, start=1):
-            element = child[name]
-            own = str(element.get("link")) if element is not None else together[i][0]
+            own = child[name]
             found.append((own, [link for link in together[i] if link != own]))
         return found
 
     def columns(self, q: Array, dq: Array, ddq: Array) -> Array:
-        """The regressor of the standard parameters (samples, joints, 10 joints)."""
+        """The regressor of the standard parameters (samples, joints, 10 joints).
+
+        q, dq and ddq are (joints, samples), in rad or m, and per s and s2.
+        """
         import pinocchio
 
         model = self.model

@@ -1,4 +1,4 @@
-"""Values of a robot description, each checked: a mistake is told with its name."""
+"""Checks of the values of a robot description; the message of an error names the value."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 
 
 def text(key: str, value: Any) -> str:
-    """A text that is not empty."""
+    """A string that is not empty."""
     if not isinstance(value, str) or not value:
-        raise TypeError(f"{key} is {value!r}, not a text")
+        raise TypeError(f"{key} is {value!r}, not a string")
     return value
 
 
@@ -31,42 +31,42 @@ def whole(key: str, value: Any) -> int:
 
 
 def row(key: str, value: Any, length: int) -> tuple[float, ...]:
-    """So many numbers."""
+    """A list of this many numbers."""
     if not isinstance(value, list) or len(value) != length:
         raise TypeError(f"{key} is {value!r}, not a list of {length} numbers")
     return tuple(number(key, x) for x in value)
 
 
 def table(key: str, value: Any) -> dict[str, Any]:
-    """A table of the file."""
+    """A table of the file, [key]."""
     if not isinstance(value, dict):
         raise TypeError(f"{key} is {value!r}, not a table")
     return value
 
 
 def tables(key: str, value: Any) -> list[dict[str, Any]]:
-    """What [[key]] stands for."""
+    """An array of tables of the file, [[key]]."""
     if not isinstance(value, list):
         raise TypeError(f"{key} is {value!r}, not tables [[{key}]]")
     return [table(key, entry) for entry in value]
 
 
 def choice(key: str, value: Any, known: Collection[str]) -> str:
-    """One of some words."""
+    """One of the known words."""
     if value not in known:
         raise ValueError(f"{key} {value!r}; choose {' or '.join(known)}")
     return str(value)
 
 
 def only(what: str, entry: dict[str, Any], known: Collection[str]) -> None:
-    """No other keys than these."""
+    """Refuses a table with any other key than the known ones."""
     for key in entry:
         if key not in known:
-            raise ValueError(f"{key} is not of {what}; it has {', '.join(known)}")
+            raise ValueError(f"{key} is not a key of {what}; its keys are {', '.join(known)}")
 
 
 def distinct(what: str, values: list[Any]) -> None:
-    """No value twice."""
+    """Refuses a list in which a value appears twice."""
     twice = next((value for value in values if values.count(value) > 1), None)
     if twice is not None:
-        raise ValueError(f"the {what} {twice!r} stands twice")
+        raise ValueError(f"the {what} {twice!r} appears twice")

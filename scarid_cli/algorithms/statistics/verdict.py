@@ -19,7 +19,6 @@ WEAK = 1e4  # scaled condition number from which a combination of parameters is 
 POOR = 0.8  # R2 of a joint below which the model does not tell its torque
 DEVIATIONS = 3.0  # that an estimate may move by
 NOISE = 3.0  # times the torque noise: less is no torque
-FRICTION = ("viscous", "coulomb")  # terms that cannot be negative
 
 
 @dataclass(frozen=True)
@@ -120,7 +119,7 @@ def _biased(diagnostics: Diagnostics) -> list[str]:
 def _moved(evidence: Evidence, robot: Robot) -> list[str]:
     """Estimates that rely on what slow rows say of Coulomb friction, or on a delay."""
     diagnostics, in_use = evidence.diagnostics, evidence.in_use
-    if not any(p.term.startswith("coulomb") for p in robot.parameters):
+    if not any(p.term.JUMPS for p in robot.parameters):
         return []
     moved = [
         n for n, x in zip(evidence.names, diagnostics.moved, strict=False) if abs(x) > DEVIATIONS
@@ -166,13 +165,13 @@ def _poor(joints: Sequence[JointResidual]) -> list[str]:
 
 def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
     """Friction that would drive the robot, beyond its error."""
-    terms = {p.name: p.term for p in robot.parameters}
+    friction = {p.name for p in robot.parameters if p.term.NEVER_NEGATIVE}
     errors = evidence.diagnostics.errors
     rows = zip(evidence.names, evidence.estimates, errors, strict=True)
     return [
         f"{name} is negative ({estimate:.3g}), which friction cannot be"
         for name, estimate, error in rows
-        if terms.get(name, "").startswith(FRICTION) and estimate < -DEVIATIONS * error
+        if name in friction and estimate < -DEVIATIONS * error
     ]
 
 

@@ -1,6 +1,7 @@
-"""Finer samples of a reference: the quintic through two samples and their two derivatives.
+"""Finer samples of a reference, by quintic Hermite interpolation.
 
-Exact within a segment of a fifth-order trajectory, whatever rate it is tabulated at.
+Between two rows lies the polynomial of fifth order with the position, velocity and acceleration of
+both rows. It is exact within a segment of a trajectory of fifth order, at any rate of the table.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ BASIS = np.array(
 def refine(q: Array, dq: Array, ddq: Array, period: float, ratio: int) -> Motion:
     """Position, velocity and acceleration (joints, (rows - 1) * ratio), from row to row.
 
-    q, dq, ddq are (joints, rows) at the period [s]; `ratio` samples are made per row.
+    q, dq and ddq are (joints, rows), a period [s] apart; each row becomes `ratio` samples.
     """
     known = (
         q[:, :-1],

@@ -7,53 +7,102 @@ from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.trajectories import quintic
+from scarid_cli.algorithms.choices.registry import EXCITATIONS
+from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.trajectories.limits import Limits
+from scarid_cli.algorithms.trajectories.trajectory import Trajectory
+from scarid_cli.algorithms.trajectories.via import through
+from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job, per_joint, robot_of
+from scarid_cli.cli.pairs import require_known, settings
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Metadata
 from scarid_cli.stages import trajgen as stage
 
+MOST = 1e9  # a limit of this size is none
+
 
 def run(
-    job: Job,
-    *,
-    robot: str | None,
-    seed: int,
-    duration: float,
-    segment: tuple[float, float],
-    sequential: bool,
-    via: str | None,
-    rate: float,
-    q_max: tuple[float, ...] | None,
-    dq_max: tuple[float, ...] | None,
-    ddq_max: tuple[float, ...] | None,
+    job: Job, *, robot: str | None, seed: int, duration: float, rate: float, **given: Any
 ) -> None:
     """Write the trajectory, and report how well it excites the robot."""
     arm = robot_of(robot)
     if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
         raise UsageFault("--rate and --duration must be positive")
-
-    def limits(given: tuple[float, ...] | None, name: str) -> Any:
-        own = [getattr(joint, f"{name}_limit") for joint in arm.joints]
-        option = {"position": "--q-max", "velocity": "--dq-max", "acceleration": "--ddq-max"}[name]
-        values = np.array(per_joint(given, len(own), option) if given else own)
-        if not ((values > 0.0) & (values < 1e9)).all():
-            lack = "" if given else f" (the description of {arm.name} gives none)"
-            raise UsageFault(f"{option}: the bounds must be positive and finite{lack}")
-        return values
-
-    bounds = quintic.Bounds(
-        limits(q_max, "position"), limits(dq_max, "velocity"), limits(ddq_max, "acceleration")
-    )
-    if via:
-        points, _ = job.read_for(via, "via", arm.name)
-        path = quintic.through(stage.via_points(points, arm), bounds)
+    limits = _limits(arm, given)
+    home = _home(arm, limits, given["home"])
+    if given["via"]:
+        points, _ = job.read_for(given["via"], "via", arm.name)
+        trajectory: Trajectory = through(stage.via_points(points, arm), limits, home)
     else:
         rng = np.random.default_rng(seed)
-        path = quintic.random_path(bounds, duration, segment, rng, sequential=sequential)
+        trajectory = _excitation(given).trajectory(limits, home, duration, rng)
+    stage.checked(trajectory, limits, rate)
+    if wider := _wider(arm, limits):
+        job.say(f"joint {wider}: --q-min or --q-max go beyond the limits of the description")
     meta = Metadata(kind="trajectory", robot=arm.name, period=1.0 / rate)
-    job.write(job.recorded(stage.tabulate(path, arm, rate, meta)))
+    job.write(job.recorded(stage.tabulate(trajectory, arm, rate, meta)))
     job.say(
-        f"{arm.name}, {path.duration:g} s, {len(path.times) - 1} segments, "
-        + stage.excitation(path, arm, rate)
+        f"{arm.name}, {trajectory.duration:g} s, {trajectory.summary}, "
+        + stage.conditioning(trajectory, arm, rate)
     )
+
+
+def _excitation(given: dict[str, Any]) -> Any:
+    """The excitation that was chosen, with the settings that were given."""
+    name = "sequential" if given["sequential"] else given["excitation"]
+    method = EXCITATIONS.load(name)
+    known = names_of(method)
+    values = dict(zip(("shortest", "longest"), given["segment"] or (), strict=False))
+    for key in values:
+        require_known(known, key, name)
+    for key, numbers in settings(given["settings"], known, name):
+        if len(numbers) > 1:
+            raise UsageFault(f"--set {key}: give one value, not {len(numbers)}")
+        values[key] = numbers[0]
+    return method(**values)
+
+
+def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
+    """The limits of the robot's description, or those that were given instead."""
+    own = Limits.of(arm.joints)
+
+    def row(option: str, otherwise: Array, *, positive: bool = True) -> Array:
+        numbers = given[option.strip("-").replace("-", "_")]
+        values = np.array(per_joint(numbers, len(arm.joints), option)) if numbers else otherwise
+        if not (np.abs(values) < MOST).all() or (positive and not (values > 0.0).all()):
+            lack = "" if numbers else f" (the description of {arm.name} gives none)"
+            what = "positive and finite" if positive else "finite"
+            raise UsageFault(f"{option}: the bounds must be {what}{lack}")
+        return values
+
+    symmetric = bool(given["q_max"]) and not given["q_min"]
+    upper = row("--q-max", own.upper, positive=symmetric)
+    lower = row("--q-min", -upper if symmetric else own.lower, positive=False)
+    for joint in np.flatnonzero(lower >= upper):
+        raise UsageFault(
+            f"--q-min: the lower bound of joint {joint + 1}, {lower[joint]:g}, must be below its "
+            f"upper bound, {upper[joint]:g}"
+        )
+    return Limits(lower, upper, row("--dq-max", own.dq), row("--ddq-max", own.ddq))
+
+
+def _wider(arm: Robot, limits: Limits) -> str:
+    """The joints (from 1) whose position limits are wider than those of the description."""
+    return ", ".join(
+        str(i)
+        for i, joint in enumerate(arm.joints, start=1)
+        if limits.lower[i - 1] < joint.lower or limits.upper[i - 1] > joint.upper
+    )
+
+
+def _home(arm: Robot, limits: Limits, given: tuple[float, ...] | None) -> Array:
+    """The home position (joints), which must lie within the limits."""
+    home = np.array(per_joint(given, len(arm.joints), "--home")) if given else limits.home
+    for (joint,) in limits.outside(home):
+        raise UsageFault(
+            f"--home: joint {joint + 1} at {home[joint]:g} is outside its position limits, "
+            f"{limits.interval(joint)}"
+        )
+    return home

@@ -1,0 +1,69 @@
+"""Limits of a motion, and the home position where it starts and ends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scarid_cli.algorithms.robots.joints import Joint
+from scarid_cli.arrays import Array
+from scarid_cli.errors import UsageFault
+
+TOLERANCE = 1e-9  # of a limit, for rounding
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Positions from `lower` to `upper`, and limits on |dq| and |ddq|.
+
+    Arrays (joints), in the units of each joint: rad or m, and per s and s2.
+    """
+
+    lower: Array
+    upper: Array
+    dq: Array
+    ddq: Array
+
+    @classmethod
+    def of(cls, joints: Sequence[Joint]) -> Limits:
+        """The limits that a robot's description gives; infinite where it gives none."""
+        rows = [(j.lower, j.upper, j.velocity_limit, j.acceleration_limit) for j in joints]
+        return cls(*np.array(rows).T)
+
+    @property
+    def home(self) -> Array:
+        """Zero where it lies within the limits, else the middle of the interval (joints)."""
+        middle = 0.5 * (self.lower + self.upper)
+        home: Array = np.where((self.lower <= 0.0) & (self.upper >= 0.0), 0.0, middle)
+        return home
+
+    def outside(self, q: Array) -> list[list[int]]:
+        """Where positions, (joints) or (joints, samples), lie outside: joint and sample, from 0."""
+        slack = TOLERANCE * np.maximum(np.abs(self.lower), np.abs(self.upper))
+        return _where(q, self.lower - slack, self.upper + slack)
+
+    def interval(self, joint: int) -> str:
+        """The position limits of a joint (from 0) in words."""
+        return f"{self.lower[joint]:g} to {self.upper[joint]:g}"
+
+    def require(self, t: Array, q: Array, dq: Array, ddq: Array) -> None:
+        """Refuses a motion, sampled at the times t [s], that leaves the limits."""
+        slack = 1.0 + TOLERANCE
+        for name, values, found, size in (
+            ("position", q, self.outside(q), None),
+            ("velocity", dq, _where(dq, -self.dq * slack, self.dq * slack), self.dq),
+            ("acceleration", ddq, _where(ddq, -self.ddq * slack, self.ddq * slack), self.ddq),
+        ):
+            for joint, sample in found[:1]:
+                allowed = self.interval(joint) if size is None else f"at most {size[joint]:g}"
+                raise UsageFault(
+                    f"the motion leaves its limits: at t = {t[sample]:.4g} s the {name} of joint "
+                    f"{joint + 1} is {values[joint, sample]:.4g}, allowed is {allowed}"
+                )
+
+
+def _where(values: Array, low: Array, high: Array) -> list[list[int]]:
+    """The places, joint and sample, of values that are not from low to high (joints)."""
+    return np.argwhere(~((low <= values.T) & (high >= values.T)).T).tolist()
