@@ -262,6 +262,7 @@ def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[s
         "verdict": judged.grade,
         "reasons": list(judged.reasons),
         **fit.extra,
+        "covariance": _nested(found.reduced),
     }
     if diagnostics:
         extra["joints"] = [asdict(joint) for joint in diagnostics.joints]
@@ -272,6 +273,14 @@ def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[s
         extra["dropped"] = [names[i] for i in found.reduced.dropped]
         extra["dropped_cost"] = found.reduced.cost
     return extra
+
+
+def _nested(reduced: Essential) -> list[list[float | None]]:
+    """The classical covariance s^2 (W'W)^-1, None in rows and columns of dropped parameters."""
+    covariance = reduced.fit.variance * reduced.fit.unit_covariance
+    covariance[list(reduced.dropped), :] = np.nan
+    covariance[:, list(reduced.dropped)] = np.nan
+    return [[x if np.isfinite(x) else None for x in row] for row in covariance.tolist()]
 
 
 def known(values: Array) -> pa.Array:
