@@ -9,7 +9,7 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
-from scarid_cli.errors import bad_data
+from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import Table
 from scarid_cli.stages.validate import estimates
 
@@ -21,16 +21,17 @@ class Estimates:
     """Identified parameters and what is known of their errors.
 
     `robot` is the robot as it was identified, with `values` (parameters) in its units; `errors`
-    (parameters) are robust where known, nan where none are; `covariance` (parameters, parameters)
-    has nan in the rows and columns of parameters without errors. `dropped` are the indices of
-    those that `identify --essential` set to zero. `fixed` are the table's further rows, which the
-    torques are not linear in: name, unit, value. `remark` says why the covariance is diagonal; it
-    is empty where the table has a covariance.
+    (parameters) are robust where known, nan where there are none. `dropped` are the indices of the
+    values that `identify --essential` set to zero; `full` are the estimates before that, and
+    `covariance` (parameters, parameters) is theirs, with nan in the rows and columns of parameters
+    without errors. `fixed` are the table's further rows, in which the torques are not linear: name,
+    unit, value. `remark` says why the covariance is diagonal; it is empty where it is not.
     """
 
     robot: Robot
     values: Array
     errors: Array
+    full: Array
     covariance: Array
     dropped: tuple[int, ...]
     fixed: tuple[tuple[str, str, float], ...]
@@ -38,27 +39,23 @@ class Estimates:
 
 
 def estimates_with_covariance(table: Table, robot: Robot) -> Estimates:
-    """Read a parameter table of this robot.
-
-    The covariance of the metadata is that of white residuals, s^2 (W'W)^-1. It is multiplied by the
-    mean ratio of the robust variances to its own: residuals are autocorrelated, so all errors are
-    greater, but the directions that the motion does not determine are the same. The robust
-    covariance itself has a rank of fewer than its blocks, often fewer than the parameters.
-    """
+    """Read a parameter table of this robot, and the covariance from its metadata."""
     batches = list(table.batches)
     robot, values = estimates(replace(table, batches=iter(batches)), robot)
     whole = pa.Table.from_batches(batches)
-    errors = _errors(whole)
-    covariance, remark = _covariance(table, errors)
-    count = len(values)
     names, units = (whole.column(key).to_pylist() for key in ("parameter", "unit"))
+    fixed = tuple(zip(names, units, whole.column("estimate").to_pylist(), strict=True))
+    count, errors = len(values), _errors(whole)
+    covariance, remark = _covariance(table, errors)
+    full = values if remark else _full_estimates(table, values, len(errors))
     return Estimates(
         robot=robot,
         values=values,
         errors=errors[:count],
+        full=full,
         covariance=_given_the_rest(covariance, count),
         dropped=_dropped(table, names[:count], values, errors[:count]),
-        fixed=tuple(zip(names, units, whole.column("estimate").to_pylist(), strict=True))[count:],
+        fixed=fixed[count:],
         remark=remark,
     )
 
@@ -75,7 +72,7 @@ def _errors(whole: pa.Table) -> Array:
 
 def _covariance(table: Table, errors: Array) -> tuple[Array, str]:
     """The covariance of all rows, and why it is diagonal if it is."""
-    diagonal = _of_errors(errors)
+    diagonal = _diagonal(errors)
     if not np.isfinite(errors).any():
         return (
             diagonal,
@@ -87,69 +84,77 @@ def _covariance(table: Table, errors: Array) -> tuple[Array, str]:
             f"{table.name}: no covariance of the estimates (CSV cannot hold it), so their "
             f"correlations are neglected and R2 may fall; {REMEDY}"
         )
-    covariance = _matrix(table, stored, len(errors))
-    known = np.flatnonzero(np.isfinite(np.diag(covariance)))
-    if not _positive_definite(covariance[np.ix_(known, known)]):
+    covariance = _array(table, "covariance", stored, (len(errors), len(errors)))
+    covariance = 0.5 * (covariance + covariance.T)
+    unknown = ~np.isfinite(np.diag(covariance))
+    covariance[unknown, :] = covariance[:, unknown] = np.nan
+    if not _positive(covariance[np.ix_(~unknown, ~unknown)]):
         return diagonal, (
-            f"{table.name}: the covariance of the estimates is singular, so their correlations are "
-            "neglected and R2 may fall; identify the parameters from a log that excites every joint"
+            f"{table.name}: its covariance has negative variances, so the correlations of the "
+            f"estimates are neglected and R2 may fall; {REMEDY}"
         )
-    variances = np.diag(covariance)
-    both = np.isfinite(errors) & np.isfinite(variances) & (errors > 0.0)
-    ratio = np.mean(errors[both] ** 2 / variances[both]) if both.any() else 1.0
-    return ratio * covariance, ""
+    return covariance, ""
 
 
-def _of_errors(errors: Array) -> Array:
-    """A diagonal covariance; of equal weights if there are no errors."""
+def _full_estimates(table: Table, values: Array, rows: int) -> Array:
+    """The estimates before parameters were dropped; the same if none were."""
+    stored = table.meta.extra.get("full_estimates")
+    if stored is None:
+        return values
+    return _array(table, "full_estimates", stored, (rows,))[: len(values)]
+
+
+def _diagonal(errors: Array) -> Array:
+    """The covariance of uncorrelated estimates; of equal weights if there are no errors."""
     known = np.isfinite(errors)
     variances = errors**2 if known.any() else np.ones(len(errors))
     covariance = np.diag(variances)
-    covariance[~np.isfinite(variances), :] = covariance[:, ~np.isfinite(variances)] = np.nan
+    unknown = ~np.isfinite(variances)
+    covariance[unknown, :] = covariance[:, unknown] = np.nan
     return covariance
 
 
-def _matrix(table: Table, stored: object, count: int) -> Array:
-    """The nested list of the metadata as a matrix, with nan for null."""
+def _array(table: Table, key: str, stored: object, shape: tuple[int, ...]) -> Array:
+    """Nested lists of the metadata as an array, with nan for null."""
     try:
-        matrix = np.array(stored, dtype=np.float64)
-        shape = matrix.shape
+        array = np.array(stored, dtype=np.float64)
     except (TypeError, ValueError):
-        shape = ()
-    if shape != (count, count):
-        raise bad_data(
-            table.name,
-            "a covariance in its metadata that is not a square matrix of its rows",
-            expected=f"{count} lists of {count} numbers",
-            remedy="write the table again with `identify`",
-        )
-    matrix[~np.isfinite(matrix.diagonal()), :] = np.nan
-    matrix[:, ~np.isfinite(matrix.diagonal())] = np.nan
-    return 0.5 * (matrix + matrix.T)
+        raise _misshapen(table, key, shape) from None
+    if array.shape != shape:
+        raise _misshapen(table, key, shape)
+    return array
 
 
-def _positive_definite(covariance: Array) -> bool:
-    """By the eigenvalues of the correlation matrix, so that units do not matter."""
+def _misshapen(table: Table, key: str, shape: tuple[int, ...]) -> BadData:
+    return bad_data(
+        table.name,
+        f"metadata `{key}` of another size",
+        expected=f"{' by '.join(map(str, shape))} numbers, one for each row",
+        remedy="write the table again with `scarid identify`",
+    )
+
+
+def _positive(covariance: Array) -> bool:
+    """Whether no combination of parameters has a negative variance, but for rounding.
+
+    By the eigenvalues of the correlation matrix, so that units do not matter.
+    """
     variances = np.diag(covariance)
     if not len(variances) or not np.all(variances > 0.0) or not np.isfinite(covariance).all():
         return False
     errors = np.sqrt(variances)
     values = np.linalg.eigvalsh(covariance / np.outer(errors, errors))
-    return bool(values[0] > len(values) * np.finfo(float).eps * values[-1])
+    return bool(values[0] > -len(values) * np.finfo(float).eps * values[-1])
 
 
 def _given_the_rest(covariance: Array, count: int) -> Array:
     """The covariance of the first parameters when the others keep their values."""
-    if count == len(covariance):
-        return covariance
     known = np.isfinite(np.diag(covariance))
-    a = np.flatnonzero(known[:count])
-    b = count + np.flatnonzero(known[count:])
+    a, b = np.flatnonzero(known[:count]), count + np.flatnonzero(known[count:])
     across = covariance[np.ix_(a, b)]
     given = np.full((count, count), np.nan)
-    given[np.ix_(a, a)] = covariance[np.ix_(a, a)] - across @ np.linalg.solve(
-        covariance[np.ix_(b, b)], across.T
-    )
+    explained = across @ np.linalg.solve(covariance[np.ix_(b, b)], across.T)
+    given[np.ix_(a, a)] = covariance[np.ix_(a, a)] - explained
     return given
 
 

@@ -262,7 +262,7 @@ def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[s
         "verdict": judged.grade,
         "reasons": list(judged.reasons),
         **fit.extra,
-        "covariance": _nested(found.reduced),
+        "covariance": _covariance(fit, diagnostics),
     }
     if diagnostics:
         extra["joints"] = [asdict(joint) for joint in diagnostics.joints]
@@ -272,15 +272,24 @@ def _told(found: Found, robot: Robot, names: list[str], errors: Array) -> dict[s
     if found.reduced.dropped:
         extra["dropped"] = [names[i] for i in found.reduced.dropped]
         extra["dropped_cost"] = found.reduced.cost
+        extra["full_estimates"] = fit.estimates.tolist()
     return extra
 
 
-def _nested(reduced: Essential) -> list[list[float | None]]:
-    """The classical covariance s^2 (W'W)^-1, None in rows and columns of dropped parameters."""
-    covariance = reduced.fit.variance * reduced.fit.unit_covariance
-    covariance[list(reduced.dropped), :] = np.nan
-    covariance[:, list(reduced.dropped)] = np.nan
-    return [[x if np.isfinite(x) else None for x in row] for row in covariance.tolist()]
+def _covariance(fit: Fit, diagnostics: Diagnostics | None) -> list[list[float]] | None:
+    """The covariance of all estimates, before any were dropped; None if it is not known.
+
+    The classical one, s^2 (W'W)^-1, times the median ratio of the robust variances to its own:
+    autocorrelated residuals make all errors greater, but which directions the motion does not
+    determine stays the same. The robust covariance has a rank of fewer than its blocks.
+    """
+    covariance = fit.variance * fit.unit_covariance
+    if diagnostics:
+        ratios = diagnostics.errors**2 / np.diag(covariance)
+        ratios = ratios[np.isfinite(ratios) & (ratios > 0.0)]
+        covariance *= np.median(ratios) if len(ratios) else 1.0
+    nested: list[list[float]] = covariance.tolist()
+    return nested if np.isfinite(covariance).all() else None
 
 
 def known(values: Array) -> pa.Array:

@@ -26,7 +26,7 @@ FALL = 0.01  # of R2: less is of no account, however small the residual was
 
 def physical(identified: Estimates) -> Physical:
     """The physically consistent parameters nearest to the identified ones."""
-    return nearest(identified.robot, identified.values, identified.covariance, identified.dropped)
+    return nearest(identified.robot, identified.full, identified.covariance, identified.dropped)
 
 
 def document(text: str, robot: Robot, found: Physical, command: str) -> str:
@@ -109,31 +109,33 @@ def consistency_report(identified: Estimates, found: Physical) -> Iterator[str]:
     else:
         yield _distance(identified, found)
     yield _farthest(identified, found)
-    if found.nonzero:
-        parameters = identified.robot.parameters
-        names = _some(
-            [f"{parameters[i].name} ({found.base[i]:.2g} {parameters[i].unit})"
-             for i in found.nonzero]
-        )  # fmt: skip
-        yield (
-            f"{len(found.nonzero)} of {len(identified.dropped)} dropped parameters cannot be zero "
-            f"with positive masses: {names}"
-        )
+    yield from _not_zero(identified, found)
     masses = ", ".join(f"{body[9]:.4g}" for body in found.bodies)
     yield f"masses {masses} kg; only combinations of them are identified"
 
 
 def _distance(identified: Estimates, found: Physical) -> str:
-    count = np.count_nonzero(np.isfinite(np.diag(identified.covariance)))
-    explained = np.sqrt(chi_square(int(count)))
-    text = (
-        f"the nearest physically consistent parameters are {found.distance:.2g} standard "
-        f"deviations away (Mahalanobis distance); the uncertainty of {count} estimates explains up "
-        f"to {explained:.2g}"
-    )
+    text = f"Mahalanobis distance from the estimates {found.distance:.2g} standard deviations"
+    if identified.dropped:
+        return f"{text}, counted from those of all parameters, before any were dropped"
+    count = int(np.count_nonzero(np.isfinite(np.diag(identified.covariance))))
+    explained = np.sqrt(chi_square(count))
+    text = f"{text}; the uncertainty of {count} estimates explains up to {explained:.2g}"
     if found.distance <= explained:
         return text
     return f"{text}: the model or the log has another error, such as friction or delay"
+
+
+def _not_zero(identified: Estimates, found: Physical) -> Iterator[str]:
+    """Dropped parameters that positive masses do not allow to be zero."""
+    parameters = identified.robot.parameters
+    other = [i for i in identified.dropped if found.base[i] != 0.0]
+    if other:
+        names = [f"{parameters[i].name} ({found.base[i]:.2g} {parameters[i].unit})" for i in other]
+        yield (
+            f"{len(other)} of {len(identified.dropped)} dropped parameters cannot be zero with "
+            f"positive masses: {_some(names)}"
+        )
 
 
 def _farthest(identified: Estimates, found: Physical) -> str:

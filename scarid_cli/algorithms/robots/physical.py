@@ -17,6 +17,7 @@ compared with the true ones, whatever the noise.
 
 from __future__ import annotations
 
+import contextlib
 import re
 import warnings
 from collections.abc import Sequence
@@ -27,7 +28,7 @@ import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.rigid import SYMBOLS
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import BadData, UsageFault
 
 LENGTH = 0.1  # m: with lengths in decimetres the entries of a pseudo-inertia are of similar size
@@ -36,8 +37,9 @@ PRICE = 1e-4  # squared errors per kg^2 of distance from the URDF's bodies: deci
 # parameters leave open, and keeps masses finite where the nearest ones would be infinite
 ROUNDING = 1e-12  # kg m2: smaller values are left over by the solver
 RESOLUTION = 1e-6  # of an estimate: smaller errors are beyond the accuracy of the solver
-YIELD = 1.0  # squared errors, one standard deviation: what zeros of dropped parameters may cost
-NEGLIGIBLE = 0.01 * MARGIN  # kg: what the solver cannot tell from zero in these units
+YIELD = 1.0  # squared errors: by one standard deviation the zeros of dropped parameters may move
+# the estimates, beyond what dropping them did
+NEGLIGIBLE = 1e-4  # errors: a dropped parameter that is smaller is zero
 CONFIDENCE = 0.95
 POSITIVE = re.compile(r"(Ia|fv|fs)\d+[+-]?")  # motor inertias and friction cannot be negative
 POWERS = {"kg m2": 2, "kg m": 1}  # of LENGTH in the units of inertial parameters
@@ -49,15 +51,13 @@ class Physical:
 
     `bodies` (joints, 10) in the order of SYMBOLS, about the frame of each link [kg m2, kg m, kg];
     `axes` motor inertias, friction and offsets by name; `base` (parameters) in the units of the
-    robot's parameters; `distance` from the estimates: the Mahalanobis distance; `nonzero`: indices
-    of the dropped parameters that no physically consistent bodies near the estimates have at zero.
+    robot's parameters; `distance` is the Mahalanobis distance from the estimates.
     """
 
     bodies: Array
     axes: dict[str, float]
     base: Array
     distance: float
-    nonzero: tuple[int, ...] = ()
 
 
 def nearest(
@@ -65,28 +65,27 @@ def nearest(
 ) -> Physical:
     """The physically consistent parameters at the smallest Mahalanobis distance.
 
-    `covariance` (parameters, parameters) is positive definite except for rows and columns of nan:
-    a parameter with a nan variance is free. The `dropped` parameters (indices) are kept at zero
-    where that is possible: see `_at_zero`.
+    `covariance` (parameters, parameters) is positive semidefinite except for rows and columns of
+    nan: a parameter with a nan variance is free. The `dropped` parameters (indices) are kept at
+    zero where that is possible (see `_smallest`): without other constraints this is least squares
+    without their columns, if `estimates` and `covariance` are those of all parameters.
     """
     arm = _Arm.of(robot)
     away, tie = _whitened(arm.base, estimates, covariance)
-    cost = arm.cvxpy.sum_squares(away) + PRICE * arm.beyond
+    differences = arm.cvxpy.hstack([away, *(np.sqrt(PRICE) * x for x in arm.beyond)])
     constraints = [*arm.constraints, *tie]
-    nonzero: tuple[int, ...] = ()
+    zero, penalty = np.empty(0, dtype=np.int64), 0.0
     if len(dropped):
-        units = [robot.parameters[i].unit for i in dropped]
-        zeros, penalty, nonzero = _at_zero(arm, list(dropped), units, cost, constraints)
-        constraints, cost = [*constraints, *zeros], cost + penalty
+        at = np.array(dropped)
+        price = YIELD + _reduction(estimates, covariance, at)
+        scaled = arm.cvxpy.multiply(1.0 / _scales(robot, covariance, at), arm.base[at])
+        smallest = _smallest(arm, scaled, differences, constraints, price)
+        penalty = arm.cvxpy.sum_squares(arm.cvxpy.multiply(1.0 / smallest, scaled))
+        zero = at[smallest <= NEGLIGIBLE]
+    cost = arm.cvxpy.sum_squares(differences) + penalty
     _solve(arm.cvxpy.Problem(arm.cvxpy.Minimize(cost), constraints))
-    found = np.array([np.asarray(body.value, dtype=np.float64) for body in arm.bodies])
-    found[np.abs(found) < ROUNDING] = 0.0
-    values = np.asarray(arm.beside.value, dtype=np.float64)
-    base = arm.of_bodies @ found.ravel() + arm.of_axes @ values
-    base[[i for i in dropped if i not in nonzero]] = 0.0  # of 1e-9 that the solver leaves
     distance = float(np.linalg.norm(away.value)) if away.size else 0.0
-    axes = dict(zip(arm.axes, values.tolist(), strict=True))
-    return Physical(found, axes, base, distance, nonzero)
+    return _rounded(robot, arm, zero, distance)
 
 
 def chi_square(freedom: int) -> float:
@@ -105,8 +104,8 @@ def chi_square(freedom: int) -> float:
 class _Arm:
     """The unknowns of the semidefinite program, and what is linear or quadratic in them.
 
-    `base` = of_bodies @ bodies + of_axes @ beside; `beyond` is the squared distance from the
-    bodies of the URDF [kg^2].
+    `base` = of_bodies @ bodies + of_axes @ beside; `beyond` is the difference of the bodies from
+    those of the URDF [kg], and `beside`.
     """
 
     cvxpy: Any
@@ -116,7 +115,7 @@ class _Arm:
     of_bodies: Array
     of_axes: Array
     constraints: list[Any]
-    beyond: Any
+    beyond: list[Any]
 
     @classmethod
     def of(cls, robot: Robot) -> _Arm:
@@ -131,7 +130,9 @@ class _Arm:
         positive = [i for i, name in enumerate(axes) if POSITIVE.fullmatch(name)]
         bounds = [beside[positive] >= 0.0] if positive else []
         own = np.array(robot.body.standard).reshape(joints, 10)
-        apart = [cvxpy.sum_squares(J - pseudo_inertia(x)) for J, x in zip(pseudo, own, strict=True)]
+        apart = [
+            cvxpy.vec(J - pseudo_inertia(x), order="F") for J, x in zip(pseudo, own, strict=True)
+        ]
         return cls(
             cvxpy,
             [_standard(J, cvxpy.hstack) for J in pseudo],
@@ -140,7 +141,7 @@ class _Arm:
             _combinations(robot, standard),
             _combinations(robot, axes),
             [*bounds, *(J >> MARGIN * np.eye(4) for J in pseudo)],
-            sum(apart) + cvxpy.sum_squares(beside),
+            [*apart, beside],
         )
 
     @property
@@ -163,30 +164,55 @@ def _whitened(base: Any, estimates: Array, covariance: Array) -> tuple[Any, list
     C = covariance[np.ix_(known, known)] + np.diag(rounding**2)
     errors = np.sqrt(np.diag(C))
     values, vectors = np.linalg.eigh(C / np.outer(errors, errors))
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    rounded = len(values) * np.finfo(float).eps * values[-1]
+    root = vectors * np.sqrt(np.maximum(values, rounded))
     return away, [cvxpy.multiply(1.0 / errors, base[known] - estimates[known]) == root @ away]
 
 
-def _at_zero(
-    arm: _Arm, dropped: list[int], units: list[str], cost: Any, constraints: list[Any]
-) -> tuple[list[Any], Any, tuple[int, ...]]:
-    """Constraints that keep dropped parameters at zero, a penalty for those that cannot be zero.
+def _smallest(
+    arm: _Arm, scaled: Any, differences: Any, constraints: list[Any], price: float
+) -> Array:
+    """The smallest absolute values of dropped parameters (`scaled`), at least NEGLIGIBLE.
 
-    Some cannot: Izz5 + Iyy6 of two bodies is positive. The smallest sum of absolute values finds
-    them, over all bodies that raise the squared distance by no more than YIELD: what was estimated
-    comes before what was dropped. Their smallest values then serve as their errors.
+    Some cannot be zero: Izz5 + Iyy6 of two bodies is positive. The smallest sum of absolute values
+    finds them, over all bodies that cost no more than the `price` beyond the nearest: what was
+    estimated comes before what was dropped. As errors they keep each one as small as it can be.
     """
     cvxpy = arm.cvxpy
-    allowed = _solve(cvxpy.Problem(cvxpy.Minimize(cost), constraints)) + YIELD
-    scales = np.array([LENGTH ** POWERS.get(unit, 0) for unit in units])
-    scaled = cvxpy.multiply(1.0 / scales, arm.base[dropped])
-    _solve(cvxpy.Problem(cvxpy.Minimize(cvxpy.norm1(scaled)), [*constraints, cost <= allowed]))
-    smallest = np.abs(scaled.value)
-    zero = np.flatnonzero(smallest <= NEGLIGIBLE)
-    other = np.flatnonzero(smallest > NEGLIGIBLE)
-    zeros = [scaled[zero] == 0.0] if len(zero) else []
-    penalty = cvxpy.sum_squares(cvxpy.multiply(1.0 / smallest[other], scaled[other]))
-    return zeros, penalty if len(other) else 0.0, tuple(dropped[i] for i in other)
+    cost = cvxpy.Problem(cvxpy.Minimize(cvxpy.sum_squares(differences)), constraints)
+    # As a cone: a sum of squares that may be 1e4 is beyond the accuracy of the solver.
+    near = cvxpy.norm(differences) <= np.sqrt(_solve(cost) + price)
+    _solve(cvxpy.Problem(cvxpy.Minimize(cvxpy.norm1(scaled)), [*constraints, near]))
+    smallest: Array = np.maximum(np.abs(scaled.value), NEGLIGIBLE)
+    return smallest
+
+
+def _rounded(robot: Robot, arm: _Arm, zero: Numbers, distance: float) -> Physical:
+    """The solution, with zeros for what the solver leaves of them."""
+    bodies = np.array([np.asarray(body.value, dtype=np.float64) for body in arm.bodies])
+    bodies[np.abs(bodies) < ROUNDING] = 0.0
+    alone = {name for i in zero for (name, _), *more in [_parts(robot)[i]] if not more}
+    values = np.asarray(arm.beside.value, dtype=np.float64)
+    values[[name in alone for name in arm.axes]] = 0.0
+    base = arm.of_bodies @ bodies.ravel() + arm.of_axes @ values
+    base[zero] = 0.0
+    return Physical(bodies, dict(zip(arm.axes, values.tolist(), strict=True)), base, distance)
+
+
+def _reduction(estimates: Array, covariance: Array, dropped: Numbers) -> float:
+    """The squared distance by which these zeros alone move the estimates."""
+    block = covariance[np.ix_(dropped, dropped)]
+    if not np.isfinite(block).all():
+        return 0.0
+    values = estimates[dropped]
+    return float(values @ np.linalg.lstsq(block, values, rcond=None)[0])
+
+
+def _scales(robot: Robot, covariance: Array, dropped: Numbers) -> Array:
+    """The errors of dropped parameters, or what makes them as large as a pseudo-inertia."""
+    errors = np.sqrt(np.diag(covariance)[dropped])
+    sizes = [LENGTH ** POWERS.get(robot.parameters[i].unit, 0) for i in dropped]
+    return np.where(np.isfinite(errors), errors, sizes)
 
 
 def inertia_of(body: Array) -> Array:
@@ -231,7 +257,9 @@ def _combinations(robot: Robot, names: list[str]) -> Array:
 
 def _solve(problem: Any) -> float:
     """The minimum; an answer of reduced accuracy will do."""
-    with warnings.catch_warnings():
+    from cvxpy.error import SolverError
+
+    with warnings.catch_warnings(), contextlib.suppress(SolverError):
         warnings.filterwarnings("ignore", "Solution may be inaccurate", UserWarning)
         problem.solve(solver="CLARABEL")
     if problem.status not in ("optimal", "optimal_inaccurate"):
