@@ -43,8 +43,10 @@ def described(table: Table) -> Iterator[str]:
 
 
 def _told(key: str, value: Any) -> Iterator[str]:
-    """A value on its line; what a list holds, on lines of their own."""
-    if isinstance(value, list):
+    """A value on its line; what a list holds, on lines of their own; a matrix by its size."""
+    if isinstance(value, list) and value and isinstance(value[0], list):
+        yield f"{key:<9} {len(value)} by {len(value[0])} numbers"
+    elif isinstance(value, list):
         yield key
         yield from (f"  {_shown(item)}" for item in value)
     else:

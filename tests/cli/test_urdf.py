@@ -132,6 +132,7 @@ def test_the_covariance_saves_the_torques_of_correlated_parameters(
     assert "warning: R2 falls substantially on this motion" in lines["csv"]
     assert "no covariance of the estimates" in lines["csv"]
     assert "warning" not in lines["parquet"]
+    assert "covariance 69 by 69 numbers" in shell("scarid info p.parquet").out
     parameters = read_table(tmp_path / "p.parquet")
     covariance = np.array(json.loads(parameters.schema.metadata[b"scarid"])["extra"]["covariance"])
     robust, classical = (parameters[f"{kind}_error"].to_numpy() for kind in ("robust", "standard"))
