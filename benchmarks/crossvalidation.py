@@ -17,7 +17,7 @@ from defaults import PERIOD, RATIO, ROBOT, experiment
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.regression.rows import plain
-from scarid_cli.algorithms.tuning.search import Motion, motion
+from scarid_cli.algorithms.tuning.judges import Motion, motion
 from scarid_cli.arrays import Array
 
 Log = tuple[Array, Array]
