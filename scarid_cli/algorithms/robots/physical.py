@@ -8,11 +8,11 @@ the solution of a semidefinite program, as in Sousa and Cortesao (Int. J. Roboti
 closest to the bodies of the URDF are taken.
 
 The distance is the Mahalanobis distance with the classical covariance C = s^2 (W'W)^-1 of the
-estimates. Its square is |W (theta - estimates)|^2 / s^2: the growth of the sum of squared residuals
-in units of the residual variance, so that the nearest parameters are those of the constrained
-least-squares fit. Because the set is convex and contains the true parameters, the nearest
-parameters predict the torques of the identification motion at least as well as the estimates do,
-compared with the true ones, whatever the noise.
+estimates, up to a factor. Its square is |W (theta - estimates)|^2 / s^2, the growth of the sum of
+squared residuals in units of the residual variance: the nearest parameters are the constrained
+least-squares fit. And because the set is convex and contains the true parameters, the nearest
+parameters predict the torques of the identification motion no worse than the estimates do,
+compared with the true torques, whatever the noise.
 """
 
 from __future__ import annotations
