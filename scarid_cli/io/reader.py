@@ -38,13 +38,13 @@ def open_table(source: ByteSource) -> Table:
 def checked(table: Table, kind: str, *, reads: Reads | None = None, regular: bool = True) -> Table:
     """The table, checked to be of a kind: columns, types and units now, values as they arrive.
 
-    The values of the columns that the command `reads` must be there and be finite, by default
-    those of every column that the kind knows; other columns pass as they are. The clock of a
+    The columns that the command `reads` must be numbers, there and finite in every row; by default
+    these are the columns that the kind knows. Other columns pass as they are. The clock of a
     sampled table must be regular, unless `regular` is false; its period [s] is put into the
     metadata.
     """
     schema = schemas.load(kind)
-    table = conforming(table, kind)
+    table = conforming(table, kind, reads)
     meta = replace(table.meta, kind=table.meta.kind or kind)
     batches = _valued(table, _columns_to_check(table, schema, reads))
     if schema.sampled:
@@ -53,15 +53,15 @@ def checked(table: Table, kind: str, *, reads: Reads | None = None, regular: boo
     return replace(table, meta=meta, batches=batches)
 
 
-def conforming(table: Table, kind: str) -> Table:
+def conforming(table: Table, kind: str, reads: Reads | None = None) -> Table:
     """The table, with the columns, types and units of a kind; whole numbers become doubles."""
     schema = schemas.load(kind)
     _check_columns(table, schema)
     _check_units(table, schema)
-    known = {column: schema.field_of(column) for column in table.columns}
-    typed = pa.schema(
-        [f.with_type(field.type) if (field := known[f.name]) else f for f in table.schema]
-    )
+    types = {c: known.type for c in table.columns if (known := schema.field_of(c))}
+    types = {**dict.fromkeys(reads(table.columns) if reads else (), pa.float64()), **types}
+    _check_types(table, types)
+    typed = pa.schema([f.with_type(types.get(f.name, f.type)) for f in table.schema])
     if typed.equals(table.schema):
         return table
     return replace(table, schema=typed, batches=(cast(batch, typed) for batch in table.batches))
@@ -69,12 +69,13 @@ def conforming(table: Table, kind: str) -> Table:
 
 def _columns_to_check(table: Table, schema: schemas.TableSchema, reads: Reads | None) -> list[str]:
     """The columns whose values must be there; in tables without a clock, the required ones."""
-    known = {column: schema.field_of(column) for column in table.columns}
-    fields = {column: field for column, field in known.items() if field}
+    known = {column: field for column in table.columns if (field := schema.field_of(column))}
     if not schema.sampled:
-        return [column for column, field in fields.items() if field.required]
-    wanted = {*ROW_MARKS, *reads(table.columns)} if reads else set(fields)
-    return [column for column in table.columns if column in wanted and column in fields]
+        return [column for column, field in known.items() if field.required]
+    if reads is None:
+        return list(known)
+    wanted = {*reads(table.columns), *(mark for mark in ROW_MARKS if mark in known)}
+    return [column for column in table.columns if column in wanted]
 
 
 def _check_columns(table: Table, schema: schemas.TableSchema) -> None:
@@ -90,13 +91,15 @@ def _check_columns(table: Table, schema: schemas.TableSchema) -> None:
     missing = schema.missing_from(table.columns)
     if missing:
         require(table, [missing], f"a {schema.title.lower()} with this one")
+
+
+def _check_types(table: Table, types: dict[str, pa.DataType]) -> None:
     for field in table.schema:
-        known = schema.field_of(field.name)
-        if known and not _same_type(field.type, known.type):
+        if not _same_type(field.type, types.get(field.name, field.type)):
             raise bad_data(
                 table.name,
                 f"type {field.type}",
-                expected=str(known.type),
+                expected=str(types[field.name]),
                 remedy="convert the column where the table is made",
                 column=field.name,
             )

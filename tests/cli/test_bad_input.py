@@ -90,6 +90,28 @@ def test_whole_numbers_are_as_good_as_others(command: str, scarid: Run, tmp_path
     assert result.out == scarid(command, numbers).out
 
 
+@pytest.mark.parametrize(
+    ("column", "values", "message"),
+    [
+        ("note", ["a", "b", "c"], "column note: found type string, expected double; convert"),
+        ("volt", [1.0, 2.0, np.nan], "row 3, column volt: found nan, expected a finite number"),
+        ("count", [1, 2, 5], None),
+    ],
+)
+def test_a_column_that_no_schema_knows_can_be_filtered_if_it_holds_numbers(
+    column: str, values: list[object], message: str | None, scarid: Run, tmp_path: Path
+) -> None:
+    log = tmp_path / "log.parquet"
+    pq.write_table(pa.table({"t": [0.0, 0.01, 0.02], "q1": [0.0, 1.0, 2.0], column: values}), log)
+    result = scarid("filter", "-c", column, log)
+    assert result.status == (65 if message else 0)
+    assert (message or "") in result.err
+    if not message:
+        numbers = [float(line.split(",")[2]) for line in result.out.splitlines()[1:]]
+        assert numbers[0] == 1.0
+        assert 1.0 < numbers[2] < 5.0
+
+
 BEYOND = {
     "unread": ("differentiate --no-match", 0),
     "read": ("differentiate --match", 65),

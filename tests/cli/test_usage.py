@@ -37,7 +37,8 @@ USAGE = {
         ["differentiate", "--method", "p2smd", "--preset", "best", "LOG"],
         "it has table1",
     ),
-    "time filtered": (["filter", "-c", "*", "LOG"], "the time column t cannot be filtered"),
+    "time filtered": (["filter", "-c", "*", "LOG"], "the column t is not a signal and cannot be"),
+    "marks filtered": (["filter", "-c", "segment", "GAPPED"], "the column segment is not a signal"),
     "two cut-offs": (["filter", "--cutoff", "1", "--natural-frequency", "1"], "not both"),
     "cut-off above Nyquist": (
         ["filter", "--cutoff", "50", "LOG"],
@@ -79,5 +80,8 @@ def test_a_wrong_command_line_is_told_in_one_line(
     words, message = USAGE[name]
     if "REF" in words:
         assert scarid("trajgen", "--duration", 2, "-o", "ref.csv").status == 0
-    files = {"LOG": str(samples / "scara2.csv"), "REF": "ref.csv"}
+    if "GAPPED" in words:
+        gapped = scarid("resample", "--rate", 100, samples / "scara2.csv", "-o", "gapped.csv")
+        assert gapped.status == 0
+    files = {"GAPPED": "gapped.csv", "LOG": str(samples / "scara2.csv"), "REF": "ref.csv"}
     refused(scarid(*(files.get(word, word) for word in words)), 2, message)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.pairs import pair, renamings
 from scarid_cli.errors import UsageFault
@@ -10,7 +9,6 @@ from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.foreign import ARCHIVES, TranslatedCsv, read_archive
 from scarid_cli.io.table import Table
 from scarid_cli.stages.adapt import adapted
-from scarid_cli.stages.joints import as_described
 
 
 def run(
@@ -30,7 +28,10 @@ def run(
     names = renamings(mappings)
     given = [pair(text, "--unit") for text in units]
     table = _opened(job, file, separator, header, decimal_comma=decimal_comma)
-    if robot:
+    if robot:  # its reader is not needed otherwise
+        from scarid_cli.algorithms.robots.reading import load
+        from scarid_cli.stages.joints import as_described
+
         table = as_described(table, load(robot), names, given, rate)
     else:
         table = adapted(table, names, given, rate)

@@ -8,6 +8,7 @@ from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
 from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
+from scarid_cli.io.reader import ROW_MARKS
 from scarid_cli.io.schemas import numbered
 from scarid_cli.stages import filter as stage
 
@@ -48,6 +49,7 @@ def select(patterns: str, names: list[str]) -> list[str]:
         if not any(fnmatchcase(name, pattern) for name in names):
             raise UsageFault(f"--columns: no column {pattern!r}; the table has {', '.join(names)}")
     chosen = [name for name in names if any(fnmatchcase(name, p) for p in wanted)]
-    if "t" in chosen:
-        raise UsageFault("--columns: the time column t cannot be filtered")
+    for name in ROW_MARKS:
+        if name in chosen:
+            raise UsageFault(f"--columns: the column {name} is not a signal and cannot be filtered")
     return chosen

@@ -17,7 +17,6 @@ from scarid_cli.cli.treatment import for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
 from scarid_cli.stages import identify as stage
-from scarid_cli.stages.continuation import restored, saved
 from scarid_cli.stages.parameters import identified
 from scarid_cli.stages.rows import Treatment
 
@@ -50,6 +49,11 @@ def run(
     start = _initial(job, initial, arm)
     fixed = _fixed(table, arm, estimator, solver, treatment, given["smooth_sign"])
     places: list[stage.Checkpoint] = []
+    checkpoint = None
+    if resumed:
+        from scarid_cli.stages.continuation import restored  # zipfile takes a while to import
+
+        checkpoint = restored(resumed, fixed)
     result = stage.identify(
         job.recorded(table),
         arm,
@@ -58,11 +62,13 @@ def run(
         treatment=treatment,
         variance=variance,
         trace=side,
-        checkpoint=restored(resumed, fixed) if resumed else None,
+        checkpoint=checkpoint,
         keep=places.append,
     )
     job.write(result)
     if place:
+        from scarid_cli.stages.continuation import saved
+
         place.write(saved(places[0], fixed))
     for line in summary_lines(arm.name, estimator, result.meta.extra):
         job.say(line)
