@@ -164,7 +164,8 @@ def test_too_few_rows_are_told_in_one_line(options: str, told: str, shell: Shell
 def test_initial_parameters_are_refused_by_an_estimator_without_them(
     estimator: str, shell: Shell
 ) -> None:
-    result = shell(f"{MOTION}; scarid identify --estimator {estimator} --initial apriori motion.csv")
+    pipe = f"{MOTION}; scarid identify --estimator {estimator} --initial apriori motion.csv"
+    result = shell(pipe)
     refused(result, 2, f"--initial: {estimator} has no initial parameters")
 
 
@@ -173,8 +174,8 @@ def test_the_delay_goes_with_the_parameters_to_validate(options: str, shell: She
     """In Parquet; that CSV cannot keep it is said."""
     align = f"scarid identify --align {options}"
     result = shell(
-        f"scarid differentiate $SAMPLES/scara2.csv -o m.parquet && {align} m.parquet -o p.parquet &&"
-        f" scarid validate --parameters p.parquet m.parquet && {align} m.parquet -o p.csv"
+        f"scarid differentiate $SAMPLES/scara2.csv -o m.parquet && {align} m.parquet -o p.parquet"
+        f" && scarid validate --parameters p.parquet m.parquet && {align} m.parquet -o p.csv"
     )
     assert result.status == 0, result.err
     assert "torques are predicted" in result.err
