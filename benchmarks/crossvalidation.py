@@ -1,9 +1,10 @@
-"""Twenty simulated experiments, each identified online, judged on another: `make crossvalidate`.
+"""Online identification of simulated experiments, cross-validated: `make crossvalidate`.
 
-The robot, the loop and the trajectories are those of `scarid trajgen` and `scarid simulate` with
-their defaults: 16-bit encoder, 200 Hz, 20 s, no filter before the soft sensor; recursive least
-squares with P0 = 100 and forgetting factor 1. Two judgements: through the method's own motion of
-the other log, and on one common motion of it (matched zero-phase Butterworth at 8 Hz).
+The robot, the control loop and the trajectories are those of `scarid trajgen` and `scarid simulate`
+with their defaults: 16-bit encoder, 200 Hz, 20 s, and no filter before the soft sensor. Parameters
+are identified by recursive least squares with P0 = 100 and forgetting factor 1, and their torques
+predicted for another experiment: from the motion that the same method estimates there, and from a
+common one (a matched zero-phase Butterworth filter at 8 Hz).
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.algorithms.tuning.judges import Motion, motion
 from scarid_cli.arrays import Array
 
-Log = tuple[Array, Array]
-FAST = (0.8, 2.0)
+Experiment = tuple[Array, Array]  # positions [rad] and torques [N m], each (joints, rows)
+FAST = (0.8, 2.0)  # s, duration of a segment
 COMMON = DIFFERENTIATORS.load("zero-phase")(cutoff=8.0)
 METHODS: list[tuple[str, str, dict[str, float]]] = [
     ("kalman", "default", {}),
@@ -36,15 +37,15 @@ METHODS: list[tuple[str, str, dict[str, float]]] = [
 ]
 
 
-def log(seed: int) -> Log:
-    """Positions and torques of an experiment at the rate of the log (joints, rows)."""
+def log(seed: int) -> Experiment:
+    """Positions and torques of an experiment at the rate of the log."""
     run = experiment(seed, FAST)
     return np.ascontiguousarray(run.q[:, ::RATIO]), np.ascontiguousarray(run.tau[:, ::RATIO])
 
 
 def seen(method: Any, q: Array, tau: Array, *, match: bool = True) -> Motion:
-    """A log through the method."""
-    fitted = [method.fitted(x, PERIOD) if hasattr(method, "fitted") else method for x in q]
+    """The motion that the method estimates from a log."""
+    fitted = [method.fitted(x, PERIOD) for x in q]
     if match:
         return motion(fitted, q, tau, PERIOD)
     derivatives = (over(m, x, PERIOD) for m, x in zip(fitted, q, strict=True))
@@ -67,7 +68,7 @@ def identified(motion: Motion) -> Array:
 
 
 def r2(motion: Motion, theta: Array) -> list[float]:
-    """Of the predicted torques, per joint."""
+    """Coefficient of determination of the predicted torques, for each joint."""
     *kinematics, tau = settled(motion)
     predicted = ROBOT.torques(ROBOT.regressor(*kinematics), theta)
     return [
@@ -76,10 +77,10 @@ def r2(motion: Motion, theta: Array) -> list[float]:
     ]
 
 
-def judged(method: Any, pair: tuple[Log, Log], *, match: bool = True) -> list[float]:
-    """R2 of both joints through the method and on the common motion; errors of three parameters.
+def judged(method: Any, pair: tuple[Experiment, Experiment], *, match: bool = True) -> list[float]:
+    """R2 of both joints on the method's own and on the common motion; three errors.
 
-    ZZ1R, ZZ2 and L1MX2, in percent.
+    The errors are those of ZZ1R, ZZ2 and L1MX2, relative to their true values [%].
     """
     own, other = pair
     theta = identified(seen(method, *own, match=match))
@@ -91,10 +92,10 @@ def judged(method: Any, pair: tuple[Log, Log], *, match: bool = True) -> list[fl
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--seeds", type=int, default=20, help="number of pairs of experiments")
     seeds = parser.parse_args().seeds
     pairs = [(log(2 * seed + 1), log(2 * seed + 2)) for seed in range(seeds)]
-    print(f"Medians over {seeds} pairs of experiments; - is without matching")
+    print(f"Medians over {seeds} pairs of experiments; a dash (-) marks unmatched signals")
     print(f"{'':22}{'own motion':>16}{'common motion':>17}{'error of parameters [%]':>28}")
     print(f"{'':22}{'R2 1':>8}{'R2 2':>8}{'R2 1':>9}{'R2 2':>8}{'ZZ1R':>10}{'ZZ2':>9}{'L1MX2':>9}")
     for name, label, settings in METHODS:

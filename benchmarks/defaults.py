@@ -1,4 +1,4 @@
-"""The measurements behind the default settings, on the simulated robot (quoted in DESIGN.md)."""
+"""The measurements that led to the default settings, on the simulated robot; see DESIGN.md."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SETTINGS: list[tuple[str, str, dict[str, float]]] = [
 
 
 def experiment(seed: int, segment: tuple[float, float], cutoff: float = 20.0) -> LoopLog:
-    """Twenty seconds of the robot in its default loop, at the control rate."""
+    """Twenty seconds of the simulated robot in its default control loop, at the control rate."""
     limits, rng = Limits.of(ROBOT.joints), np.random.default_rng(seed)
     path = Excitation(*segment).trajectory(limits, limits.home, 20.0, rng)
     q, dq, _ = refine(*path.sample(np.arange(4001) * PERIOD), PERIOD, RATIO)
@@ -49,12 +49,12 @@ def experiment(seed: int, segment: tuple[float, float], cutoff: float = 20.0) ->
 
 
 def errors(log: LoopLog, method: str, settings: dict[str, float]) -> list[tuple[float, float]]:
-    """NRMSE of velocity and acceleration per joint, from the second second on."""
+    """NRMSE of velocity and acceleration for each joint, without the first second."""
     found = []
     for joint in range(2):
         q = np.ascontiguousarray(log.q[joint, ::RATIO])
         lowpass = Butterworth(20.0)
-        _, q = lowpass.step(lowpass.init(q[0], PERIOD), q)
+        _, (q,) = lowpass.step(lowpass.init(q[0], PERIOD), q)
         differentiator = DIFFERENTIATORS.load(method)(**settings)
         _, estimates = differentiator.step(differentiator.init(q[0], PERIOD), q)
         truths = (log.dq_true[joint, ::RATIO], log.ddq_true[joint, ::RATIO])
@@ -67,7 +67,7 @@ def errors(log: LoopLog, method: str, settings: dict[str, float]) -> list[tuple[
 
 
 def lag(omega: float, settings: dict[str, float]) -> float:
-    """Seconds by which the acceleration of p2smd is late on sin(omega t), over its last turns."""
+    """Delay [s] of the acceleration of p2smd on sin(omega t), over the second half of it."""
     t = np.arange(round(20.0 * np.pi / omega / PERIOD)) * PERIOD
     method = DIFFERENTIATORS.load("p2smd")(**settings)
     _, (_, a) = method.step(method.init(0.0, PERIOD), np.sin(omega * t))
@@ -81,22 +81,22 @@ def lag(omega: float, settings: dict[str, float]) -> float:
 def main() -> None:
     fast = [experiment(seed, (0.8, 2.0)) for seed in SEEDS]
     slow = [experiment(seed, (2.0, 4.0)) for seed in SEEDS]
-    print("NRMSE of velocity and acceleration, segments of 0.8 to 2 s and of 2 to 4 s")
+    print("NRMSE of velocity and acceleration: with segments of 0.8 to 2 s, and of 2 to 4 s")
     for method, name, settings in SETTINGS:
         row = [np.mean([errors(log, method, settings) for log in logs], axis=(0, 1))
                for logs in (fast, slow)]  # fmt: skip
         print(f"  {method:8} {name:24}" + "".join(f" {v:8.3f} {a:6.3f}" for v, a in row))
-    print("\nAcceleration above 15 Hz [rad/s2], rms of joints 1 and 2, by smoothing of dq [Hz]")
+    print("\nAcceleration above 15 Hz, RMS of joints 1 and 2 [rad/s2], by cutoff of dq [Hz]")
     low = scipy.signal.butter(4, 15.0, fs=1.0 / PERIOD * RATIO, output="sos")
     for cutoff in (0.0, 50.0, 20.0):
         a = experiment(3, (0.8, 2.0), cutoff).ddq_true
         print(
             f"  {cutoff or 'none':>5}", (a - scipy.signal.sosfiltfilt(low, a)).std(axis=1).round(2)
         )
-    print("\nTorque, standard deviation of joints 1 and 2 [N m], seeds 0 to 5")
+    print("\nStandard deviation of the torques of joints 1 and 2 [N m], seeds 0 to 5")
     stds = np.array([experiment(seed, (0.8, 2.0)).tau_true.std(axis=1) for seed in range(6)])
     print(f"  from {stds.min(axis=0).round(2)} to {stds.max(axis=0).round(2)}")
-    print("\nLag of the acceleration of p2smd on a sine [ms], default and without adaptation")
+    print("\nDelay of the acceleration of p2smd on a sine [ms]: default, and without adaptation")
     for omega in (0.3, 1.0, 1.6, 3.0):
         lags = [1e3 * lag(omega, settings) for settings in ({}, {"cap": 1e-15})]
         print(f"  {omega:3} rad/s  {lags[0]:5.1f} {lags[1]:5.1f}")

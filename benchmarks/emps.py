@@ -1,8 +1,9 @@
-"""Every differentiator on the real EMPS log, unmatched, matched and tuned: the table of the README.
+"""Every differentiator on the real EMPS log: unmatched, matched, and matched and tuned.
 
-`python benchmarks/emps.py emps_train.csv` prints Markdown: the mass [kg] by least squares, and the
-error of the torque predicted for the same log relative to its norm [%]. Published offline: mass
-95.1089 kg, error 4.08 %. Tuned is `scarid tune --robot emps`: by torques of held-out segments.
+`make emps` or `python benchmarks/emps.py emps_train.csv` prints a table in Markdown: the mass [kg]
+estimated by least squares, and the error of the torque predicted for the same log, relative to the
+norm of the torque [%]. Published offline values are 95.1089 kg and 4.08 %. Tuned settings are those
+of `scarid tune --robot emps`, which judges them by the torques of held-out segments.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ TABLE1 = ("p2smd", "ed-fir", "2smd", "astd")
 
 
 def unmatched(method: Any, record: Record) -> judges.Motion:
-    """Derivatives beside the position and the torque as they were logged."""
+    """Derivatives beside the positions and the torques as they were logged."""
     assert record.tau is not None
     dq, ddq = over(method, record.q[0], H)
     signals = (record.q, dq[None, :], ddq[None, :], record.tau)
@@ -32,7 +33,7 @@ def unmatched(method: Any, record: Record) -> judges.Motion:
 
 
 def quality(motion: judges.Motion) -> tuple[float, float]:
-    """Mass and relative error of the torque."""
+    """Mass [kg], and relative error of the predicted torque [%]."""
     rows = motion.settled
     theta = judges.identified(ROBOT, motion, rows)
     if theta is None:
@@ -47,15 +48,15 @@ def shown(mass: float, error: float) -> str:
 
 
 def rows(record: Record) -> list[tuple[float, str]]:
-    """One line of the table for each method, with its error when tuned."""
+    """The line of each method in the table, after its error when tuned, which sorts the lines."""
     assert record.tau is not None
     lines = []
     for name in DIFFERENTIATORS.names:
         method = DIFFERENTIATORS.load(name)
         start = method(**method.PRESETS["table1"]) if name in TABLE1 else method()
-        fitted = start.fitted(record.q[0], H) if hasattr(start, "fitted") else start
+        fitted = start.fitted(record.q[0], H)
         tuned = fitted
-        if method.TUNED or judges.has_likelihood(fitted):
+        if method.TUNED or method.HAS_LIKELIHOOD:
             _, settings = chosen(tune(record, [name], ROBOT, 0, lambda: None), 1)
             tuned = method(**{key: values[0] for key, values in settings[name].items()})
         motions = [unmatched(start, record)]

@@ -1,8 +1,9 @@
-"""How good a judge of settings each criterion is that knows no truth (quoted in DESIGN.md).
+"""How well criteria that do not know the truth choose settings; see DESIGN.md.
 
-For causal methods on quintic moves behind encoders of 13 and 16 bit: the error of the settings that
-a judge chooses, over that of the settings that the truth would choose. The judges: the distance to
-a self-tuned smoother (`scarid tune`), and the error of positions predicted some time ahead.
+For causal methods on quintic moves measured by encoders of 13 and 16 bit: the error with the
+settings that a criterion chooses, over the error with those that the truth would choose. The
+criteria are the distance to a smoother that tunes itself (`scarid tune`), and the error of
+positions predicted some time ahead.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ INNER = slice(200, -200)
 
 
 def truth(q: Array, v: Array, a: Array) -> search.Judge:
+    """The geometric mean of the NRMSE of velocity and of acceleration."""
+
     def judge(method: Any) -> float:
         with np.errstate(all="ignore"):
             errors = [
@@ -37,7 +40,7 @@ def truth(q: Array, v: Array, a: Array) -> search.Judge:
 
 
 def prediction(q: Array, ahead: float) -> search.Judge:
-    """Error of q + v T + a T^2 / 2 against the position measured T later, which no row has seen."""
+    """Error of q + v T + a T^2 / 2 as a prediction of the position measured T later."""
     n = round(ahead / H)
 
     def judge(method: Any) -> float:
@@ -51,6 +54,7 @@ def prediction(q: Array, ahead: float) -> search.Judge:
 
 def main() -> None:
     q, v, a = reference(H)
+    print("Error over that with settings chosen by the truth")
     names = ["smoother", *(f"{1e3 * ahead:.0f} ms ahead" for ahead in AHEAD)]
     print(f"{'':14}{''.join(f'{name:>14}' for name in names)}")
     for bits in (13, 16):

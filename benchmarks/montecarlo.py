@@ -1,10 +1,10 @@
-"""Are the stated intervals true, and is bias caught? `make montecarlo`.
+"""Coverage of the confidence intervals, and detection of bias: `make montecarlo`.
 
-Simulated experiments as of `scarid trajgen` and `scarid simulate` with their defaults, through
-`differentiate` and `identify --estimator wls --drop-slow 0.1 --align`. First: how often the 95 %
-intervals of each parameter contain its true value. Second: of runs whose estimates are off by more
-than three stated deviations because the soft sensor is not matched, how often the verdict calls
-them biased; and how often it calls matched ones so.
+Experiments are simulated as by `scarid trajgen` and `scarid simulate` with their defaults, and
+identified as by `scarid differentiate` and `scarid identify --estimator wls --drop-slow 0.1
+--align`. The first table says how often the 95 % interval of each parameter contains its true
+value. The second says how often the verdict reports a bias, with matched and with unmatched
+signals, and how many runs it detects of those with an estimate off by more than three errors.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-from crossvalidation import Log, log, seen
+from crossvalidation import Experiment, log, seen
 from defaults import PERIOD, ROBOT
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
@@ -32,11 +32,11 @@ UNMATCHED: list[tuple[str, dict[str, float]]] = [
     ("high-gain", {}),
     ("savgol-end", {}),
 ]
-Result = tuple[Array, Array, Array, Array, dict[str, Any]]
+Identified = tuple[Array, Array, Array, Array, dict[str, Any]]
 
 
-def identified(method: Any, log: Log, *, match: bool = True) -> Result:
-    """Estimates, errors of white residuals, interval ends, and the metadata."""
+def identified(method: Any, log: Experiment, *, match: bool = True) -> Identified:
+    """Estimates, standard errors for white residuals, ends of the intervals, and metadata."""
     motion = seen(method, *log, match=match)
     signals = np.concatenate(motion.signals)[:, motion.settled]
     batch = pa.RecordBatch.from_arrays([doubles(x) for x in signals], COLUMNS)
@@ -51,7 +51,7 @@ def identified(method: Any, log: Log, *, match: bool = True) -> Result:
 
 
 def coverage(runs: int, seed: int) -> None:
-    """How often the intervals contain the truth, in percent."""
+    """How often the intervals contain the true values [%]."""
     truth = ROBOT.apriori
     robust, white, delays = np.zeros(8), np.zeros(8), []
     kalman = DIFFERENTIATORS.load("kalman")()
@@ -65,15 +65,15 @@ def coverage(runs: int, seed: int) -> None:
     for label, counts in (("robust", robust), ("white residual", white)):
         print(f"{label:14}" + "".join(f"{100.0 * c / runs:7.1f}" for c in counts))
     print(
-        f"Torques lead by {np.mean(delays):.3f} +- {np.std(delays):.3f} ms "
-        "(0.5 ms: half a period of the controller, which holds each command)"
+        f"The torques lead by {np.mean(delays):.3f} +- {np.std(delays):.3f} ms "
+        "(expected: 0.5 ms, half a period of the controller, which holds each command)"
     )
 
 
 def bias(runs: int, seed: int) -> None:
-    """How often the verdict speaks of bias, with and without matching."""
-    print(f"\nCalled biased, of {runs} experiments each")
-    print(f"{'method':12}{'matched':>9}{'unmatched':>11}{'of which off by 3 deviations':>30}")
+    """How often the verdict reports a bias, with and without matching."""
+    print(f"\nRuns reported as biased, of {runs} each")
+    print(f"{'method':12}{'matched':>9}{'unmatched':>11}{'of those off by 3 errors':>30}")
     truth = ROBOT.apriori
     for name, settings in UNMATCHED:
         method = DIFFERENTIATORS.load(name)(**settings)
@@ -96,8 +96,8 @@ def _biased(extra: dict[str, Any]) -> bool:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=10_000)
+    parser.add_argument("--runs", type=int, default=200, help="number of experiments")
+    parser.add_argument("--seed", type=int, default=10_000, help="seed of the first experiment")
     arguments = parser.parse_args()
     coverage(arguments.runs, arguments.seed)
     bias(arguments.runs // 2, arguments.seed)

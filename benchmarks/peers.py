@@ -1,8 +1,8 @@
-"""Peers as the benchmark runs them: tuned blind, by their own means where they have any.
+"""Differentiators of other packages, tuned without the truth, by their own tuner if they have one.
 
-Each function takes positions and returns velocity and acceleration. PyNumDiff has first
-derivatives only: its method is applied to its own velocity once more, or numpy's gradient is taken,
-whichever is the better for it.
+A sensor takes positions and returns velocities and accelerations. PyNumDiff has first derivatives
+only: for the acceleration, its method is applied to its own velocity, or numpy's gradient is taken,
+whichever gives the smaller error.
 """
 
 from __future__ import annotations
@@ -14,16 +14,14 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from signals import H
+from signals import Derivatives, H, Sensor
 
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.tuning import judges
 from scarid_cli.arrays import Array
 
-Derivatives = tuple[Array, Array]
-Sensor = Callable[[Array], Derivatives]
-BAND = 1.0  # Hz, told to PyNumDiff as the band of the motion
-# Its searches over everything take minutes to hours each: the method's usual order, few starts.
+BAND = 1.0  # Hz, bandwidth of the motion that PyNumDiff is given
+# Its searches over all settings take minutes to hours each: here the usual order, and few starts.
 SPACES: dict[str, tuple[str, dict[str, Any]]] = {
     "rtsdiff": ("kalman_smooth", {"order": 3, "forwardbackward": False,
                                   "log_qr_ratio": [5.0, 9.0, 12.0, 16.0]}),
@@ -35,9 +33,8 @@ SPACES: dict[str, tuple[str, dict[str, Any]]] = {
                                       "smoothing_win": [3, 31]}),
     "spectraldiff": ("basis_fit", {"extension": "even", "pad_to_flat": True}),
 }  # fmt: skip
-SLOW = {
-    "tvrdiff"
-}  # ten seconds a solution: tuned on five seconds, run once, without its second pass
+# A solution takes ten seconds: tuned on five seconds of the record, and not applied twice.
+SLOW = {"tvrdiff"}
 ITERATIVE = ("rtsdiff", "splinediff", "tvrdiff")
 
 
@@ -54,23 +51,17 @@ def present() -> dict[str, bool]:
 
 
 def pynumdiff(name: str, q: Array) -> tuple[Sensor, ...]:
-    """The method as its `optimize` sets it from these positions; twice, or with the gradient."""
+    """The method as its `optimize` tunes it on these positions: applied twice, or with gradient."""
     from pynumdiff.optimize import optimize
 
     module, space = SPACES[name]
     method = getattr(import_module(f"pynumdiff.{module}"), name)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        part = q[:1000] if name in SLOW else q
+        part, rounds = (q[:1000], 5) if name in SLOW else (q, 10)
+        options = {"parallel": False, "padding": "auto", "maxiter": rounds}
         settings, _ = optimize(
-            method,
-            part,
-            H,
-            bandlimit=BAND,
-            search_space_updates=space,
-            parallel=False,
-            padding="auto",
-            maxiter=5 if name in SLOW else 10,
+            method, part, H, bandlimit=BAND, search_space_updates=space, **options
         )
 
     def velocity(x: Array) -> Array:
@@ -78,19 +69,20 @@ def pynumdiff(name: str, q: Array) -> tuple[Sensor, ...]:
             warnings.simplefilter("ignore")
             return np.asarray(method(x, H, **settings)[1])
 
-    def twice(x: Array) -> Derivatives:
-        v = velocity(x)
-        return v, velocity(v)
+    gradient = partial(_completed, velocity, lambda v: np.gradient(v, H))
+    return (gradient,) if name in SLOW else (partial(_completed, velocity, velocity), gradient)
 
-    def gradient(x: Array) -> Derivatives:
-        v = velocity(x)
-        return v, np.gradient(v, H)
 
-    return (gradient,) if name in SLOW else (twice, gradient)
+def _completed(
+    velocity: Callable[[Array], Array], acceleration: Callable[[Array], Array], x: Array
+) -> Derivatives:
+    """Both derivatives, from one that takes positions and one that takes velocities."""
+    v = velocity(x)
+    return v, acceleration(v)
 
 
 def derivative(name: str, settings: dict[str, float]) -> Sensor:
-    """A method of the package `derivative`, which has no tuner, applied twice."""
+    """A method of the package `derivative`, applied twice; the package has no tuner."""
     from derivative import dxdt
 
     def run(x: Array) -> Derivatives:
@@ -105,13 +97,13 @@ def derivative(name: str, settings: dict[str, float]) -> Sensor:
 
 DERIVATIVE: dict[str, tuple[str, dict[str, float]]] = {
     "derivative Spline": ("spline", {"s": 1e-2, "order": 5}),
-    "derivative Kalman": ("kalman", {"alpha": 1e-3}),  # cubic in the rows
+    "derivative Kalman": ("kalman", {"alpha": 1e-3}),  # its cost is cubic in the rows
     "derivative SavGol": ("savitzky_golay", {"left": 0.2, "right": 0.2, "order": 5}),
 }
 
 
 def algdiff(window: float) -> Sensor:
-    """AlgDiff of degree 0 with alpha = beta = 4, as its examples have it; causal, not shifted."""
+    """AlgDiff of degree 0 with alpha = beta = 4, as in its examples; causal, not shifted."""
     from AlgDiff import AlgebraicDifferentiator
 
     toolbox = AlgebraicDifferentiator(
@@ -131,7 +123,7 @@ def algdiff(window: float) -> Sensor:
 
 
 def tuned_algdiff(q: Array) -> Sensor:
-    """Its window by the judge of `scarid tune`; it has no tuner of its own."""
+    """AlgDiff with the window that the criterion of `scarid tune` chooses; it has no tuner."""
     window = Range(0.03, 0.5)
     smooth = _smooth(q)
     inner = slice(200, -200)
@@ -153,7 +145,7 @@ def _smooth(q: Array) -> Derivatives:
 
 
 def shifted(sensor: Sensor, q: Array) -> Sensor:
-    """Both derivatives advanced by the delay that they have against a smoother's."""
+    """Both derivatives, advanced by their delay relative to those of a smoother."""
     from scarid_cli.algorithms.processes.delays import lateness
 
     late = [round(lateness(x, y, H) / H) for x, y in zip(sensor(q), _smooth(q), strict=True)]

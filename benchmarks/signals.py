@@ -1,7 +1,8 @@
-"""Motions with known derivatives, and what encoders make of them."""
+"""Motions with known derivatives, and their positions as encoders measure them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,14 +12,16 @@ from scarid_cli.algorithms.excitations.quintic import Excitation
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.arrays import Array
 
+Derivatives = tuple[Array, Array]  # velocities and accelerations
+Sensor = Callable[[Array], Derivatives]  # takes positions
 H = PERIOD
 SECONDS = 20.0
-INNER = slice(200, -200)  # a second at both ends is not judged
+INNER = slice(200, -200)  # errors leave out a second at both ends
 
 
 @dataclass(frozen=True)
-class Run:
-    """A motion of twenty seconds at 200 Hz: position, velocity, acceleration."""
+class TrueMotion:
+    """A motion of twenty seconds at 200 Hz: position [rad], velocity and acceleration."""
 
     name: str
     q: Array
@@ -26,22 +29,22 @@ class Run:
     a: Array
 
 
-def runs() -> list[Run]:
-    """Two of each kind."""
+def motions() -> list[TrueMotion]:
+    """Two motions of each kind."""
     return [make(seed) for make in (quintic, fourier, scara) for seed in (1, 2)]
 
 
-def quintic(seed: int) -> Run:
-    """Point to point in 1 to 3 s."""
+def quintic(seed: int) -> TrueMotion:
+    """Point-to-point moves, each in 1 to 3 s."""
     limits = Limits(*np.array([[-1.2], [1.2], [4.0], [20.0]]))
     rng = np.random.default_rng(seed)
     path = Excitation(1.0, 3.0).trajectory(limits, limits.home, SECONDS, rng)
     q, v, a = (row[0] for row in path.sample(np.arange(round(SECONDS / H)) * H))
-    return Run(f"quintic {seed}", q, v, a)
+    return TrueMotion(f"quintic {seed}", q, v, a)
 
 
-def fourier(seed: int) -> Run:
-    """Five harmonics of 0.1 Hz with amplitudes that fall."""
+def fourier(seed: int) -> TrueMotion:
+    """Five harmonics of 0.1 Hz with decreasing amplitudes."""
     rng = np.random.default_rng(100 + seed)
     t = np.arange(round(SECONDS / H)) * H
     q, v, a = np.zeros((3, len(t)))
@@ -50,40 +53,40 @@ def fourier(seed: int) -> Run:
         q += size * np.sin(w * t + phase)
         v += size * w * np.cos(w * t + phase)
         a -= size * w**2 * np.sin(w * t + phase)
-    return Run(f"Fourier {seed}", q, v, a)
+    return TrueMotion(f"Fourier {seed}", q, v, a)
 
 
-def scara(seed: int) -> Run:
-    """One joint of the simulated robot, friction and all."""
+def scara(seed: int) -> TrueMotion:
+    """One joint of the simulated robot, with its friction."""
     log = experiment(seed, (1.0, 3.0))
     joint = seed % 2
     signals = (log.q_true, log.dq_true, log.ddq_true)
     rows = round(SECONDS / H)
     q, v, a = (np.ascontiguousarray(x[joint, ::RATIO][:rows]) for x in signals)
-    return Run(f"SCARA {seed}", q, v, a)
+    return TrueMotion(f"SCARA {seed}", q, v, a)
 
 
 def seen(q: Array, bits: int, seed: int) -> Array:
-    """Quantised, with white noise of a third of a step before."""
+    """The positions with white noise of a third of an encoder step, quantised."""
     step = 2.0 * np.pi / 2**bits
     noise = step / 3.0 * np.random.default_rng(seed).standard_normal(len(q))
     return step * np.round((q + noise) / step)
 
 
 def glitched(q: Array, at: int) -> Array:
-    """One sample off by 0.1 rad."""
+    """The positions with one sample off by 0.1 rad."""
     wrong = q.copy()
     wrong[at] += 0.1
     return wrong
 
 
 def shaken(q: Array) -> Array:
-    """10 mrad at 70 Hz."""
+    """The positions with a vibration of 10 mrad at 70 Hz."""
     return q + 0.01 * np.sin(2.0 * np.pi * 70.0 * np.arange(len(q)) * H)
 
 
-def errors(v: Array, a: Array, run: Run) -> tuple[float, float]:
-    """NRMSE of velocity and acceleration: root-mean-square error over deviation of the truth."""
-    pairs = ((v, run.v), (a, run.a))
+def errors(v: Array, a: Array, motion: TrueMotion) -> tuple[float, float]:
+    """NRMSE of velocity and acceleration: RMS error over the true standard deviation."""
+    pairs = ((v, motion.v), (a, motion.a))
     found = [float(np.sqrt(np.mean((x - y)[INNER] ** 2)) / np.std(y[INNER])) for x, y in pairs]
     return found[0], found[1]

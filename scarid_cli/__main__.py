@@ -1,4 +1,4 @@
-"""The process: standard streams, signals, exit status. The only place that exits."""
+"""The process: standard streams, signals and the exit status. Nothing else exits."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ TERMINATED = 128 + signal.SIGTERM
 
 
 class Terminated(BaseException):
-    """The process was asked to end: leave through the same clean-up as any failure."""
+    """The process was asked to end; it cleans up as after any failure."""
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run one command line; return its exit status. Errors are one line on standard error."""
+    """Run one command line and return its exit status. An error is one line on standard error."""
     words = sys.argv[1:] if arguments is None else arguments
     name = next((f"scarid {word}" for word in words if not word.startswith("-")), "scarid")
     try:
@@ -47,7 +47,7 @@ def main(arguments: list[str] | None = None) -> int:
         return USAGE
     except click.UsageError as error:
         path = error.ctx.command_path if error.ctx else "scarid"
-        return _told(path, f"{error.format_message().rstrip('.')} (see `{path} --help`)", USAGE)
+        return _reported(path, f"{error.format_message().rstrip('.')} (see `{path} --help`)", USAGE)
     except (KeyboardInterrupt, click.Abort):
         return INTERRUPTED
     except Terminated:
@@ -63,15 +63,15 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _failed(where: str, error: Exception) -> int:
     if isinstance(error, ScaridError):
-        return _told(where, str(error), error.status)
+        return _reported(where, str(error), error.status)
     if isinstance(error, OSError):
         place = error.filename or "<stdout>"
-        return _told(where, f"{place}: {error.strerror or error}", IO_FAILURE)
+        return _reported(where, f"{place}: {error.strerror or error}", IO_FAILURE)
     kind = type(error).__name__
-    return _told(where, f"a bug in scarid ({kind}: {error}); --debug shows where", BUG)
+    return _reported(where, f"a bug in scarid ({kind}: {error}); --debug shows where", BUG)
 
 
-def _told(where: str, message: str, status: int) -> int:
+def _reported(where: str, message: str, status: int) -> int:
     # A message of a library may have line breaks.
     print(f"{where}: {' '.join(message.split())}", file=sys.stderr)  # noqa: T201
     return status
@@ -96,7 +96,7 @@ def run() -> None:
 
 
 class WithoutPandas:
-    """pyarrow would import both where they are installed, which takes up to a third of a second."""
+    """Hides two packages that pyarrow would import, which takes up to a third of a second."""
 
     def find_spec(self, name: str, _path: object = None, _target: object = None) -> None:
         if name in ("pandas", "cloudpickle"):
@@ -108,7 +108,7 @@ def _terminate(_number: int, _frame: FrameType | None) -> None:
 
 
 def _mend_streams() -> None:
-    """Give closed standard streams a descriptor that fails, so that no file takes its number."""
+    """Open closed standard streams on a descriptor that fails, so that no file takes its number."""
     for descriptor, flags in ((0, os.O_WRONLY), (1, os.O_RDONLY), (2, os.O_WRONLY)):
         try:
             os.fstat(descriptor)
@@ -121,13 +121,13 @@ def _mend_streams() -> None:
 
 
 def _flushed(status: int) -> int:
-    """Flush standard output here: at the interpreter's end a failure would be exit status 120."""
+    """Flush standard output here: at the end of the interpreter, a failure would exit with 120."""
     try:
         sys.stdout.flush()
     except BrokenPipeError:
         status = status or BROKEN_PIPE
     except OSError as error:
-        status = status or _told("scarid", f"<stdout>: {error.strerror}", IO_FAILURE)
+        status = status or _reported("scarid", f"<stdout>: {error.strerror}", IO_FAILURE)
     with contextlib.suppress(OSError):
         null = os.open(os.devnull, os.O_WRONLY)
         os.dup2(null, 1)

@@ -1,4 +1,4 @@
-"""The array types of the project: double precision, as the kernels take it, and whole numbers."""
+"""The array types of the project: doubles, as the kernels take them, whole numbers and marks."""
 
 import numpy as np
 import numpy.typing as npt

@@ -1,4 +1,4 @@
-"""The failures a command can report, each with its documented exit status."""
+"""The failures that a command reports, each with its documented exit status."""
 
 OK = 0
 BUG = 1
@@ -10,29 +10,29 @@ BROKEN_PIPE = 141
 
 
 class ScaridError(Exception):
-    """A failure that is told in one line: where, what was found, what to do."""
+    """A failure that is reported in one line: where it is, what was found, what to do."""
 
     status = BAD_DATA
 
 
 class UsageFault(ScaridError):
-    """The command line asks for something that cannot be (exit 2)."""
+    """The command line asks for something impossible (exit status 2)."""
 
     status = USAGE
 
 
 class BadData(ScaridError):
-    """The input is not what the command needs (exit 65)."""
+    """The input is not what the command needs (exit status 65)."""
 
     status = BAD_DATA
 
 
 class TooShort(BadData):
-    """A method needs more rows than a record, or a segment of it, has."""
+    """A record, or a segment of it, has fewer rows than the method needs."""
 
 
 class OutputFailure(ScaridError):
-    """Reading or writing failed (exit 74)."""
+    """Reading or writing failed (exit status 74)."""
 
     status = IO_FAILURE
 
@@ -46,7 +46,7 @@ def bad_data(
     row: int | None = None,
     column: str | None = None,
 ) -> BadData:
-    """The one-line message of section 4 of the command contract."""
+    """Bad data in one line: the file, row (from 1) and column, and what to do about it."""
     place = [where]
     if row is not None:
         place.append(f"row {row}")
@@ -56,5 +56,5 @@ def bad_data(
 
 
 def cut_short(where: str) -> BadData:
-    """The stage before failed or was killed: its table is not whole."""
-    return BadData(f"{where}: the table was cut short: the stage that wrote it failed")
+    """The command that wrote the table failed or was killed, so the table is incomplete."""
+    return BadData(f"{where}: the table was cut short, because the command that wrote it failed")

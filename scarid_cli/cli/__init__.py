@@ -1,4 +1,4 @@
-"""The command line: click only. One file per command, loaded when it is called."""
+"""The command line. Each command is declared in a module of its own, loaded when it is called."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ import click
 
 from scarid_cli import __version__
 
-# In the order of the pipe, each with its line of `scarid --help`, so that the help loads nothing.
+# In the order of a pipe, with the lines of `scarid --help`, which therefore loads no command.
 COMMANDS = {
     "trajgen": "Generate an excitation trajectory.",
-    "simulate": "Let a simulated robot follow a trajectory, in closed loop.",
-    "resample": "Put a log with a jittered clock on a regular one.",
+    "simulate": "Simulate a robot that follows a trajectory in closed loop.",
+    "resample": "Resample a log with a jittered clock at a constant rate.",
     "filter": "Low-pass filter columns of a log.",
-    "tune": "Find settings of differentiators in a log, without the truth.",
+    "tune": "Find the settings of differentiators from a log.",
     "differentiate": "Estimate velocities and accelerations from positions (the soft sensor).",
     "identify": "Estimate a robot's dynamic parameters from a motion.",
-    "validate": "Predict torques with identified parameters, and measure how well.",
-    "report": "Tables and figures of parameters, traces, metrics and predictions.",
-    "urdf": "Put identified parameters into a URDF, as bodies that can exist.",
-    "robot": "Tell what was understood of a robot description.",
-    "convert": "Change the format of a table, or make a table of a lab's log.",
-    "info": "Show what a table is: kind, columns, units, sampling, history.",
+    "validate": "Measure how well identified parameters predict torques.",
+    "report": "Print tables and draw figures of parameters, traces, metrics and predictions.",
+    "urdf": "Write identified parameters into a URDF as physically consistent links.",
+    "robot": "Check a robot description.",
+    "convert": "Convert between table formats, or turn a recorded log into a table.",
+    "info": "Describe a table: kind, columns, units, sampling, history.",
 }
 
 
 class LazyGroup(click.Group):
-    """A group that imports a command's file only when the command is called."""
+    """A group that imports a command's module only when the command is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         return list(COMMANDS)
@@ -51,7 +51,7 @@ def _version(ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
 
 
 def kernels() -> str:
-    """Whether the compiled or the interpreted kernels run."""
+    """Whether the kernels run compiled or interpreted."""
     from importlib.util import find_spec
     from pathlib import Path
 
@@ -64,19 +64,19 @@ def kernels() -> str:
 @click.group(
     cls=LazyGroup,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="`scarid COMMAND --help` explains one command, with examples.",
+    epilog="`scarid COMMAND --help` explains a command, with examples.",
 )
 @click.option(
     "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version,
     help="Show the version and which kernels run.",
 )  # fmt: skip
 def scarid() -> None:
-    """From a robot's log to dynamic parameters you can trust, in one pipe.
+    """Identify the dynamic parameters of a robot from its log, in one pipe.
 
     \b
       scarid trajgen --seed 1 | scarid simulate | scarid filter |
         scarid differentiate --method p2smd | scarid identify
 
-    Each command reads one table (CSV, Parquet or Arrow, from a FILE or standard input) and writes
-    one (to standard output or -o FILE).
+    Each command reads one table (CSV, Parquet or Arrow) from a FILE or from standard input, and
+    writes one to standard output or to -o FILE.
     """

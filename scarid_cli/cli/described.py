@@ -8,7 +8,7 @@ from scarid_cli.algorithms.choices.registry import Registry
 
 
 def describing(registry: Registry, heading: str) -> type[click.Command]:
-    """A command class for the choices of this registry."""
+    """A command class whose help describes the choices of this registry."""
 
     class Described(click.Command):
         def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002

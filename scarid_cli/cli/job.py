@@ -1,4 +1,4 @@
-"""One run of a command: its inputs, its outputs, what it tells the user and the history."""
+"""One run of a command: its inputs and outputs, its reports to the user, and the history."""
 
 from __future__ import annotations
 
@@ -11,134 +11,145 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from scarid_cli import __version__
+from scarid_cli.cli.options import Unrecorded
 from scarid_cli.errors import TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
-from scarid_cli.io.reader import checked, open_table, require
+from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document, Output, all_or_none, write_table
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
 
-# Options that do not change what the table holds.
-SILENT = {
-    "output",
-    "save",
-    "trace",
-    "predictions",
-    "base",
-    "format",
-    "no_history",
-    "quiet",
-    "verbose",
-    "debug",
-}
-
 
 class Job:
-    """Made by `job()`, which closes its outputs together, or none of them."""
+    """Made by `job()`, which commits its outputs together, or none of them.
+
+    `out` is where the command's table goes; `left_out` collects why segments of a record were
+    too short for a method.
+    """
+
+    out: Output
 
     def __init__(self, *, quiet: bool, verbose: bool, history: bool) -> None:
-        self._quiet = quiet
+        self.quiet = quiet
         self._verbose = verbose and not quiet
         self._history = history
-        self._inputs: dict[str, str | None] = {}
         self.outputs: list[Output | Document] = []
         self.sources: list[ByteSource] = []
-        self.left_out: list[TooShort] = []  # segments of a record
+        self.left_out: list[TooShort] = []
 
     def output(self, path: str, wanted: str | None = None) -> Output:
-        """Where a table will go; opened before anything is read."""
-        if path in {output.path for output in self.outputs}:
-            raise UsageFault(
-                f"{'standard output' if path == '-' else path}: two tables cannot share it"
-            )
+        """Where a table will go; open it before anything is read, so that mistakes show at once."""
+        self._require_unused(path)
         output = Output(path, wanted)
         self.outputs.append(output)
         return output
 
     def text(self, path: str) -> Document:
-        """Where a document beside the tables will go."""
-        if path in {output.path for output in self.outputs}:
-            raise UsageFault(f"{path}: a table and a document cannot share it")
+        """Where a document beside the tables will go; open it likewise."""
+        self._require_unused(path)
         document = Document(path)
         self.outputs.append(document)
         return document
+
+    def side_table(self, path: str | None) -> Output | None:
+        """The table of a side output, if it was asked for."""
+        return self.output(path) if path else None
+
+    def side_text(self, path: str | None) -> Document | None:
+        """The document of a side output, if it was asked for."""
+        return self.text(path) if path else None
+
+    def _require_unused(self, path: str) -> None:
+        if path in {output.path for output in self.outputs}:
+            place = "standard output" if path == "-" else path
+            raise UsageFault(f"{place}: two outputs cannot share it; give one of them another FILE")
 
     def read(
         self,
         path: str,
         kind: str | None,
         *,
+        reads: Reads | None = None,
         regular: bool = True,
         through: Callable[[ByteSource], ByteSource] | None = None,
     ) -> Table:
-        """A checked table of a kind, or any table as it stands for None.
+        """Open a table and check that it is of this kind; without a kind, take any table.
 
-        `regular`: its clock must be; `through` may translate its bytes.
+        `reads` names the columns whose values must be there (see io.reader.checked). The clock
+        must be regular unless `regular` is false. `through` translates the bytes.
         """
-        if path == "-" and STDIN in self._inputs:
-            raise UsageFault(
-                "standard input can be read only once; give a FILE for the other table"
-            )
-        source = self._opened(path)
-        table = open_table(through(source) if through else source)
-        if kind:
-            table = checked(table, kind, regular=regular)
-        if self._verbose:
-            rate = f"{1.0 / table.meta.period:.6g} Hz, " if table.meta.period else ""
-            self.say(f"{source.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
-        return _counted(table, self._quiet)
-
-    def noted(self, path: str) -> str:
-        """The path of an input that is no table, for the history."""
-        self._opened(path)
-        return path
-
-    def _opened(self, path: str) -> ByteSource:
-        source = ByteSource.open(path)
-        self.sources.append(source)
-        self._inputs[source.name] = source.sha256() if self._history else None
-        return source
+        table = self._opened_table(path, through)
+        return self._shown(checked(table, kind, reads=reads, regular=regular) if kind else table)
 
     def read_for(
         self, path: str, kind: str, robot: str | None, *, torques: bool = False
     ) -> tuple[Table, Robot]:
-        """A checked table with every column that the robot's joints need of this kind."""
-        table = self.read(path, kind)
+        """Open a table that has every column of this kind for each of the robot's joints."""
+        table = conforming(self._opened_table(path), kind)
         arm = robot_of(robot, table)
         joints = range(1, len(arm.joints) + 1)
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
         columns = [name.replace("{i}", str(i)) for name in fields for i in joints]
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
-        return table, arm
+        columns += [name for name in table.columns if name.endswith("_ref")]
+        return self._shown(checked(table, kind, reads=lambda _: columns)), arm
 
-    def write(self, table: Table, output: Output) -> None:
-        """Send a table out, and tell which segments of it were left out."""
-        write_table(table, output)
+    def _opened_table(
+        self, path: str, through: Callable[[ByteSource], ByteSource] | None = None
+    ) -> Table:
+        if path == "-" and STDIN in {source.name for source in self.sources}:
+            raise UsageFault(
+                "standard input can be read only once; give a FILE for the other table"
+            )
+        source = self._opened(path)
+        return open_table(through(source) if through else source)
+
+    def _shown(self, table: Table) -> Table:
+        """The table, reported with --verbose and followed by a progress line on a terminal."""
+        if self._verbose:
+            rate = f"{1.0 / table.period:.6g} Hz, " if table.period else ""
+            self.say(f"{table.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
+        return _with_progress(table, self.quiet)
+
+    def noted(self, path: str) -> str:
+        """The path of an input that is not a table; the history names it as well."""
+        self._opened(path)
+        return path
+
+    def _opened(self, path: str) -> ByteSource:
+        source = ByteSource.open(path)
+        self.sources.append(source)
+        return source
+
+    def write(self, table: Table, output: Output | None = None) -> None:
+        """Send a table to an output, by default the command's, and report omitted segments."""
+        write_table(table, output or self.out)
         if self.left_out:
             count = len(self.left_out)
             self.say(f"{count} segment{'s' if count > 1 else ''} left out: {self.left_out[0]}")
 
     def recorded(self, table: Table) -> Table:
-        """The table with this command at the end of its history."""
+        """The table with this command, and the digests of its inputs so far, in its history."""
         if not self._history:
             return replace(table, meta=replace(table.meta, history=()))
-        entry = {"command": command_line(), "version": __version__, "inputs": self._inputs}
+        inputs = {source.name: source.sha256() for source in self.sources}
+        entry = {"command": command_line(), "version": __version__, "inputs": inputs}
         return replace(table, meta=replace(table.meta, history=(*table.meta.history, entry)))
 
     def say(self, message: str) -> None:
-        """Tell the user something on standard error."""
-        if not self._quiet:
+        """Report a line to the user, on standard error."""
+        if not self.quiet:
             name = click.get_current_context().command_path
             print(f"{name}: {message}", file=sys.stderr)  # noqa: T201
 
 
 @contextlib.contextmanager
 def job(options: dict[str, Any]) -> Iterator[Job]:
-    """A run with the options of `common` and `table_output`."""
+    """A run of a command, given the options of `common` and `table_output`."""
     run = Job(
         quiet=options["quiet"],
         verbose=options["verbose"],
@@ -153,7 +164,7 @@ def job(options: dict[str, Any]) -> Iterator[Job]:
 
 
 def robot_of(name: str | None, *tables: Table) -> Robot:
-    """The robot asked for, else that of the first table that names one, else the paper's."""
+    """The robot of this name, else that of the first table that names one, else the default."""
     from scarid_cli.algorithms.robots import reading
 
     stated = (table.meta.robot for table in tables if table.meta.robot)
@@ -161,20 +172,21 @@ def robot_of(name: str | None, *tables: Table) -> Robot:
 
 
 def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:
-    """One number per joint: given so, or one for all."""
+    """One number per joint, from one per joint or from one for all of them."""
     if len(values) not in (1, joints):
         raise UsageFault(f"{option}: {len(values)} values for {joints} joints; give 1 or {joints}")
     return list(values) * (joints // len(values))
 
 
 def command_line() -> str:
-    """The command with the options that were given and change the result, in a fixed order."""
+    """The command line, in a fixed order, without the options that change nothing in the table."""
     context = click.get_current_context()
     words = [context.info_name or ""]
     for parameter in context.command.params:
         name = parameter.name or ""
         source = context.get_parameter_source(name)
-        if name in SILENT or source is None or source.name != "COMMANDLINE":
+        given = source is not None and source.name == "COMMANDLINE"
+        if isinstance(parameter, Unrecorded) or not given:
             continue
         words += _words(parameter, context.params[name])
     return " ".join(["scarid", *words])
@@ -203,7 +215,7 @@ def _texts(value: Any, count: int) -> list[str]:
     return texts if count > 1 else [",".join(texts)]
 
 
-def _counted(table: Table, quiet: bool) -> Table:
+def _with_progress(table: Table, quiet: bool) -> Table:
     """The table, with a progress line where a person waits: not in the middle of a pipe."""
     import stat
     from os import fstat

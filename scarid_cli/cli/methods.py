@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import Any
 
 from scarid_cli.algorithms.choices.registry import Registry
+from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.cli import pairs
 from scarid_cli.cli.job import per_joint
-from scarid_cli.cli.pairs import pair, require_known
-from scarid_cli.cli.settings import Settings
+from scarid_cli.cli.settings import PerJoint, SavedSettings
 from scarid_cli.errors import UsageFault
 
 
@@ -16,35 +16,27 @@ def configured(
     registry: Registry,
     name: str,
     joints: int,
-    settings: tuple[str, ...],
+    *,
+    given: tuple[str, ...],
     preset: str | None,
-    saved: Settings,
+    saved: SavedSettings | None,
 ) -> list[Any]:
-    """One instance of the method for each joint; what is set by hand comes last."""
-    method = _method(registry, name)
-    known = [field.name for field in fields(method)]
-    values = {key: [value] * joints for key, value in _preset(method, name, preset).items()}
-    for key, numbers in saved.get(name, {}).items():
-        require_known(known, key, name, f"--settings: {key}: ")
-        values[key] = per_joint(numbers, joints, f"--settings: {name}, {key}")
-    for text in settings:
-        key, value = pair(text, "--set")
-        require_known(known, key, name, f"--set {text}: ")
-        values[key] = per_joint(_numbers(text, value), joints, f"--set {key}")
-    return [method(**{key: row[joint] for key, row in values.items()}) for joint in range(joints)]
+    """One instance of the method for each joint.
 
-
-def _method(registry: Registry, name: str) -> Any:
+    The preset is overridden by the saved settings, and these by the settings given with --set.
+    """
     if name not in registry.names:
         raise UsageFault(f"--settings: no method {name!r}; there are {', '.join(registry.names)}")
-    return registry.load(name)
-
-
-def _numbers(text: str, value: str) -> list[float]:
-    try:
-        return [float(part) for part in value.split(",")]
-    except ValueError:
-        raise UsageFault(f"--set {text}: {value!r} is not a number") from None
+    method = registry.load(name)
+    known = names_of(method)
+    values: PerJoint = {key: [x] * joints for key, x in _preset(method, name, preset).items()}
+    if saved:
+        for key in saved.names(name):
+            pairs.require_known(known, key, name, f"--settings: {key}: ")
+            values[key] = saved.values(name, key, joints)
+    for key, row in pairs.settings(given, known, name):
+        values[key] = per_joint(row, joints, f"--set {key}")
+    return [method(**{key: row[joint] for key, row in values.items()}) for joint in range(joints)]
 
 
 def _preset(method: Any, name: str, preset: str | None) -> dict[str, float]:

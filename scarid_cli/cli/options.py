@@ -1,64 +1,58 @@
-"""Option families: what several commands take, declared once."""
+"""Options that several commands take, declared once, and the types of options."""
 
 from __future__ import annotations
 
+import os
+import stat
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 import click
 
+from scarid_cli.errors import OutputFailure, UsageFault
+
 F = TypeVar("F", bound=Callable[..., Any])
 Decorator = Callable[[F], F]
 
 FORMATS = ("csv", "parquet", "arrow", "arrow-file")  # of io.writer, which `--help` does not load
+# The options of `table_output` and `common`: the job deals with them, not the command.
+SHARED = ("output", "format", "no_history", "quiet", "verbose", "debug")
 
 
-def _all(*decorators: Callable[[F], F]) -> Callable[[F], F]:
-    def decorate(function: F) -> F:
-        for decorator in reversed(decorators):
-            function = decorator(function)
-        return function
-
-    return decorate
+class Unrecorded(click.Option):
+    """An option that changes nothing in the table: the history leaves it out."""
 
 
-def table_input(function: F) -> F:
-    """The table to read: FILE, or standard input."""
-    return click.argument("file", default="-", metavar="[FILE]")(function)
+class InputFile(click.ParamType[str]):
+    """A file to read, or - for standard input, or one of a few other words.
+
+    That the file is there is checked before anything is read. It is not opened yet: a named pipe
+    can be opened only once.
+    """
+
+    name = "file"
+
+    def __init__(self, *words: str) -> None:
+        self.words = ("-", *words)
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> str:  # noqa: ARG002
+        path = str(value)
+        if path not in self.words:
+            require_readable(path)
+        return path
 
 
-def table_output(function: F) -> F:
-    """Where the table goes and in what format."""
-    return _all(
-        click.option(
-            "-o", "--output", default="-", metavar="FILE",
-            help="Write to FILE; its extension tells the format "
-            "(.csv, .parquet, .arrow file, .arrows stream).  [default: standard output]",
-        ),
-        click.option(
-            "--format", type=click.Choice(FORMATS),
-            help="Format of the output.  [default: by extension, else $SCARID_FORMAT, else csv]",
-        ),
-        click.option(
-            "--no-history", is_flag=True, help="Leave the history out of the metadata."
-        ),
-    )(function)  # fmt: skip
+class RobotName(click.ParamType[str]):
+    """The name of a robot, or the file that describes it."""
 
+    name = "robot"
+    endings = (".toml", ".urdf")
 
-def common(function: F) -> F:
-    """What every command takes."""
-    return _all(
-        click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors."),
-        click.option("-v", "--verbose", is_flag=True, help="Say what was read."),
-        click.option("--debug", is_flag=True, help="Show the traceback of an error."),
-    )(function)
-
-
-robot: Callable[[F], F] = click.option(
-    "--robot", metavar="NAME",
-    help="scara2, emps, planar2-gravity, or a .toml or .urdf file.  "
-    "[default: the table's robot, else scara2]",
-)  # fmt: skip
+    def convert(self, value: Any, param: Any, ctx: Any) -> str:  # noqa: ARG002
+        name = str(value)
+        if name.endswith(self.endings):
+            require_readable(name)
+        return name
 
 
 class Numbers(click.ParamType[tuple[float, ...]]):
@@ -75,28 +69,102 @@ class Numbers(click.ParamType[tuple[float, ...]]):
             self.fail(f"{value!r} is not a number, or numbers separated by commas", param, ctx)
 
 
+def require_readable(path: str) -> None:
+    """Refuse a path that does not exist (exit status 2), or that cannot be read (74)."""
+    try:
+        mode = os.stat(path).st_mode  # noqa: PTH116 (pathlib takes a while to import)
+    except FileNotFoundError:
+        raise UsageFault(f"{path}: no such file") from None
+    except OSError as error:
+        raise OutputFailure(f"{path}: {error.strerror}") from None
+    if stat.S_ISDIR(mode):
+        raise OutputFailure(f"{path}: Is a directory")
+    if not os.access(path, os.R_OK):
+        raise OutputFailure(f"{path}: Permission denied")
+
+
+INPUT = InputFile()
+ROBOT = RobotName()
 NUMBERS = Numbers()
 
 
+def _all(*decorators: Callable[[F], F]) -> Callable[[F], F]:
+    def decorate(function: F) -> F:
+        for decorator in reversed(decorators):
+            function = decorator(function)
+        return function
+
+    return decorate
+
+
+def table_input(function: F) -> F:
+    """The table to read: FILE, or standard input."""
+    return click.argument("file", default="-", metavar="[FILE]", type=INPUT)(function)
+
+
+def side_output(*names: str, help: str, metavar: str = "FILE") -> Callable[[F], F]:
+    """A file to write beside the table, which the table does not depend on."""
+    return click.option(*names, cls=Unrecorded, metavar=metavar, help=help)
+
+
+def table_output(function: F) -> F:
+    """Where the table goes and in what format."""
+    return _all(
+        click.option(
+            "-o", "--output", cls=Unrecorded, default="-", metavar="FILE",
+            help="Write the table to FILE, in the format of its extension "
+            "(.csv, .parquet, .arrow for a file, .arrows for a stream).  "
+            "[default: standard output]",
+        ),
+        click.option(
+            "--format", cls=Unrecorded, type=click.Choice(FORMATS),
+            help="Format of the output.  "
+            "[default: that of the extension, else $SCARID_FORMAT, else csv]",
+        ),
+        click.option(
+            "--no-history", cls=Unrecorded, is_flag=True,
+            help="Write no history into the metadata.",
+        ),
+    )(function)  # fmt: skip
+
+
+def common(function: F) -> F:
+    """What every command takes."""
+    return _all(
+        click.option("-q", "--quiet", cls=Unrecorded, is_flag=True, help="Report only errors."),
+        click.option("-v", "--verbose", cls=Unrecorded, is_flag=True, help="Report what was read."),
+        click.option(
+            "--debug", cls=Unrecorded, is_flag=True, help="Show the traceback of an error."
+        ),
+    )(function)
+
+
+robot: Callable[[F], F] = click.option(
+    "--robot", type=ROBOT, metavar="NAME|FILE",
+    help="The robot: scara2, emps, planar2-gravity, or a .toml or .urdf file.  "
+    "[default: the robot named in the table's metadata, else scara2]",
+)  # fmt: skip
+
+
 def treatment(function: F) -> F:
-    """What is done to the rows of the regression, for identify and validate alike."""
+    """What is done to the rows of the regression, by identify and validate alike."""
     return _all(
         click.option(
             "--skip", type=NUMBERS, metavar="ROWS[,ROWS]",
-            help="Leave out so many rows at the start, and at the end.",
+            help="Leave out this many rows at the start, and at the end.",
         ),
         click.option(
             "--decimate", type=NUMBERS, metavar="N[,N...]",
-            help="Low-pass every column of W and the torques alike, and keep every N-th row; "
-            "several times if several are given. Holds the whole log.",
+            help="Pass the columns of W and the torques through the same low-pass and keep every "
+            "N-th row, once for each N. Holds the whole log in memory.",
         ),
         click.option(
             "--drop-slow", type=NUMBERS, metavar="V[,V...]",
-            help="Leave out the rows of a joint slower than this [rad/s or m/s], one value or one "
-            "a joint: there dry friction is not sign(dq).",
+            help="Leave out the rows of a joint that is slower than V [rad/s or m/s], one value "
+            "for all joints or one per joint: near rest, Coulomb friction is not sign(dq).",
         ),
         click.option(
             "--smooth-sign", type=float, metavar="V",
-            help="Let dry friction change over this velocity, tanh(dq / V), instead of at once.",
+            help="Model Coulomb friction by tanh(dq / V) in place of sign(dq) [rad/s or m/s].",
         ),
     )(function)  # fmt: skip

@@ -1,6 +1,8 @@
-"""NAME=VALUE, as several options take it."""
+"""Options of the form NAME=VALUE."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
 
 from scarid_cli.errors import UsageFault
 
@@ -11,6 +13,39 @@ def pair(text: str, option: str) -> tuple[str, str]:
     if not sign or not name.strip() or not value.strip():
         raise UsageFault(f"{option} {text}: write NAME=VALUE")
     return name.strip(), value.strip()
+
+
+def numbers(text: str, option: str) -> list[float]:
+    """One number, or several separated by commas."""
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise UsageFault(f"{option}: {text!r} is not a number") from None
+
+
+def settings(
+    texts: Iterable[str], known: list[str], owner: str
+) -> Iterator[tuple[str, list[float]]]:
+    """From every `--set NAME=VALUE[,VALUE...]`: the name and the values of a known setting."""
+    for text in texts:
+        name, value = pair(text, "--set")
+        require_known(known, name, owner, f"--set {text}: ")
+        yield name, numbers(value, f"--set {text}")
+
+
+def renamings(texts: Iterable[str]) -> dict[str, str]:
+    """From every `--map NEW=OLD[,NEW=OLD...]`: the old name of each new column."""
+    names: dict[str, str] = {}
+    for text in texts:
+        for part in text.split(","):
+            new, old = pair(part, "--map")
+            if new in names:
+                raise UsageFault(
+                    f"--map: {new!r} is given twice, for {names[new]!r} and for {old!r}; "
+                    "write it once"
+                )
+            names[new] = old
+    return names
 
 
 def require_known(known: list[str], key: str, name: str, where: str = "") -> None:

@@ -1,4 +1,4 @@
-"""A line on a terminal's standard error that counts, for a run that takes a while."""
+"""A progress line on a terminal, for runs that take more than a second."""
 
 from __future__ import annotations
 
@@ -6,15 +6,17 @@ import contextlib
 import sys
 import time
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
-import pyarrow as pa
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 PATIENCE = 1.0  # seconds before anything is shown
 
 
 @contextlib.contextmanager
 def steps(*, quiet: bool) -> Iterator[Callable[[], None]]:
-    """What to call at each step of a search, counted where a person waits."""
+    """A function to call at each step of a search, counted where a person waits."""
     if quiet or not sys.stderr.isatty():
         yield lambda: None
         return
@@ -28,7 +30,7 @@ def steps(*, quiet: bool) -> Iterator[Callable[[], None]]:
 
 
 def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-    """Pass batches on, counting their rows."""
+    """Pass batches on, and show how many rows they had."""
     start = time.monotonic()
     held = 0
     for batch in batches:

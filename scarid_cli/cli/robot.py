@@ -27,7 +27,7 @@ def command() -> None:
 
 
 @command.command(name="check")
-@click.argument("robot", metavar="ROBOT")
+@click.argument("robot", metavar="ROBOT", type=options.ROBOT)
 @options.common
 def check(robot: str, **_rest: Any) -> None:
     """Show how a robot description was understood.

@@ -1,16 +1,15 @@
-"""scarid simulate"""
+"""The declaration of `scarid simulate`."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import click
 
 from scarid_cli.cli import options
+from scarid_cli.cli.declare import declare
 from scarid_cli.cli.options import NUMBERS
 
 
-@click.command(name="simulate")
+@declare("simulate")
 @options.table_input
 @options.robot
 @click.option("--kp", type=NUMBERS, help="Proportional gains.  [default: the robot's]")
@@ -57,22 +56,7 @@ from scarid_cli.cli.options import NUMBERS
 )
 @options.table_output
 @options.common
-def command(
-    file: str,
-    robot: str | None,
-    kp: tuple[float, ...] | None,
-    kd: tuple[float, ...] | None,
-    ki: tuple[float, ...] | None,
-    control_rate: float,
-    log_rate: float,
-    substeps: int,
-    encoder_bits: int | None,
-    position_noise: tuple[float, ...],
-    torque_noise: tuple[float, ...] | None,
-    seed: int,
-    truth: bool,
-    **rest: Any,
-) -> None:
+def command() -> None:
     """Simulate a robot that follows a trajectory in closed loop, and log its sensors.
 
     \b
@@ -91,44 +75,3 @@ def command(
     Coulomb friction (eq. 2), and stick at rest. The motion is integrated by the Runge-Kutta method
     of fourth order.
     """
-    from math import pi
-
-    import numpy as np
-
-    from scarid_cli.algorithms.plants.loop import ClosedLoop
-    from scarid_cli.cli.job import job, per_joint
-    from scarid_cli.errors import UsageFault
-    from scarid_cli.stages import simulate as stage
-
-    with job(rest) as run:
-        out = run.output(rest["output"], rest["format"])
-        table, arm = run.read_for(file, "trajectory", robot)
-        joints = arm.joints
-        if arm.control is None:
-            raise UsageFault(
-                f"robot {arm.name} cannot be simulated: its description has no [control]"
-            )
-
-        def each(given: tuple[float, ...] | None, own: Any, option: str) -> Any:
-            return np.array(per_joint(given, len(joints), option) if given else own, dtype=float)
-
-        resolutions = [
-            joint.encoder_resolution
-            if encoder_bits is None or joint.type == "prismatic"
-            else (2.0 * pi / 2**encoder_bits if encoder_bits else 0.0)
-            for joint in joints
-        ]
-        loop = ClosedLoop(
-            robot=arm,
-            kp=each(kp, arm.control.kp, "--kp"),
-            kd=each(kd, arm.control.kd, "--kd"),
-            ki=each(ki, arm.control.ki, "--ki"),
-            velocity_cutoff=arm.control.velocity_cutoff,
-            encoder_resolution=np.array(resolutions),
-            position_noise=each(position_noise, None, "--position-noise"),
-            torque_noise=each(torque_noise, [j.torque_noise for j in joints], "--torque-noise"),
-            seed=seed,
-            control_rate=control_rate,
-            substeps=substeps,
-        )
-        run.write(stage.simulate(run.recorded(table), loop, log_rate, truth=truth), out)

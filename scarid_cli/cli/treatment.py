@@ -1,4 +1,4 @@
-"""From the options of `options.treatment` to what is done to the rows."""
+"""How the options of `options.treatment` treat the rows of the regression."""
 
 from __future__ import annotations
 
@@ -12,13 +12,15 @@ from scarid_cli.stages.rows import Treatment
 
 
 def treatment_of(given: dict[str, Any]) -> Treatment:
-    """What was asked for, before the robot is known."""
+    """The treatment that the options ask for, before the robot is known."""
     factors, slow, smooth = given["decimate"] or (), given["drop_slow"] or (), given["smooth_sign"]
     skip = [*(given["skip"] or (0.0,)), 0.0]
     if len(skip) > 3 or any(rows % 1 or rows < 0 for rows in skip):
-        raise UsageFault("--skip: a number of rows, or two: at the start and at the end")
+        raise UsageFault(
+            "--skip: give one number of rows, at the start, or two: at the start and at the end"
+        )
     if any(factor % 1 or factor < 2 for factor in factors):
-        raise UsageFault("--decimate: factors are whole numbers from 2")
+        raise UsageFault("--decimate: factors must be whole numbers from 2")
     if any(not v >= 0.0 for v in slow):
         raise UsageFault("--drop-slow: velocities cannot be negative")
     if smooth is not None and not smooth > 0.0:
@@ -33,7 +35,7 @@ def treatment_of(given: dict[str, Any]) -> Treatment:
 
 
 def for_robot(robot: Robot, treatment: Treatment, given: dict[str, Any]) -> tuple[Robot, Treatment]:
-    """The robot with its friction smoothed, and the treatment with a velocity per joint."""
+    """The robot with smoothed Coulomb friction, and the treatment with one velocity per joint."""
     smooth, slow = given["smooth_sign"], treatment.slow
     if slow:
         slow = tuple(per_joint(slow, len(robot.joints), "--drop-slow"))

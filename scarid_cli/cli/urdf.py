@@ -1,30 +1,34 @@
-"""scarid urdf"""
+"""The declaration of `scarid urdf`."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import click
 
 from scarid_cli.cli import options
+from scarid_cli.cli.declare import declare
 
 
-@click.command(name="urdf")
-@click.argument("robot", metavar="ROBOT")
+@declare("urdf")
+@click.argument("robot", metavar="ROBOT", type=options.ROBOT)
 @click.option(
     "--parameters",
     required=True,
+    type=options.INPUT,
     metavar="FILE",
     help="The parameter table that `scarid identify --robot ROBOT` made.",
 )
 @click.option(
-    "--output", "-o", default="-", metavar="FILE", help="Where the URDF goes.  [default: stdout]"
+    "--output",
+    "-o",
+    "place",
+    cls=options.Unrecorded,
+    default="-",
+    metavar="FILE",
+    help="Where the URDF goes.  [default: stdout]",
 )
-@click.option(
-    "--base", metavar="FILE", help="Write the base parameters of the new bodies as a table."
-)
+@options.side_output("--base", help="Write the base parameters of the new bodies as a table.")
 @options.common
-def command(robot: str, parameters: str, output: str, base: str | None, **rest: Any) -> None:
+def command() -> None:
     """Put identified parameters into a copy of a URDF, as bodies that can exist.
 
     \b
@@ -39,25 +43,3 @@ def command(robot: str, parameters: str, output: str, base: str | None, **rest: 
     friction become damping and friction of the joints; what a URDF has no place for (motor
     inertias, offsets, couplings) is in a comment. Needs the extra: pip install 'scarid[urdf]'.
     """
-    from pathlib import Path
-
-    from scarid_cli.algorithms.robots.reading import load
-    from scarid_cli.cli.job import command_line, job
-    from scarid_cli.errors import UsageFault
-    from scarid_cli.stages import urdf as stage
-
-    arm = load(robot)
-    if not arm.body:
-        raise UsageFault(f"{robot}: has no URDF to put parameters into")
-    with job(rest) as run:
-        out = run.text(output)
-        side = run.output(base) if base else None
-        known = run.read(parameters, "parameters")
-        found = stage.physical(known, arm)
-        out.write(
-            stage.document(Path(arm.body.path).read_text("utf-8"), arm, found, command_line())
-        )
-        if side:
-            run.write(run.recorded(stage.base_table(known, arm, found)), side)
-        for line in stage.told(arm, found):
-            run.say(line)

@@ -1,4 +1,4 @@
-"""Arrow IPC streams and files, and Parquet: metadata travels, and a cut table is noticed."""
+"""Arrow IPC streams and files, and Parquet, with their metadata; cut tables are detected."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import pyarrow.ipc as ipc
 
 from scarid_cli.errors import BadData, cut_short
 from scarid_cli.io.bytesource import BLOCK, ByteSource
-from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table
+from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
 
 END_OF_STREAM = b"\xff\xff\xff\xff\x00\x00\x00\x00"
-# Rows of a Parquet row group or Arrow file block: fixed, so that the bytes of a file do not
-# depend on how its rows arrived.
+# Rows of a Parquet row group or of a block of an Arrow file. They are fixed so that the bytes of a
+# file do not depend on how its rows arrived.
 GROUP_ROWS = 1 << 16
 READ_ROWS = 1 << 13
 
@@ -69,7 +69,7 @@ def _small(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
 
 def _unreadable(name: str, error: Exception) -> BadData:
     reason = str(error).partition("\n")[0]
-    return BadData(f"{name}: not a whole Arrow or Parquet table ({reason}); write it again")
+    return BadData(f"{name}: not a complete Arrow or Parquet table ({reason}); write it again")
 
 
 def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> Table:
@@ -77,14 +77,16 @@ def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> T
     try:
         meta = Metadata.from_json(document) if document else Metadata()
     except (ValueError, KeyError, TypeError):
-        raise BadData(f"{name}: the scarid metadata of the table cannot be read") from None
+        raise BadData(
+            f"{name}: the scarid metadata of the table cannot be read; write it again"
+        ) from None
     fields = [_plain(field) for field in schema]
     plain = pa.schema(fields)
-    return Table(name, plain, meta, (_cast(batch, plain) for batch in batches))
+    return Table(name, plain, meta, (cast(batch, plain) for batch in batches))
 
 
 def _plain(field: pa.Field) -> pa.Field:
-    """Numbers as doubles or 64-bit integers, dictionaries as text; of the metadata, the unit."""
+    """The field with doubles, 64-bit integers or text, and no metadata but the unit."""
     kind = field.type
     if pa.types.is_dictionary(kind):
         kind = kind.value_type
@@ -98,18 +100,11 @@ def _plain(field: pa.Field) -> pa.Field:
     return pa.field(field.name, kind, metadata={UNIT_KEY: unit} if unit else None)
 
 
-def _cast(batch: pa.RecordBatch, schema: pa.Schema) -> pa.RecordBatch:
-    columns = [
-        column if column.type == field.type else column.cast(field.type)
-        for column, field in zip(batch.columns, schema, strict=True)
-    ]
-    return pa.RecordBatch.from_arrays(columns, schema=schema)
+class PyarrowFile:
+    """The file-like object that pyarrow writes to. Once cut, it drops everything.
 
-
-class Sink:
-    """The file-like object that pyarrow writes to. Once cut, it swallows what comes.
-
-    pyarrow's writers put their end mark even when an exception closes them.
+    pyarrow's writers write their end mark even when an exception closes them, and a table with an
+    end mark would look complete.
     """
 
     closed = False
@@ -133,18 +128,18 @@ class Sink:
         """Nothing is held back."""
 
     def close(self) -> None:
-        """The output is closed by who opened it."""
+        """The output is closed where it was opened."""
 
     def cut(self) -> None:
         self._cut = True
 
 
 class StreamWriter:
-    """An Arrow IPC stream: each batch leaves as it comes; the end mark only on success."""
+    """An Arrow IPC stream: batches leave as they arrive, the end mark only on success."""
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
-        self._sink = Sink(write)
-        self._writer = ipc.new_stream(self._sink, schema)
+        self._file = PyarrowFile(write)
+        self._writer = ipc.new_stream(self._file, schema)
         self._schema = schema
 
     def write(self, batch: pa.RecordBatch) -> None:
@@ -154,12 +149,12 @@ class StreamWriter:
         self._writer.close()
 
     def abort(self) -> None:
-        self._sink.cut()
+        self._file.cut()
         self._writer.close()
 
 
 class _GroupWriter:
-    """Writers of files: batches are gathered into groups of a fixed number of rows."""
+    """The part common to files: batches are gathered into groups of a fixed number of rows."""
 
     def __init__(self, schema: pa.Schema) -> None:
         self._schema = schema
@@ -188,8 +183,8 @@ class FileWriter(_GroupWriter):
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
         super().__init__(schema)
-        self._sink = Sink(write)
-        self._writer = ipc.new_file(self._sink, schema)
+        self._file = PyarrowFile(write)
+        self._writer = ipc.new_file(self._file, schema)
 
     def _put(self, table: pa.Table) -> None:
         self._writer.write_batch(table.combine_chunks().to_batches()[0])
@@ -199,21 +194,21 @@ class FileWriter(_GroupWriter):
         self._writer.close()
 
     def abort(self) -> None:
-        self._sink.cut()
+        self._file.cut()
         self._writer.close()
 
 
 class ParquetWriter(_GroupWriter):
-    """Parquet, set for doubles (5 times faster to write and 44 % smaller than the defaults)."""
+    """Parquet with settings for doubles: 5 times faster and 44 % smaller than the defaults."""
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
         import pyarrow.parquet as pq
 
         super().__init__(schema)
-        self._sink = Sink(write)
+        self._file = PyarrowFile(write)
         floats = [field.name for field in schema if pa.types.is_floating(field.type)]
         self._writer = pq.ParquetWriter(
-            self._sink,
+            self._file,
             schema,
             use_dictionary=False,
             use_byte_stream_split=floats,
@@ -229,5 +224,5 @@ class ParquetWriter(_GroupWriter):
         self._writer.close()
 
     def abort(self) -> None:
-        self._sink.cut()
+        self._file.cut()
         self._writer.close()

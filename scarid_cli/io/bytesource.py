@@ -1,4 +1,4 @@
-"""Bytes from a path or from standard input, as they arrive, with the first ones looked at."""
+"""Bytes of a file or of standard input, as they arrive."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ BLOCK = 1 << 20
 class ByteSource:
     """A readable file descriptor.
 
-    `read(n)` waits for exactly n bytes, as pyarrow expects; `read_some` takes what is there.
-    `last` keeps the last eight bytes handed out: an Arrow stream must end with its end mark.
+    `read(n)` waits for exactly n bytes, as pyarrow expects; `read_some` returns what has arrived.
+    `last` holds the last eight bytes that were returned: those of an Arrow stream are its end mark.
     """
 
     def __init__(self, fd: int, name: str) -> None:
@@ -42,7 +42,7 @@ class ByteSource:
             raise OutputFailure(f"{path}: {error.strerror}") from None
 
     def peek(self, size: int) -> bytes:
-        """The next bytes (fewer only at the end), left in place."""
+        """The next bytes (fewer only at the end), without consuming them."""
         while len(self._ahead) < size:
             data = self._fetch(size - len(self._ahead))
             if not data:
@@ -51,7 +51,7 @@ class ByteSource:
         return self._ahead[:size]
 
     def read_some(self, size: int = BLOCK) -> bytes:
-        """What has arrived, at least one byte; empty at the end."""
+        """What has arrived: at least one byte, or none at the end."""
         if self._ahead:
             data, self._ahead = self._ahead[:size], self._ahead[size:]
         else:
@@ -73,11 +73,11 @@ class ByteSource:
 
     @property
     def regular(self) -> bool:
-        """Whether this is a file one can seek in, rather than a pipe or a terminal."""
+        """Whether this is a regular file, rather than a pipe or a terminal."""
         return stat.S_ISREG(os.fstat(self.fd).st_mode)
 
     def seekable(self) -> BinaryIO:
-        """A file of all the bytes: the source itself, or for a pipe a temporary copy."""
+        """A seekable file of all the bytes: the source itself, or a temporary copy of a pipe."""
         if self._spool is None:
             self._spool = os.fdopen(os.dup(self.fd), "rb") if self.regular else self._copied()
         return self._spool
@@ -92,7 +92,7 @@ class ByteSource:
         return spool
 
     def close(self) -> None:
-        """Give the descriptor back, unless it is standard input."""
+        """Close the descriptor, unless it is standard input."""
         if self._spool:
             self._spool.close()
         if self.fd and not self.closed:

@@ -1,4 +1,4 @@
-"""CSV in and out (RFC 4180), row by row as it arrives, floats exact in both directions."""
+"""CSV (RFC 4180), read and written as rows arrive; numbers are exact in both directions."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Metadata, Table
 
-# CSV has no end mark: a stage that fails after its first rows ends its table with this line,
-# so that the next stage does not take a short table for a whole one.
+# CSV has no end mark: a command that fails after its first rows ends its table with this line, so
+# that the next command does not mistake a short table for a complete one.
 CUT = b"# scarid: the table ends here because the stage that wrote it failed\n"
 
-# Integers of more digits (nanosecond stamps) would lose some as a double, and stay text.
+# Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
 NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
 
 
 def read_csv(source: ByteSource) -> Table:
-    """A table from CSV. Known columns have the type of their schema.
+    """A table from CSV. Columns that a schema knows have the type of that schema.
 
-    Of the others, one whose first value is a number holds numbers, any other holds text: the
-    first row alone decides, so that the type does not depend on how the rows arrive.
+    Any other column holds numbers if its first value is a number, and text otherwise. The first
+    row alone decides, so that the type does not depend on how the rows arrive.
     """
     try:
         return _table(source)
@@ -45,7 +45,7 @@ def _table(source: ByteSource) -> Table:
             source.name,
             "no rows",
             expected="a CSV header",
-            remedy="is the file empty, or did the stage before fail?",
+            remedy="is the file empty, or did the previous command fail?",
         )
     names = _header(first, header_end, source.name)
     body = first[header_end:]
@@ -57,7 +57,7 @@ def _table(source: ByteSource) -> Table:
 
 
 def _complete_lines(source: ByteSource) -> Iterator[bytes]:
-    """Blocks that end at the end of a row: what has arrived, up to the last whole one."""
+    """What has arrived, in blocks that end at the end of a row."""
     rest = b""
     while data := source.read_some():
         block = rest + data
@@ -78,7 +78,7 @@ def _last_row_end(block: bytes) -> int:
 
 
 def _header_end(block: bytes) -> int:
-    """Where the rows begin: after leading comments and the header; 0 if not yet there."""
+    """Where the rows begin, after leading comments and the header; 0 if that has not arrived."""
     if not block.strip():
         return 0
     start = 0
@@ -98,7 +98,7 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
             name,
             f"the single column {names[0]!r}",
             expected="columns separated by commas",
-            remedy="turn the separators into commas first (for example with tr)",
+            remedy="convert it first with `scarid convert --separator CHAR`",
         )
     for column in names:
         if not column or names.count(column) > 1:
@@ -169,7 +169,7 @@ def _parse(block: bytes, schema: pa.Schema, name: str, row: int) -> list[pa.Reco
 
 
 def _located(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | None:
-    """Find the value that pyarrow could not take, to name its row and column."""
+    """Find the value that pyarrow could not parse, to name its row and column."""
     reader = csv.reader(io.StringIO(block.decode(errors="replace")))
     for number, values in enumerate((v for v in reader if v), start=row + 1):
         if len(values) != len(schema):
@@ -177,7 +177,7 @@ def _located(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | 
                 name,
                 f"{len(values)} values",
                 expected=f"{len(schema)}, one per column of the header",
-                remedy="mend or remove the row",
+                remedy="correct or remove the row",
                 row=number,
             )
         for field, value in zip(schema, values, strict=True):
@@ -187,7 +187,7 @@ def _located(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | 
                     name,
                     repr(value),
                     expected=kind,
-                    remedy="mend or remove the row",
+                    remedy="correct or remove the row",
                     row=number,
                     column=field.name,
                 )
@@ -205,7 +205,7 @@ def _fits(kind: pa.DataType, value: str) -> bool:
 
 
 class CsvWriter:
-    """Writes each batch as it comes; the header with the first, or alone for an empty table."""
+    """Writes the header at once, and each batch as it arrives."""
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
         self._write = write

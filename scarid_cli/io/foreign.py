@@ -1,4 +1,4 @@
-"""What labs have: CSV of other customs, NumPy's .npz and MATLAB's .mat files."""
+"""Foreign files: CSV in other notations, NumPy's .npz and MATLAB's .mat files."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from scarid_cli.io.table import Metadata, Table, doubles
 ARCHIVES = (".npz", ".mat")
 
 
-class Customs(ByteSource):
-    """CSV with another separator, a decimal comma, or without a header, turned into ours.
+class TranslatedCsv(ByteSource):
+    """CSV with another separator, a decimal comma or no header, translated into plain CSV.
 
-    Byte by byte, so in files whose texts have neither character.
+    It is translated byte by byte, so neither character may occur within a text.
     """
 
     def __init__(self, source: ByteSource, separator: str, decimal: str, header: str) -> None:
@@ -40,8 +40,10 @@ def read_archive(path: str) -> Table:
     try:
         arrays = _arrays(path)
     except (OSError, ValueError, TypeError, NotImplementedError) as error:
-        told = " ".join(str(error).split())
-        raise BadData(f"{path}: not a readable {Path(path).suffix} file: {told}") from None
+        reason = " ".join(str(error).split())
+        raise BadData(
+            f"{path}: not a readable {Path(path).suffix} file ({reason}); save it again"
+        ) from None
     columns: dict[str, Any] = {}
     for name, array in arrays.items():
         columns |= _columns(name, np.asarray(array))
@@ -49,7 +51,7 @@ def read_archive(path: str) -> Table:
     if not columns or len(lengths) > 1:
         found = ", ".join(f"{name} ({len(x)})" for name, x in columns.items()) or "no numbers"
         raise bad_data(
-            path, found, expected="arrays of one length", remedy="save those of the log alone"
+            path, found, expected="arrays of one length", remedy="save only those of the log"
         )
     batch = pa.RecordBatch.from_arrays([doubles(x) for x in columns.values()], list(columns))
     return Table(path, batch.schema, Metadata(), iter([batch]))
@@ -70,7 +72,7 @@ def _arrays(path: str) -> dict[str, Any]:
 
 
 def _columns(name: str, array: Any) -> dict[str, Any]:
-    """One column of a vector; of a matrix one per column, or per row if these are longer."""
+    """One column for a vector; for a matrix one per column, or one per row if rows are longer."""
     if array.dtype.kind not in "fiub" or array.ndim > 2 or array.size < 2:
         return {}
     flat = array.reshape(len(array), -1) if array.ndim else array.reshape(1, 1)

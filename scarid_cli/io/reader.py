@@ -1,28 +1,26 @@
-"""Open a table of any format, and check that it is what a command needs."""
+"""Open a table of any format, and check that it holds what a command needs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from itertools import chain
 
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.arrays import Array, Numbers
-from scarid_cli.errors import BadData, bad_data
+from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import ByteSource
-from scarid_cli.io.table import SEGMENT, Instant, Table, segments_of, steps_of
+from scarid_cli.io.clock import clocked
+from scarid_cli.io.table import SEGMENT, Table, cast
 
-# A clock may jitter by this part of its period, and its mean rate be off by that part; beyond,
-# a derivative would be wrong by as much.
-JITTER = 0.01
-DRIFT = 0.001
+# From the columns of a table, those whose values a command reads.
+Reads = Callable[[list[str]], Iterable[str]]
+ROW_MARKS = ("t", SEGMENT, "settled")  # columns that every command reads
 
 
 def open_table(source: ByteSource) -> Table:
-    """Read a table; the format is told by its first bytes."""
+    """Read a table; its first bytes tell the format."""
     start = source.peek(8)
     if not start.startswith((b"PAR1", b"ARROW1", b"\xff\xff\xff\xff")):
         from scarid_cli.io.csvio import read_csv
@@ -37,43 +35,46 @@ def open_table(source: ByteSource) -> Table:
     return arrowio.read_stream(source)
 
 
-def checked(table: Table, kind: str, *, regular: bool = True) -> Table:
-    """The table, known to be of a kind: its columns, types and units now, each value as it comes.
+def checked(table: Table, kind: str, *, reads: Reads | None = None, regular: bool = True) -> Table:
+    """The table, checked to be of a kind: columns, types and units now, values as they arrive.
 
-    For a sampled table the clock must be regular, unless it need not be; its period [s] is put
-    into the metadata.
+    The values of the columns that the command `reads` must be there and be finite, by default
+    those of every column that the kind knows; other columns pass as they are. The clock of a
+    sampled table must be regular, unless `regular` is false; its period [s] is put into the
+    metadata.
     """
     schema = schemas.load(kind)
-    _check_columns(table, schema)
-    _check_units(table, schema)
-    batches = _finite(table, schema)
+    table = conforming(table, kind)
     meta = replace(table.meta, kind=table.meta.kind or kind)
+    batches = _valued(table, _columns_to_check(table, schema, reads))
     if schema.sampled:
-        batches = _begun(batches)
-        first = next(batches, None)
-        interval = _first_interval(first) if first else None
-        if first is None or interval is None:
-            raise bad_data(
-                table.name,
-                f"{first.num_rows if first else 0} rows",
-                expected="at least 2 samples",
-                remedy="give a longer log",
-            )
-        batches = chain([first], batches)
-        if regular:
-            meta = replace(meta, period=nominal_period(interval))
-            batches = _regular(batches, table.name, meta.period or 0.0)
+        batches, period = clocked(batches, table.name, regular=regular)
+        meta = replace(meta, period=period) if regular else meta
     return replace(table, meta=meta, batches=batches)
 
 
-def nominal_period(interval: float) -> float:
-    """The period [s] of a clock with this first interval: that of a whole rate in Hz if close."""
-    if not interval > 0.0:
-        return interval
-    rate = round(1.0 / interval)
-    if rate and abs(1.0 / interval / rate - 1.0) < 1e-4:
-        return 1.0 / rate
-    return float(f"{interval:.9g}")
+def conforming(table: Table, kind: str) -> Table:
+    """The table, with the columns, types and units of a kind; whole numbers become doubles."""
+    schema = schemas.load(kind)
+    _check_columns(table, schema)
+    _check_units(table, schema)
+    known = {column: schema.field_of(column) for column in table.columns}
+    typed = pa.schema(
+        [f.with_type(field.type) if (field := known[f.name]) else f for f in table.schema]
+    )
+    if typed.equals(table.schema):
+        return table
+    return replace(table, schema=typed, batches=(cast(batch, typed) for batch in table.batches))
+
+
+def _columns_to_check(table: Table, schema: schemas.TableSchema, reads: Reads | None) -> list[str]:
+    """The columns whose values must be there; in tables without a clock, the required ones."""
+    known = {column: schema.field_of(column) for column in table.columns}
+    fields = {column: field for column, field in known.items() if field}
+    if not schema.sampled:
+        return [column for column, field in fields.items() if field.required]
+    wanted = {*ROW_MARKS, *reads(table.columns)} if reads else set(fields)
+    return [column for column in table.columns if column in wanted and column in fields]
 
 
 def _check_columns(table: Table, schema: schemas.TableSchema) -> None:
@@ -102,7 +103,7 @@ def _check_columns(table: Table, schema: schemas.TableSchema) -> None:
 
 
 def require(table: Table, columns: list[str], expected: str) -> None:
-    """The columns must be there."""
+    """Refuse a table that lacks one of these columns."""
     for column in columns:
         if column not in table.columns:
             raise bad_data(
@@ -141,22 +142,13 @@ def _check_units(table: Table, schema: schemas.TableSchema) -> None:
             )
 
 
-def _finite(table: Table, schema: schemas.TableSchema) -> Iterator[pa.RecordBatch]:
-    """Pass batches on, doubles where the schema has them; a value that is no number is an error."""
-    known = {c: f for c in table.columns if (f := schema.field_of(c)) is not None}
+def _valued(table: Table, columns: list[str]) -> Iterator[pa.RecordBatch]:
+    """Pass batches on; a value of these columns that is missing or not finite is an error."""
     row = 0
     for batch in table.batches:
-        columns = []
-        for name, column in zip(table.columns, batch.columns, strict=True):
-            field = known.get(name)
-            if field is None:
-                columns.append(column)
-                continue
-            cast = column if column.type == field.type else column.cast(field.type)
-            if field.required or schema.sampled:
-                _check_values(cast, table.name, name, row)
-            columns.append(cast)
-        yield pa.RecordBatch.from_arrays(columns, names=table.columns)
+        for column in columns:
+            _check_values(batch.column(column), table.name, column, row)
+        yield batch
         row += batch.num_rows
 
 
@@ -175,100 +167,7 @@ def _check_values(column: pa.Array, name: str, column_name: str, row: int) -> No
             name,
             found,
             expected="a finite number" if pa.types.is_floating(column.type) else "a value",
-            remedy="mend or remove the row",
+            remedy="correct or remove the row",
             row=row + bad + 1,
             column=column_name,
         )
-
-
-def _begun(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-    """Hold the first batches back until they tell the interval; drop empty ones."""
-    held: list[pa.RecordBatch] = []
-    for batch in batches:
-        if not batch.num_rows:
-            continue
-        held = [pa.Table.from_batches([*held, batch]).combine_chunks().to_batches()[0]]
-        if _first_interval(held[0]) is not None:
-            break
-    yield from held
-    yield from (batch for batch in batches if batch.num_rows)
-
-
-def _first_interval(batch: pa.RecordBatch) -> float | None:
-    """Between the first two samples [s] that no gap separates."""
-    together = np.flatnonzero(np.diff(segments_of(batch)) == 0)
-    if not len(together):
-        return None
-    at = int(together[0])
-    t = batch.column("t")
-    return float(t[at + 1].as_py() - t[at].as_py())
-
-
-def _regular(
-    batches: Iterator[pa.RecordBatch], name: str, period: float
-) -> Iterator[pa.RecordBatch]:
-    """Pass batches on; time that does not go on, or not at the nominal rate, is an error.
-
-    At a gap (see segments_of) time may go on by any interval.
-    """
-    row = gaps = 0
-    start = missing = float("nan")
-    last: Instant | None = None
-    for batch in batches:
-        t = batch.column("t").to_numpy()
-        first = last is None
-        if first:
-            start, missing = float(t[0]), 0.0
-        steps, jumps, last = steps_of(batch, last)
-        _check_segments(jumps, name, row + 1)
-        after_gap = (jumps > 0) & (steps > 0.0)
-        inner = np.where(after_gap, period, steps)[first:]
-        _check_steps(inner, t[first:], name, period, row + 1 + first)
-        missing += float(steps[after_gap].sum())
-        gaps += int(after_gap.sum())
-        row += batch.num_rows
-        yield batch
-    mean = (last[0] - start - missing) / (row - 1 - gaps) if last else period
-    if abs(mean - period) > DRIFT * period:
-        raise BadData(
-            f"{name}, column t: found a mean interval of {mean:.9g} s over {row} rows, expected "
-            f"{period:.9g} s like the first; put it on a constant rate with `scarid resample "
-            "--rate`"
-        )
-
-
-def _check_segments(jumps: Numbers, name: str, row: int) -> None:
-    if np.any(jumps < 0):
-        raise bad_data(
-            name,
-            "a number that goes back",
-            expected="segments to be numbered in order",
-            remedy="sort the log",
-            row=row + int(np.argmax(jumps < 0)),
-            column=SEGMENT,
-        )
-
-
-def _check_steps(steps: Array, t: Array, name: str, period: float, row: int) -> None:
-    with np.errstate(invalid="ignore"):
-        bad = ~(np.abs(steps - period) <= JITTER * period)
-    if not bad.any():
-        return
-    at = int(np.argmax(bad))
-    if steps[at] <= 0.0:
-        raise bad_data(
-            name,
-            f"{t[at]} after {t[at] - steps[at]:.9g}",
-            expected="time to increase from row to row",
-            remedy="sort the log and remove repeated rows",
-            row=row + at,
-            column="t",
-        )
-    raise bad_data(
-        name,
-        f"an interval of {steps[at]:.6g} s",
-        expected=f"{period:.6g} s within {JITTER:.0%}",
-        remedy="put it on a constant rate with `scarid resample --rate`",
-        row=row + at,
-        column="t",
-    )

@@ -1,7 +1,7 @@
-"""The kinds of table, read from `schemas/*.json` (Frictionless Table Schema).
+"""The kinds of tables, read from `schemas/*.json` (in the Frictionless Table Schema).
 
-A field named `q{i}` stands for one column per joint, i from 1. Its `unit` is a string, or an
-object with one unit per type of joint.
+A field named `q{i}` stands for one column per joint, with i from 1. Its `unit` is a string, or an
+object with one unit for each type of joint.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ TYPES = {"number": pa.float64(), "integer": pa.int64(), "string": pa.string()}
 
 @dataclass(frozen=True)
 class Field:
-    """One field of a table schema; `per_joint` fields match one column per joint."""
+    """One field of a table schema; a `per_joint` field matches one column per joint."""
 
     name: str
     type: pa.DataType
@@ -34,7 +34,7 @@ class Field:
         return "{i}" in self.name
 
     def about(self, column: str) -> str:
-        """The description, of the joint that this column belongs to."""
+        """The description of this column, with the number of its joint."""
         match = self.pattern.match(column)
         joint = match.group(1) if match and self.per_joint else "i"
         return self.description.replace("joint i", f"joint {joint}")
@@ -46,7 +46,7 @@ class Field:
 
 @dataclass(frozen=True)
 class TableSchema:
-    """One kind of table; `sampled` if its rows are samples at a constant rate."""
+    """One kind of table. It is `sampled` if its rows are samples at a constant rate."""
 
     kind: str
     version: int
@@ -60,7 +60,7 @@ class TableSchema:
         return next((field for field in self.fields if field.pattern.match(column)), None)
 
     def arrow(self) -> pa.Schema:
-        """The columns of a table of this kind that has no column per joint."""
+        """The columns of a kind of table that has no columns per joint."""
         return pa.schema(
             [
                 pa.field(f.name, f.type, metadata={"unit": f.units[0]} if f.units else None)
@@ -70,7 +70,7 @@ class TableSchema:
         )
 
     def missing_from(self, columns: list[str]) -> str | None:
-        """The first required column that is not there (joint 1 stands for all joints)."""
+        """The first required column that is missing (joint 1 stands for all joints)."""
         names = (f.name.replace("{i}", "1") for f in self.fields if f.required)
         return next((name for name in names if name not in columns), None)
 
@@ -106,7 +106,7 @@ def _units(unit: str | dict[str, str] | None) -> tuple[str, ...]:
     return (unit,) if isinstance(unit, str) else tuple(unit.values())
 
 
-# From the most to the least demanding, so that the first whose required columns are there is it.
+# From the most to the least demanding: a table is of the first kind whose required columns it has.
 KINDS = (
     "parameters",
     "metrics",
@@ -121,7 +121,7 @@ KINDS = (
 
 
 def detect(columns: list[str]) -> TableSchema | None:
-    """The kind of table that these columns make, for tables that carry no metadata."""
+    """The kind of table that has these columns, for tables without metadata."""
     schemas = (load(kind) for kind in KINDS)
     return next((schema for schema in schemas if schema.missing_from(columns) is None), None)
 
@@ -133,8 +133,13 @@ def column_type(column: str) -> pa.DataType | None:
     return next((field.type for field in fields if field is not None), None)
 
 
+def numbered(columns: list[str], *prefixes: str) -> list[str]:
+    """The columns that are one of these prefixes and the number of a joint: q1, q2, ..."""
+    return [c for c in columns for p in prefixes if c.startswith(p) and c[len(p) :].isdigit()]
+
+
 def joints_of(columns: list[str], prefix: str) -> int:
-    """How many joints the columns `prefix1`, `prefix2`, ... cover, without a gap."""
+    """How many of the columns `prefix1`, `prefix2`, ... there are before the first missing one."""
     count = 0
     while f"{prefix}{count + 1}" in columns:
         count += 1

@@ -15,15 +15,15 @@ from scarid_cli.arrays import Array, Numbers
 
 METADATA_KEY = b"scarid"
 UNIT_KEY = b"unit"
-SEGMENT = "segment"  # the column that tells the parts of a record between its gaps apart
+SEGMENT = "segment"  # the column that numbers the parts of a record between its gaps
 
 
 @dataclass(frozen=True)
 class Metadata:
-    """What a table says of itself; kept as one JSON document in the Arrow schema metadata.
+    """What a table states about itself, one JSON document in the metadata of its Arrow schema.
 
-    `period` is the nominal sampling period [s]; `history` has one entry per stage that the
-    data passed; `extra` holds what belongs to one kind of table (a condition number, a lag).
+    `period` is the nominal sampling period [s]; `history` has one entry for each command that the
+    data passed; `extra` holds what only one kind of table has (a condition number, a lag).
     """
 
     kind: str | None = None
@@ -44,9 +44,9 @@ class Metadata:
 
 @dataclass(frozen=True)
 class Table:
-    """A stream of record batches with their schema; `name` is where it came from.
+    """A stream of record batches with their schema; `name` says where it came from.
 
-    The batches can be iterated once. Columns carry their unit in the field metadata.
+    The batches can be iterated once. The unit of a column is in the metadata of its field.
     """
 
     name: str
@@ -57,6 +57,11 @@ class Table:
     @property
     def columns(self) -> list[str]:
         return list(self.schema.names)
+
+    @property
+    def period(self) -> float:
+        """The nominal sampling period [s]; 0 for a table that states none."""
+        return self.meta.period or 0.0
 
     def arrow_schema(self) -> pa.Schema:
         """The schema with the metadata attached, as it is written."""
@@ -82,15 +87,27 @@ def matrix(batch: pa.RecordBatch, columns: list[str]) -> Array:
 
 
 def doubles(values: Array) -> pa.Array:
-    """Numbers as a column without empty cells; no copy, and no import of numpy.ma by pyarrow."""
+    """A column of numbers without empty cells, made without a copy.
+
+    pyarrow's own conversion would import numpy.ma.
+    """
     data = np.ascontiguousarray(values, dtype=np.float64)
     return pa.Array.from_buffers(pa.float64(), len(data), [None, pa.py_buffer(data)])
 
 
 def integers(values: Any) -> pa.Array:
-    """Whole numbers likewise."""
+    """A column of whole numbers, made likewise."""
     data = np.ascontiguousarray(values, dtype=np.int64)
     return pa.Array.from_buffers(pa.int64(), len(data), [None, pa.py_buffer(data)])
+
+
+def cast(batch: pa.RecordBatch, schema: pa.Schema) -> pa.RecordBatch:
+    """The batch with the types of a schema that has the same columns."""
+    columns = [
+        column if column.type == field.type else column.cast(field.type)
+        for column, field in zip(batch.columns, schema, strict=True)
+    ]
+    return pa.RecordBatch.from_arrays(columns, schema=schema)
 
 
 def without(table: Table, column: str) -> Table:
@@ -113,7 +130,7 @@ def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any]) 
 
 
 def segments_of(batch: pa.RecordBatch) -> Numbers:
-    """The number of the segment that each row belongs to; 0 where the table has none."""
+    """The number of the segment that each row belongs to; 0 if the table has no segments."""
     if SEGMENT not in batch.schema.names:
         return np.zeros(batch.num_rows, dtype=np.int64)
     numbers: Numbers = batch.column(SEGMENT).to_numpy(zero_copy_only=False)
@@ -124,9 +141,9 @@ Instant = tuple[float, int]  # time [s] and segment of a row
 
 
 def steps_of(batch: pa.RecordBatch, last: Instant | None) -> tuple[Array, Numbers, Instant]:
-    """What time [s] and segment go on by into each row, and where the last row is.
+    """By how much time [s] and segment advance to each row, and the instant of the last row.
 
-    `last` is the row before the batch; into the first row of all both are 0.
+    `last` is the row before the batch; to the very first row both advance by 0.
     """
     t, segment = matrix(batch, ["t"])[0], segments_of(batch)
     time, number = last or (t[0], segment[0])
@@ -135,12 +152,12 @@ def steps_of(batch: pa.RecordBatch, last: Instant | None) -> tuple[Array, Number
 
 
 def segment_field(table: Table) -> list[pa.Field]:
-    """That of the column `segment`, if the table has it."""
+    """The field of the column `segment`, if the table has it."""
     return [table.schema.field(SEGMENT)] if SEGMENT in table.columns else []
 
 
 def segments(table: Table) -> Iterator[Table]:
-    """Each segment as a table of its own, to be used up before the next."""
+    """Each segment as a table of its own; iterate over its batches before taking the next."""
     pieces = (piece for batch in table.batches for piece in _pieces(batch))
     for number, group in groupby(pieces, lambda piece: piece[0]):
         batches = (batch for _, batch in group)
@@ -156,14 +173,14 @@ def _pieces(batch: pa.RecordBatch) -> Iterator[tuple[int, pa.RecordBatch]]:
 
 
 def settled(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-    """Only the rows that a soft sensor has marked as settled; all where there is no such mark."""
+    """Only the rows that a soft sensor has marked as settled; all rows of an unmarked table."""
     return (batch for _, batch in settled_runs(batches))
 
 
 def settled_runs(batches: Iterator[pa.RecordBatch]) -> Iterator[tuple[int, pa.RecordBatch]]:
-    """The same, with the number of the first row of each part in the table.
+    """The settled rows in parts, each with the number of its first row in the table.
 
-    No part is on both sides of a gap.
+    No part extends across a gap.
     """
     first = 0
     for batch in batches:
@@ -174,7 +191,7 @@ def settled_runs(batches: Iterator[pa.RecordBatch]) -> Iterator[tuple[int, pa.Re
 
 
 def _settled(batch: pa.RecordBatch) -> Iterator[tuple[int, int]]:
-    """The runs of settled rows: first row, and the one after the last."""
+    """The runs of settled rows: the first row, and the one after the last."""
     if "settled" not in batch.schema.names:
         yield 0, batch.num_rows
         return

@@ -1,4 +1,4 @@
-"""Where a table goes: standard output, or a file that appears only when it is whole."""
+"""Where a table goes: standard output, or a file that appears only when it is complete."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Writer(Protocol):
 
 
 class Target:
-    """The bytes' destination. A regular file is written beside its place and renamed at the end."""
+    """Where bytes go. A regular file is written under another name and renamed at the end."""
 
     def __init__(self, path: str) -> None:
         self.name = STDOUT if path == "-" else path
@@ -66,7 +66,7 @@ class Target:
             raise self._failure(error) from None
 
     def commit(self) -> None:
-        """The file takes its place."""
+        """Put the file in its place."""
         try:
             self._close()
             if self._part:
@@ -77,7 +77,7 @@ class Target:
         self._part = None
 
     def discard(self) -> None:
-        """Nothing is left behind."""
+        """Leave nothing behind."""
         with contextlib.suppress(OSError):
             self._close()
         if self._part:
@@ -102,7 +102,7 @@ def _regular(path: Path) -> bool:
 
 
 def format_for(path: str, wanted: str | None) -> str:
-    """The format to write: asked for, else told by the extension, else the environment's."""
+    """The format to write: as given, else that of the extension, else of the environment."""
     chosen = wanted or EXTENSIONS.get(Path(path).suffix.lower())
     if not chosen and path != "-" and Path(path).suffix and _regular(Path(path)):
         known = " ".join(EXTENSIONS)
@@ -118,7 +118,7 @@ def format_for(path: str, wanted: str | None) -> str:
 
 
 class Output:
-    """One table on its way out; made before the input is read, so that mistakes show at once."""
+    """One table to write; made before the input is read, so that mistakes show at once."""
 
     def __init__(self, path: str, wanted: str | None = None) -> None:
         self.path = path
@@ -127,7 +127,7 @@ class Output:
         self._writer: Writer | None = None
 
     def start(self, schema: pa.Schema) -> None:
-        """Write what comes before the first row."""
+        """Write what precedes the first row."""
         self._writer = _writer(self.format)(self.target.write, schema)
 
     def write(self, batch: pa.RecordBatch) -> None:
@@ -135,13 +135,13 @@ class Output:
         self._writer.write(batch)
 
     def finish(self) -> None:
-        """The table is whole: put the end mark."""
+        """The table is complete: write the end mark."""
         if self._writer:
             self._writer.close()
             self._writer = None
 
     def abort(self) -> None:
-        """The table is not whole, and must not look as if it were."""
+        """The table is incomplete, and must not look complete."""
         if self._writer:
             with contextlib.suppress(OSError, OutputFailure):
                 self._writer.abort()
@@ -149,7 +149,7 @@ class Output:
 
 
 class Document:
-    """A text or other bytes beside the tables."""
+    """A document beside the tables."""
 
     def __init__(self, path: str) -> None:
         self.path = path
@@ -159,7 +159,7 @@ class Document:
         self.target.write(content if isinstance(content, bytes) else content.encode())
 
     def finish(self) -> None:
-        """There is nothing to add."""
+        """A document has no end mark."""
 
     def abort(self) -> None:
         self.target.discard()
@@ -181,7 +181,7 @@ def _writer(name: str) -> Any:
 
 @contextlib.contextmanager
 def all_or_none(outputs: list[Output | Document]) -> Iterator[None]:
-    """All outputs are finished when the block ends, or all are aborted when it fails."""
+    """Finish all outputs when the block ends, or abort all of them when it fails."""
     try:
         yield
         for output in outputs:
@@ -195,7 +195,7 @@ def all_or_none(outputs: list[Output | Document]) -> Iterator[None]:
 
 
 def write_table(table: Table, output: Output) -> None:
-    """Send every batch of a table to an output."""
+    """Write every batch of a table to an output."""
     output.start(table.arrow_schema())
     for batch in table.batches:
         output.write(batch)

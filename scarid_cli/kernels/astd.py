@@ -1,20 +1,20 @@
-"""Adaptive super-twisting differentiator (paper eq. 30-31), explicit Euler."""
+"""Adaptive super-twisting differentiator in explicit Euler steps (paper, equations 30 and 31)."""
 
 from math import sqrt
 
 
 def sign(x):
-    """The sign of x, 0 at 0."""
+    """The sign of x; 0 at 0."""
     if x > 0.0:
         return 1.0
     return -1.0 if x < 0.0 else 0.0
 
 
 def differentiate(g, out, state, gains, h):
-    """Write the derivative of g to out: one block, z1 after its update.
+    """Write the derivative of the samples g to out: z1 of one block after its update.
 
-    state: z0, z1, k0, changed in place. gains: epsilon, growth = alpha1 sqrt(mu1 / 2), alpha0,
-    gamma, k0m. h [s].
+    state: z0, z1, k0; changed in place. gains: epsilon, growth = alpha1 sqrt(mu1 / 2), alpha0,
+    gamma, k0m. h: sampling period [s].
     """
     if len(out) != len(g) or len(state) != 3 or len(gains) != 5:
         raise ValueError("astd: lengths differ")

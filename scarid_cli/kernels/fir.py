@@ -1,11 +1,11 @@
-"""Finite impulse response filter."""
+"""Filter of finite impulse response."""
 
 
 def filtered(x, y, taps):
-    """Write the filtered x to y: y[k] is the sum of taps[i] x[k + n - 1 - i], n taps.
+    """Write the filtered x to y: with n taps, y[k] is the sum of taps[i] x[k + n - 1 - i].
 
-    x: the n - 1 samples before the first of y, then one for each of y. Four taps at a time go over
-    all of y, so that neighbours can be computed together.
+    x: the n - 1 samples before the first of y, then one for each of y. Four taps at a time are
+    applied to all of y, so that neighbours can be computed together.
     """
     n = len(taps)
     rows = len(y)

@@ -1,12 +1,13 @@
-"""Arbitrary-order sliding mode differentiator in implicit steps (Mojallizadeh et al. 2021)."""
+"""Sliding-mode differentiator of arbitrary order in implicit steps (Mojallizadeh et al. 2021)."""
 
 from math import pow  # noqa: A004 (on floats alone)
 
 
 def differentiate(g, v, a, state, gains, h):
-    """Write velocity and acceleration to v and a for each position in g.
+    """Write the velocity and the acceleration of each position in g to v and a.
 
-    state: z0 ... zn, n from 2 to 5; changed in place. gains: lambda_i L^((i+1)/(n+1)). h [s].
+    state: z0 ... zn, n from 2 to 5; changed in place. gains: lambda_i L^((i+1)/(n+1)) for i = 0
+    ... n. h: sampling period [s].
     """
     n = len(state) - 1
     if len(v) != len(g) or len(a) != len(g) or len(gains) != len(state) or not 2 <= n <= 5:
@@ -39,7 +40,7 @@ def differentiate(g, v, a, state, gains, h):
 def root(r, gains, n, h):
     """The q > 0 with q^(n+1) + h gains[0] q^n + ... + h^n gains[n-1] q = r, by Newton's method.
 
-    The polynomial is convex: from above, the iterates fall to the root.
+    The polynomial is convex, so the iterates decrease to the root from above.
     """
     q = pow(r, 1.0 / (n + 1))
     for _ in range(60):
@@ -60,7 +61,7 @@ def root(r, gains, n, h):
 
 
 def velocity(z, n, h):
-    """z1 ... behave as backward differences D^i / h^i: -ln(1 - D) / h of them."""
+    """The velocity -ln(1 - D) / h, for the states z_i are backward differences D^i / h^i."""
     value = float(z[1])
     step = 1.0
     for i in range(2, n + 1):
@@ -70,7 +71,7 @@ def velocity(z, n, h):
 
 
 def acceleration(z, n, h):
-    """(-ln(1 - D))^2 / h^2 of the backward differences."""
+    """The acceleration (-ln(1 - D))^2 / h^2 of the same backward differences D."""
     value = float(z[2])
     if n > 2:
         value += h * float(z[3])

@@ -1,23 +1,23 @@
 """Recursive least squares in information form, by Givens rotations without square roots.
 
 Gentleman 1973 ("Least squares computations by Givens transformations without square roots"), as in
-algorithm AS 274. The unit triangle R, the weights d of its rows and the vector z say all that the
-rows so far say of theta: the sum of d (R theta - z)^2, plus the residual, is the sum of squares. No
-normal equations are formed, so no digits are lost, and the covariance (R' d R)^-1 is symmetric
-positive definite by construction. Weights of zero are plain least squares; P0^-1 and a forgetting
-factor make it recursive least squares.
+algorithm AS 274. The unit triangle R, the weights d of its rows and the vector z contain all that
+the rows so far tell about theta: the sum of squares is the sum of d (R theta - z)^2 plus the
+residual. No normal equations are formed, so no digits are lost, and the covariance (R' d R)^-1 is
+symmetric positive definite by construction. With initial weights of zero this is plain least
+squares; with the initial information P0^-1 and a forgetting factor it is recursive least squares.
 """
 
 from math import sqrt
 
 
 def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor):
-    """Take the rows of W and y in, sample by sample; write theta after each to estimates.
+    """Take in the rows of W and y sample by sample, and write theta after each to estimates.
 
-    W (samples, joints, parameters), y (samples, joints), scales (samples, joints): what each row is
-    multiplied by, 0 leaves it out; triangle (parameters, parameters + 1) holding R and z, with d
-    in place of the ones; row (parameters + 1): work space; sums: the sum of squares not explained,
-    the number of rows, both forgetting, and the samples so far; estimates (samples or 0,
+    W (samples, joints, parameters), y (samples, joints). scales (samples, joints): what each row is
+    multiplied by; 0 leaves it out. triangle (parameters, parameters + 1): R and z, with d in place
+    of the ones. row (parameters + 1): work space. sums: [0] the residual sum of squares, [1] the
+    number of rows, both subject to forgetting, [2] the number of samples. estimates (samples or 0,
     parameters). All but W, y, scales and forgetting are changed in place. forgetting (parameters):
     factors per sample; the residual forgets by the first of them. floor: see `forget`.
     """
@@ -49,7 +49,7 @@ def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor):
 
 
 def take(W, y, scales, triangle, row, sums, k, n, p):
-    """The row of joint n at sample k, times its scale."""
+    """Take in the row of joint n at sample k, times its scale."""
     scale = float(scales[k, n])
     if scale == 0.0:
         return
@@ -62,7 +62,7 @@ def take(W, y, scales, triangle, row, sums, k, n, p):
 
 
 def differs(factors, value, p):
-    """Whether a factor is another than this."""
+    """Whether any factor differs from the value."""
     count = 0
     for i in range(p):
         count += float(factors[i]) != value
@@ -70,11 +70,11 @@ def differs(factors, value, p):
 
 
 def forget(triangle, row, forgetting, floor, turn, p):
-    """Let the information of each parameter count a little less; the estimates stay.
+    """Reduce the information about each parameter by its factor, without moving the estimates.
 
-    A little information, worth the floor in the long run, is given back to one parameter in turn,
-    at its present estimate: without excitation the covariance stays below about 1 / floor, in
-    every direction.
+    A little information, equal to the floor in the long run, is given back to one parameter in
+    turn, at its present estimate. So without excitation the covariance stays below about 1 / floor
+    in every direction.
     """
     solve(triangle, row, p)
     several = differs(forgetting, float(forgetting[0]), p)
@@ -93,7 +93,7 @@ def forget(triangle, row, forgetting, floor, turn, p):
 
 
 def tilt(triangle, theta, forgetting, i, p):
-    """Row i when the parameters forget at rates of their own: the same estimates solve it."""
+    """Adjust row i to factors that differ, so that the same estimates still solve it."""
     z = float(theta[i])
     for j in range(i + 1, p):
         ratio = sqrt(float(forgetting[j]) / float(forgetting[i]))
@@ -103,7 +103,7 @@ def tilt(triangle, theta, forgetting, i, p):
 
 
 def rotate(triangle, row, weight, p):
-    """Turn one row into the triangle; row[p], with the weight that is left, is its residual."""
+    """Rotate a row into the triangle; return its remaining weight, its residual being row[p]."""
     for j in range(p):
         x = float(row[j])
         if x == 0.0:
@@ -128,7 +128,7 @@ def rotate(triangle, row, weight, p):
 
 
 def solve(triangle, row, p):
-    """Back substitution: R theta = z, into the row."""
+    """Solve R theta = z by back substitution, and write theta to the row."""
     for i in range(p):
         row[i] = float(triangle[i, p])
     for j in range(p - 1, 0, -1):

@@ -1,4 +1,9 @@
-"""Kalman filter of a scalar measurement whose gain settles, and its smoothers."""
+"""Kalman filter of a scalar measurement, whose gain becomes constant, and its smoothers.
+
+SETTLED: the relative change of the gain from one sample to the next below which it is kept.
+PATIENCE: how many innovations in a row may be taken for glitches. MEMORY: the rate per sample at
+which the usual mean square of the innovations follows the present one.
+"""
 
 from math import log
 
@@ -8,13 +13,14 @@ MEMORY = 0.02
 
 
 def filtered(g, estimates, x, P, gain, work, F, Q, noise):
-    """Write the filtered states (rows of m) to estimates, for each measurement in g.
+    """Write the filtered state (m) for each measurement in g to a row of estimates.
 
-    x, P: predicted state and its covariance; gain: the last one; all changed in place. F, Q: the
-    model. noise: variance of g, and the squared number of standard deviations from which on an
-    innovation is a glitch and left out. work: the log likelihood so far, 1 once the gain has
-    settled, glitches in a row, the log variance of the innovation, the mean square that has been
-    usual, and room for m (m + 1) numbers.
+    x (m), P (m, m): the predicted state and its covariance. gain (m): the last gain. F, Q (m, m):
+    the model. noise: [0] the variance of g, [1] the square of the number of standard deviations
+    beyond which an innovation is a glitch and left out. work: [0] the log-likelihood so far, [1] 1
+    once the gain is constant, [2] the number of glitches in a row, [3] the logarithm of the
+    variance of the innovation, [4] the usual mean square of the innovation, [5] and following: work
+    space for m (m + 1) numbers. x, P, gain and work are changed in place.
     """
     m = len(x)
     check(m, P, gain, work, F, Q, noise)
@@ -32,9 +38,10 @@ def recorded(
 ):
     """Filter, and write what the smoothers need of each row.
 
-    predictions: of the state (m). innovations: over their variance, 0 at a glitch. steady: 1 where
-    the gain has settled, 0 at a glitch. gains: m, 0 at a glitch. covariances: of the predictions
-    (m, m), only where not steady. The rest as in `filtered`.
+    predictions (rows, m): of the state. innovations (rows): over their variance, 0 at a glitch.
+    steady (rows): 1 where the gain is constant, 0 at a glitch. gains (rows, m): 0 at a glitch.
+    covariances (rows, m, m): of the predictions, written only where not steady. The other
+    arguments are those of `filtered`.
     """
     m = len(x)
     n = len(g)
@@ -63,14 +70,14 @@ def recorded(
 
 
 def keep(covariances, P, k, m):
-    """Write the covariance P to row k."""
+    """Write the covariance P to row k of the covariances."""
     for i in range(m):
         for j in range(m):
             covariances[k, i, j] = P[i, j]
 
 
 def check(m, P, gain, work, F, Q, noise):
-    """Refuse what does not fit a state of m numbers."""
+    """Refuse arrays that do not fit a state of m numbers."""
     square = P.shape[0] == m and P.shape[1] == m and F.shape[0] == m and F.shape[1] == m
     if not square or Q.shape[0] != m or Q.shape[1] != m or len(gain) != m:
         raise ValueError("kalman: sizes differ")
@@ -79,7 +86,7 @@ def check(m, P, gain, work, F, Q, noise):
 
 
 def check_records(n, m, predictions, innovations, steady, gains, covariances):
-    """Refuse records of another number of rows, or of other states."""
+    """Refuse records that are not of n rows and m states."""
     if len(predictions) != n or len(innovations) != n or len(steady) != n:
         raise ValueError("kalman: lengths differ")
     if len(gains) != n or len(covariances) != n:
@@ -91,7 +98,7 @@ def check_records(n, m, predictions, innovations, steady, gains, covariances):
 
 
 def update(g, x, P, gain, work, r, gate, m):
-    """Take a measurement into the state; return whether it was no glitch."""
+    """Update the state by a measurement; return False if it was left out as a glitch."""
     e = g - float(x[0])
     s = float(P[0, 0]) + r
     if float(work[1]) == 0.0:
@@ -110,7 +117,7 @@ def update(g, x, P, gain, work, r, gate, m):
 
 
 def settle(P, gain, s, m):
-    """Write the gain for the covariance P; return 1 if it is what it was."""
+    """Write the gain for the covariance P; return 1 if it has not changed."""
     still = 1.0
     for i in range(m):
         old = float(gain[i])
@@ -123,9 +130,9 @@ def settle(P, gain, s, m):
 def glitch(e, s, work, gate):
     """Whether an innovation e of variance s is a glitch.
 
-    It is judged by what has been usual, for a model may be wrong about s. What lasts longer than
-    a glitch is a motion that the model did not expect: then all measurements are taken in, until
-    the innovation is small again.
+    It is compared with the usual mean square of the innovations, for a model may be wrong about s.
+    What lasts longer than a glitch is a motion that the model did not expect: then all measurements
+    are taken in until the innovation is small again.
     """
     usual = max(s, float(work[4]))
     work[4] += MEMORY * (min(e * e, gate * usual) - float(work[4]))
@@ -140,7 +147,7 @@ def glitch(e, s, work, gate):
 
 
 def predict(x, P, work, F, Q, m):
-    """One sample on: x = F x, and unless the gain has settled P = F P F' + Q."""
+    """Predict the next sample: x = F x, and unless the gain is constant P = F P F' + Q."""
     for i in range(m):
         total = 0.0
         for j in range(m):
@@ -153,7 +160,7 @@ def predict(x, P, work, F, Q, m):
 
 
 def spread(P, work, F, Q, m):
-    """P = F P F' + Q."""
+    """Write F P F' + Q to P."""
     room = 5 + m
     for i in range(m):
         for j in range(m):
@@ -171,11 +178,12 @@ def spread(P, work, F, Q, m):
 
 
 def lagged(predictions, innovations, steady, gains, covariances, P, F, weights, out, r):
-    """Write velocity and acceleration to rows of out: each from its own row and the d after it.
+    """Write velocity and acceleration to rows of out, each from its own row and the d after it.
 
-    The last rows have fewer. out may have fewer rows than there are records. weights: for either
-    (d + 1), what each innovation adds to it, the last row's first, once the gain has settled.
-    P: the covariance where steady. r: room for 2 m numbers.
+    The last rows have fewer rows after them. out may have fewer rows than there are records.
+    weights (2, d + 1): what each innovation, that of the row itself first, adds to velocity and
+    acceleration once the gain is constant. P: the covariance where steady. r: work space for 2 m
+    numbers.
     """
     n = len(predictions)
     m = F.shape[0]
@@ -205,7 +213,7 @@ def lagged(predictions, innovations, steady, gains, covariances, P, F, weights, 
 
 
 def weighed(weights, innovations, row, k, d):
-    """The weighted sum of d + 1 innovations from k on; four at a time, none waits for the other."""
+    """The weighted sum of d + 1 innovations from row k on, as four independent partial sums."""
     n = d + 1
     whole = n - n % 4
     s0 = s1 = s2 = s3 = 0.0
@@ -220,9 +228,9 @@ def weighed(weights, innovations, row, k, d):
 
 
 def smoothed(predictions, innovations, steady, gains, covariances, P, F, out, r):
-    """Write position, velocity and acceleration to out, each from the whole record.
+    """Write position, velocity and acceleration of each row to out, from the whole record.
 
-    Arguments as of `lagged`.
+    The arguments are those of `lagged`.
     """
     n = len(predictions)
     m = F.shape[0]
@@ -240,7 +248,7 @@ def smoothed(predictions, innovations, steady, gains, covariances, P, F, out, r)
 
 
 def back(innovations, gains, F, r, k, m):
-    """r = H' u + (F (I - K H))' r at row k (Durbin and Koopman, section 4.4)."""
+    """The backward step r = H' u + (F (I - K H))' r at row k (Durbin and Koopman, section 4.4)."""
     along = 0.0
     for i in range(m):
         total = 0.0
@@ -254,7 +262,7 @@ def back(innovations, gains, F, r, k, m):
 
 
 def corrected(predictions, covariances, steady, P, r, k, i, m):
-    """State i of row k: the prediction and what later samples say of it."""
+    """State i of row k: the prediction, corrected by the samples after it."""
     total = float(predictions[k, i])
     if float(steady[k]) != 0.0:
         for j in range(m):

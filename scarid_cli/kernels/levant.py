@@ -1,22 +1,23 @@
-"""Arbitrary-order sliding mode differentiator (Levant), explicit, filtering or not."""
+"""Levant's sliding-mode differentiator of arbitrary order in explicit steps, filtering or not."""
 
 from math import pow  # noqa: A004 (on floats alone)
 
 
 def sign(x):
-    """The sign of x, 0 at 0."""
+    """The sign of x; 0 at 0."""
     if x > 0.0:
         return 1.0
     return -1.0 if x < 0.0 else 0.0
 
 
 def differentiate(g, v, a, state, gains, filters, taylor, h):
-    """Write velocity and acceleration to v and a for each position in g (order 1: no acceleration).
+    """Write the velocity and the acceleration of each position in g to v and a.
 
-    state: `filters` filter states, then z0, z1, ...; changed in place. gains: one for each of
-    them, lambda_i L^((i+1)/(N+1)). taylor: 0 for Euler's steps; 1 adds the terms of second and
-    higher order (homogeneous discrete differentiator). h [s]. The states after an update belong
-    to the next sample; Taylor's series brings them back to the present one.
+    For order 1 there is no acceleration. state: `filters` filter states, then z0, z1, ...; changed
+    in place. gains: lambda_i L^((i+1)/(N+1)), one for each of the N + 1 states. taylor: 0 for Euler
+    steps; 1 adds the terms of second and higher order (homogeneous discrete differentiator). h:
+    sampling period [s]. The states after an update belong to the next sample; the Taylor series
+    brings them back to the present one.
     """
     last = len(state) - 1
     if len(v) != len(g) or len(a) != len(g) or len(gains) != len(state):

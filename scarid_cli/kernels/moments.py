@@ -1,11 +1,11 @@
-"""Running sums for the quality of a prediction, one sample at a time (Welford)."""
+"""Running sums for the quality of a prediction, one sample at a time (Welford 1962)."""
 
 
 def accumulate(measured, predicted, state):
-    """Add the samples of one joint.
+    """Add the samples of one joint to the sums.
 
-    state: count, mean of measured, sum of squares about the mean, sum of squared errors, sum of
-    squares of measured; changed in place.
+    state: the count, the mean of measured, the sum of its squares about the mean, the sum of
+    squared errors, and the sum of squares of measured; changed in place.
     """
     if len(predicted) != len(measured) or len(state) != 5:
         raise ValueError("moments: lengths differ")

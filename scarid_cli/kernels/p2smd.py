@@ -1,25 +1,26 @@
-"""Proposed second-order sliding mode differentiator (paper eq. 7-9), explicit Euler."""
+"""The paper's second-order sliding-mode differentiator with adaptive gains (equations 7 to 9)."""
 
 from math import cbrt, sqrt
 
 
 def sign(x):
-    """The sign of x, 0 at 0: with a quantised input at rest equality does happen."""
+    """The sign of x; 0 at 0, which does occur with a quantised input at rest."""
     if x > 0.0:
         return 1.0
     return -1.0 if x < 0.0 else 0.0
 
 
 def clip(x, low, high):
-    """The nearest number to x in [low, high]."""
+    """The number in [low, high] that is nearest to x."""
     return min(max(x, low), high)
 
 
 def differentiate(g, v, a, state, gains, h):
-    """Write velocity y0 to v and acceleration y1 to a for each position in g.
+    """Write velocity y0 and acceleration y1 of each position in g to v and a, in explicit steps.
 
-    state: z0, z1, nu (the integral of sign e1), eta0, eta1, eta2; changed in place.
-    gains: Gamma0, Gamma1 [1/s], leak [1/s], floor and cap of eta, cap of |nu| [s]. h [s].
+    state: [0] z0, [1] z1, [2] nu, the integral of the sign of e1 [s], [3] to [5] the adaptive gains
+    eta0, eta1, eta2; changed in place. gains: Gamma0 and Gamma1 [1/s], leak [1/s], floor and cap of
+    the adaptive gains, cap of |nu| [s]. h: sampling period [s].
     """
     if len(v) != len(g) or len(a) != len(g) or len(state) != 6 or len(gains) != 6:
         raise ValueError("p2smd: lengths differ")
@@ -49,9 +50,10 @@ def differentiate(g, v, a, state, gains, h):
 
 
 def implicit(g, v, a, state, gains, h):
-    """The same in implicit Euler steps, arguments as of `differentiate`; floor of eta 0 or more.
+    """The same in implicit Euler steps; the floor of the adaptive gains must not be negative.
 
-    Each step solves a strictly monotone equation for e = z0 - g after the step.
+    Each step solves a strictly monotone equation for e = z0 - g after the step. The arguments are
+    those of `differentiate`.
     """
     if len(v) != len(g) or len(a) != len(g) or len(state) != 6 or len(gains) != 6:
         raise ValueError("p2smd: lengths differ")
@@ -87,10 +89,10 @@ def implicit(g, v, a, state, gains, h):
 
 
 def root(r, eta0, eta1, gamma0, gamma1, h):
-    """The cube root q of |e|: Newton's method within a bracket.
+    """The cube root q of |e|, by Newton's method within a bracket.
 
-    (1 + h gamma0) q^3 + h eta0 q^2 + h^2 (eta1 sqrt(f) + gamma1 f) = r with
-    f = eta0 q^2 + gamma0 q^3; the left side grows with q.
+    It solves (1 + h gamma0) q^3 + h eta0 q^2 + h^2 (eta1 sqrt(f) + gamma1 f) = r with
+    f = eta0 q^2 + gamma0 q^3; the left side increases with q.
     """
     low = 0.0
     high = cbrt(r / (1.0 + h * gamma0 + h * h * gamma0 * gamma1))

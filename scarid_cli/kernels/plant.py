@@ -1,30 +1,30 @@
-"""Two-joint planar mechanism in closed loop: PD(+I) at the control rate, Runge-Kutta between.
+"""Two-joint planar mechanism in closed loop: PD(+I) control, Runge-Kutta integration in between.
 
-The dynamics are equations A.1 (paper eq. 26-27, mended); an axis alone is the same mechanism
-with a second joint that nothing moves. Coulomb friction sticks: a joint at rest stays there as
-long as the torque that would hold it is within the dry friction, and a joint whose velocity
-changes sign within a substep stops first.
+The dynamics are equations 26 and 27 of the paper, corrected; a single axis is the same mechanism
+with a second joint that nothing moves. Coulomb friction sticks: a joint at rest stays there as long
+as the torque that would hold it is within the Coulomb friction, and a joint whose velocity changes
+sign within a substep stops first.
 """
 
 from math import cos, floor, sin
 
 
 def sign(x):
-    """The sign of x, 0 at 0."""
+    """The sign of x; 0 at 0."""
     if x > 0.0:
         return 1.0
     return -1.0 if x < 0.0 else 0.0
 
 
 def quantised(x, resolution):
-    """The encoder's reading: the nearest multiple of its resolution (0: perfect)."""
+    """The reading of the encoder: the nearest multiple of its resolution (0: perfect)."""
     if resolution > 0.0:
         return floor(x / resolution + 0.5) * resolution
     return x
 
 
 def clip(x, limit):
-    """x within plus and minus limit."""
+    """x, limited to plus and minus limit."""
     return min(max(x, -limit), limit)
 
 
@@ -39,10 +39,11 @@ def inertia(model, q2):
 
 
 def accelerations(model, q2, v1, v2, tau1, tau2, s1, s2):
-    """The accelerations of both joints, 0 for one that sticks.
+    """The accelerations of both joints; 0 for a joint that sticks.
 
-    model: ZZ1R, ZZ2, L1MX2, L1MY2, then viscous, Coulomb and offset torques of joints 1 and 2.
-    s1, s2: directions of sliding, 0 for a joint that sticks.
+    model: [0] ZZ1R, [1] ZZ2, [2] L1MX2, [3] L1MY2, then of joints 1 and 2 [4, 5] the viscous
+    friction, [6, 7] the Coulomb friction and [8, 9] the offset torque. s1, s2: the directions of
+    sliding, 0 for a joint that sticks.
     """
     m11, m12, m22, bend = inertia(model, q2)
     r1 = tau1 + bend * v2 * (2.0 * v1 + v2)
@@ -60,7 +61,7 @@ def accelerations(model, q2, v1, v2, tau1, tau2, s1, s2):
 
 
 def holding(model, q2, v1, v2, tau1, tau2, a1, a2):
-    """The dry friction torques that would explain the accelerations a1, a2."""
+    """The Coulomb friction torques that would explain the accelerations a1, a2."""
     m11, m12, m22, bend = inertia(model, q2)
     f1 = tau1 + bend * v2 * (2.0 * v1 + v2) - m11 * a1 - m12 * a2
     f1 -= float(model[4]) * v1 + float(model[8])
@@ -70,12 +71,16 @@ def holding(model, q2, v1, v2, tau1, tau2, a1, a2):
 
 
 def trial(i):
-    """The three ways of a joint at rest: to stick, and to slide forwards or backwards."""
+    """What a joint at rest may do: stick (i = 0), or slide forwards or backwards (i = 1, 2)."""
     return 0.0 if i == 0 else 3.0 - 2.0 * i
 
 
 def suits(v, s, a, f, dry):
-    """Whether a direction is right: 0 sticks within the dry friction, 1 and -1 leave that way."""
+    """Whether a direction is consistent with the motion.
+
+    A joint that sticks (s = 0) must be held by a torque f within the Coulomb friction `dry`; one
+    that slides must accelerate in its direction.
+    """
     if v != 0.0:
         return True
     if s == 0.0:
@@ -84,10 +89,10 @@ def suits(v, s, a, f, dry):
 
 
 def contact(model, q2, v1, v2, tau1, tau2):
-    """Which joints slide, and which way: s1, s2, each 1, -1 or 0 for a joint that sticks.
+    """The directions s1, s2 of sliding: each 1, -1, or 0 for a joint that sticks.
 
-    A joint that moves slides the way it moves. For a joint at rest all three are tried: of all
-    ways that both can stick and slide, one suits.
+    A joint that moves slides in the direction of its velocity. For a joint at rest all three are
+    tried: of all combinations of sticking and sliding, one is consistent.
     """
     if v1 != 0.0 and v2 != 0.0:
         return sign(v1), sign(v2)
@@ -103,13 +108,14 @@ def contact(model, q2, v1, v2, tau1, tau2):
 
 
 def run(reference, noise, log, state, model, control, h, substeps):
-    """Run the loop over the control ticks; return how many were run before it blew up, if it did.
+    """Run the loop over the control ticks; return the number of ticks run before it diverged.
 
-    reference (ticks, 4): q1, q2, dq1, dq2 wanted. noise (ticks, 2): added to what the encoder
-    sees. log (ticks, 10): measured q1, q2; torque 1, 2; true q, dq, ddq of joints 1, 2, as they
-    are at the tick, with its torque. state: q1, q2, v1, v2, last readings, velocity estimates,
-    integrals; changed in place. control: Kp, Kd, Ki, torque limits, encoder resolutions of
-    joints 1, 2, then the smoothing of the velocity estimate per tick (0: none). h [s].
+    reference (ticks, 4): q1, q2, dq1, dq2 wanted. noise (ticks, 2): added to the positions that the
+    encoders see. log (ticks, 10): measured q, torque, true q, dq and ddq, each of joints 1 and 2,
+    at the tick and with its torque. state (10): q, dq, last readings, velocity estimates and
+    integrals, each of joints 1 and 2; changed in place. control (11): Kp, Kd, Ki, torque limits and
+    encoder resolutions, each of joints 1 and 2, then the smoothing of the velocity estimate per
+    tick (0: none). model: see `accelerations`. h: period of the control [s].
     """
     if log.shape[0] != len(reference) or len(noise) != len(reference):
         raise ValueError("plant: lengths differ")

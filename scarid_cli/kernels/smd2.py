@@ -1,20 +1,21 @@
-"""Second-order sliding mode differentiator (paper eq. 6; Levant 2003), explicit Euler."""
+"""Levant's second-order sliding-mode differentiator in explicit Euler steps (paper, equation 6)."""
 
 from math import cbrt, sqrt
 
 
 def sign(x):
-    """The sign of x, 0 at 0."""
+    """The sign of x; 0 at 0."""
     if x > 0.0:
         return 1.0
     return -1.0 if x < 0.0 else 0.0
 
 
 def differentiate(g, v, a, state, gains, h):
-    """Write velocity and acceleration to v and a for each position in g.
+    """Write the velocity and the acceleration of each position in g to v and a.
 
     The states after an update belong to the next sample; v = z1 - h z2 and a = z2 bring them
-    back to the present one. state: z0, z1, z2, changed in place. gains: eta0, eta1, eta2. h [s].
+    back to the present one. state: z0, z1, z2; changed in place. gains: eta0, eta1, eta2. h:
+    sampling period [s].
     """
     if len(v) != len(g) or len(a) != len(g) or len(state) != 3 or len(gains) != 3:
         raise ValueError("2smd: lengths differ")

@@ -1,11 +1,11 @@
-"""Cascade of second-order sections, transposed direct form II."""
+"""Cascade of second-order sections in transposed direct form II."""
 
 
 def filtered(x, y, state, sections):
     """Write the filtered x to y.
 
-    sections: one row b0, b1, b2, a1, a2 each (a0 = 1). state: two numbers a section, changed in
-    place.
+    sections: a row b0, b1, b2, a1, a2 for each section (a0 = 1). state: two numbers for each
+    section; changed in place.
     """
     count = len(sections)
     if len(y) != len(x) or len(state) != count or state.shape[1] != 2 or sections.shape[1] != 5:

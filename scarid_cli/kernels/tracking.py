@@ -1,10 +1,10 @@
-"""Tracking differentiator (Han 2009): the discrete time-optimal law fhan."""
+"""Tracking differentiator (Han 2009) with the discrete time-optimal law fhan."""
 
 from math import sqrt
 
 
 def fhan(e, v, r, h0):
-    """The acceleration that takes position error e and velocity v to rest, at most r."""
+    """The acceleration, at most r, that takes position error e and velocity v to rest in h0 [s]."""
     d = r * h0 * h0
     a0 = h0 * v
     y = e + a0
@@ -19,9 +19,10 @@ def fhan(e, v, r, h0):
 
 
 def follow(g, x, v, state, gains, h):
-    """Write what follows g to x, and its derivative to v.
+    """Write the signal that tracks g to x, and its derivative to v.
 
-    state: x and v before the next sample; changed in place. gains: r, h0 [s]. h [s].
+    state: x and v before the next sample; changed in place. gains: r, h0 [s]. h: sampling
+    period [s].
     """
     if len(x) != len(g) or len(v) != len(g) or len(state) != 2 or len(gains) != 2:
         raise ValueError("tracking: lengths differ")

@@ -1,4 +1,4 @@
-"""Curves of records of any length, reduced to what a figure can show while they are read."""
+"""Curves that are reduced while a record of any length is read, to what a figure can show."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 
 from scarid_cli.arrays import Array
 
-POINTS = 2000  # of a curve; a multiple of 4
+POINTS = 2000  # of a curve at most; a multiple of 4
 
 
 class Curve:
-    """The least and the greatest sample of each of at most POINTS / 2 equal parts of a record.
+    """The minimum and the maximum of each of at most POINTS / 2 equal parts of a record.
 
-    A part grows with the record, from 2 samples: up to POINTS samples are kept as they are. The
-    samples of the last, unfinished part are held: at most one in POINTS / 4.
+    Up to POINTS samples are kept as they are; beyond, parts grow with the record, from 2 samples.
+    The samples of the last, unfinished part are kept as well, at most one in POINTS / 4.
     """
 
     def __init__(self) -> None:
@@ -22,7 +22,7 @@ class Curve:
         self._part = 2
 
     def add(self, t: Array, x: Array) -> None:
-        """Take in the next samples."""
+        """Add the next samples: times [s] and values."""
         self._rest = np.hstack([self._rest, [t, x]])
         while self._rest.shape[1] >= self._part:
             room = (POINTS - self._points.shape[1]) // 2
@@ -40,10 +40,10 @@ class Curve:
 
 
 def extremes(points: Array, part: int) -> Array:
-    """The least and the greatest point of each part, in the order of time."""
+    """The minimum and the maximum of each part of so many points, in the order of time."""
     parts = points.reshape(2, -1, part)
     ends = np.stack([parts[1].argmin(axis=1), parts[1].argmax(axis=1)])
-    # A constant part has one extreme: take both of its ends.
+    # The minimum of a constant part is its maximum as well: take its two ends.
     ends[1] = np.where(ends[0] == ends[1], part - 1, ends[1])
     ends.sort(axis=0)
     rows = np.arange(parts.shape[1])

@@ -1,4 +1,4 @@
-"""The files of a report: all of them appear when it is whole, or none."""
+"""The files of a report: either all of them are written, or none."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scarid_cli.io.writer import Target
 
 @contextlib.contextmanager
 def documents(*paths: str | None) -> Iterator[list[Target | None]]:
-    """Where each document will go; opened before anything is read: mistakes show at once."""
+    """One target for each path, opened first: a path that cannot be written is reported at once."""
     targets: list[Target | None] = []
     try:
         for path in paths:

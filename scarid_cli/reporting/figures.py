@@ -1,4 +1,4 @@
-"""Plots as SVG, drawn by matplotlib without pyplot; the same plot gives the same bytes."""
+"""Plots as SVG, drawn by matplotlib without pyplot; equal plots give equal bytes."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from scarid_cli.arrays import Array
-from scarid_cli.reporting.parts import Bars, Line, Panels, Plot, Section
+from scarid_cli.reporting.parts import Bars, Panels, Plot, Section, Series
 
-# Okabe and Ito's palette, told apart by colour-blind readers, the ones that print best first.
-# Black is for measurements.
-PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442")
-DASHES = ("-", "-.", ":", (0, (1, 4)))  # of the second, third, ... turn through the palette
+# Colours that colour-blind readers can distinguish: Okabe and Ito's palette, but wine (of Tol's
+# muted palette) for its yellow, which is hardly visible on white. Black is for measurements.
+PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255")
+DASHES = ("-", "-.", ":", (0, (1, 4)))  # of the first, second, ... turn through the palette
 INK = "#222222"
-BEYOND = 10.0  # times the doubt, where the axis of bars ends
-GAP = 5.0  # times the mean step: the points of a curve lie up to 4 apart
-WIDTH = 6.7  # inches: the text width of an A4 page
+BEYOND = 10.0  # times the doubtful value: the axis of bars ends there at the latest
+GAP = 5.0  # times the mean step is a gap: the points of a reduced curve lie up to 4 apart
+WIDTH = 6.7  # inches, the width of the text on an A4 page
 
 STYLE = {
     "axes.axisbelow": True,
@@ -43,7 +43,7 @@ STYLE = {
     "legend.frameon": False,
     "lines.linewidth": 1.0,
     "path.simplify_threshold": 0.2,
-    "svg.hashsalt": "scarid",  # else the marks inside differ from run to run
+    "svg.hashsalt": "scarid",  # without it the identifiers inside differ from run to run
     "text.color": INK,
     "text.parse_math": False,  # a dollar in a file name is a dollar
     "xtick.color": "#666666",
@@ -51,7 +51,11 @@ STYLE = {
     "ytick.color": "#666666",
     "ytick.labelcolor": INK,
 }
-PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}  # behind a text on a line
+PAPER = {
+    "facecolor": "white",
+    "edgecolor": "none",
+    "pad": 1.0,
+}  # behind a label on a line
 OFFSET: dict[str, Any] = {"textcoords": "offset points"}
 NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
@@ -64,7 +68,7 @@ def drawn(sections: Sequence[Section]) -> list[list[str]]:
 def draw(plot: Plot) -> str:
     """The plot as an SVG document."""
     with matplotlib.rc_context(), warnings.catch_warnings():
-        # Neither the user's matplotlibrc nor a script without a glyph here changes the report.
+        # A user's matplotlibrc must not change the report, nor a missing glyph print a warning.
         warnings.filterwarnings("ignore", message="Glyph .* missing")
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
@@ -75,18 +79,18 @@ def draw(plot: Plot) -> str:
 
 
 def _hundredths(path: re.Match[str]) -> str:
-    """Coordinates with hundredths of a point for precision."""
+    """Coordinates truncated to hundredths of a point, to make the page smaller."""
     return re.sub(r"(\.\d\d)\d+", r"\1", path[0])
 
 
 def element(document: str) -> str:
-    """The `<svg>` element alone, as large as its place."""
+    """The `<svg>` element alone, which fills the width of its place."""
     inner = document[document.index("<svg") :].strip()
     return re.sub(r' (xmlns(:xlink)?|version|width|height)="[^"]*"', "", inner, count=5)
 
 
 def colour_of(index: int | None) -> str:
-    """The colour of a label by its number in the report; None: of measurements."""
+    """The colour of a label by its number in the report; None stands for measurements."""
     return "#000000" if index is None else PALETTE[index % len(PALETTE)]
 
 
@@ -112,7 +116,7 @@ def _bars(plot: Bars) -> Figure:
     axes.grid(visible=False, axis="y")
     axes.set_xlabel(plot.axis)
     above = ("data", "axes fraction")
-    text = f"{plot.doubt:g} %: doubtful beyond"
+    text = f"doubtful above {plot.doubt:g} %"
     axes.annotate(text, (plot.doubt, 1.0), (0, 3), xycoords=above, **OFFSET, ha="center")
     return figure
 
@@ -130,9 +134,10 @@ def _panels(plot: Panels) -> Figure:
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
     grid = figure.subplots(rows, columns, sharex=True, squeeze=False).flatten().tolist()
     for axes, panel in zip(grid, plot.panels, strict=False):
-        for k, line in enumerate(panel.lines):  # the first above the others
-            below = 0 if line.colour is None else 1 + (len(panel.lines) - k) / len(panel.lines)
-            axes.plot(*broken(line.points), **_style(line), zorder=1.0 + below)
+        count = len(panel.series)
+        for k, series in enumerate(panel.series):  # the first above the others
+            above = 0 if series.colour is None else 1 + (count - k) / count
+            axes.plot(*broken(series.points), **_style(series), zorder=1.0 + above)
         if panel.level is not None:
             axes.axhline(panel.level, color=INK, linestyle="--", linewidth=0.9)
         if panel.limits:
@@ -146,22 +151,22 @@ def _panels(plot: Panels) -> Figure:
 
 
 def broken(points: Array) -> Array:
-    """The curve without a line across the gaps of the record."""
+    """The curve with nan in the gaps of the record, so that no line is drawn across them."""
     steps = np.diff(points[0])
     mean = steps.sum() / max(len(steps), 1)
     return np.insert(points, np.flatnonzero(steps > GAP * mean) + 1, np.nan, axis=1)
 
 
-def _style(line: Line) -> dict[str, Any]:
-    """Measurements are drawn wide and below, so that a prediction that covers them is seen."""
-    if line.colour is None:
+def _style(series: Series) -> dict[str, Any]:
+    """Measurements are drawn wide and below: they remain visible under a good prediction."""
+    if series.colour is None:
         return {"color": "#000000", "linewidth": 1.6, "alpha": 0.35}
-    dashes = DASHES[line.colour // len(PALETTE) % len(DASHES)]
-    return {"color": colour_of(line.colour), "linestyle": dashes}
+    dashes = DASHES[series.colour // len(PALETTE) % len(DASHES)]
+    return {"color": colour_of(series.colour), "linestyle": dashes}
 
 
 def _label_time(grid: Sequence[Axes], used: int, columns: int) -> None:
-    """The time under the lowest panel of each column."""
+    """The time axis is labelled under the lowest panel of each column."""
     for axes in grid[used:]:
         axes.remove()
     for axes in grid[max(0, used - columns) : used]:
@@ -170,8 +175,8 @@ def _label_time(grid: Sequence[Axes], used: int, columns: int) -> None:
 
 
 def _legend(figure: Figure, plot: Panels) -> None:
-    """Above the panels, where it covers no data."""
-    entries = [(line.name, Line2D([], [], **_style(line))) for line in plot.panels[0].lines]
+    """The legend stands above the panels, where it covers no data."""
+    entries = [(one.name, Line2D([], [], **_style(one))) for one in plot.panels[0].series]
     if plot.level:
         entries.append((plot.level, Line2D([], [], color=INK, linestyle="--", linewidth=0.9)))
     names, handles = zip(*entries, strict=True)

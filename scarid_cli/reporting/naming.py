@@ -1,4 +1,4 @@
-"""From file names to the labels of a report: METHOD.EXPERIMENT.KIND.EXTENSION."""
+"""The labels of a report, from file names: METHOD.EXPERIMENT.KIND.EXTENSION."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from scarid_cli.io.bytesource import STDIN
 
 @dataclass(frozen=True)
 class Name:
-    """What a table is of: `label` is the method, `experiment` may be empty.
+    """What a table holds the results of: `label` is the method, `experiment` may be empty.
 
-    `published`: it holds what an article printed of it.
+    `published` marks values that were printed in an article.
     """
 
     label: str
@@ -28,7 +28,7 @@ class Name:
 
 
 def name_of(file: str, kind: str) -> Name:
-    """`p2smd.direct.metrics.parquet` is of p2smd, direct; `p2smd.csv` of no experiment."""
+    """`p2smd.direct.metrics.parquet`: method p2smd, experiment direct; `p2smd.csv`: none."""
     if file == STDIN:
         return Name("stdin", "")
     last = printable(Path(file).name)
@@ -40,7 +40,7 @@ def name_of(file: str, kind: str) -> Name:
 
 
 def names_of(files: Sequence[str], kinds: Sequence[str]) -> list[Name]:
-    """The names of all tables; labels that clash are told apart by folder, then by file."""
+    """The names of all tables; equal labels are distinguished by folder, then by file."""
     names = [name_of(file, kind) for file, kind in zip(files, kinds, strict=True)]
     for in_full in (False, True):
         counts = Counter(zip(kinds, names, strict=True))
@@ -58,12 +58,12 @@ def _with_path(name: Name, file: str, *, in_full: bool) -> Name:
 
 
 def printable(text: str) -> str:
-    """The text without line breaks and control characters, which a terminal would obey."""
+    """The text with a question mark for each control character, which a terminal would execute."""
     return "".join(c if c.isprintable() else "?" for c in text)
 
 
 def figures(titles: Sequence[str], drawn: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
-    """A file name for each figure of each section: its number, the section, its place there."""
+    """A file name for each figure: its number, its section, and its place in the section."""
     named: list[tuple[str, str]] = []
     for title, documents in zip(titles, drawn, strict=True):
         words = re.findall(r"[a-z0-9]+", title.lower())

@@ -1,21 +1,23 @@
-"""A report as one HTML page that needs nothing else: no network, no script, no other file."""
+"""A report as one self-contained HTML page: no network, no script, no other file."""
 
 from __future__ import annotations
 
 import logging
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from scarid_cli import __version__
 from scarid_cli.io.table import Table
 from scarid_cli.reporting.curves import POINTS
-from scarid_cli.reporting.parts import Section, split
+from scarid_cli.reporting.parts import Section, header_lines, split
 
+A = TypeVar("A")
+B = TypeVar("B")
 WIDTH = 108  # characters of a table that fit an A4 page
 GAP = 2
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -23,7 +25,7 @@ NO_BREAK = "\N{NO-BREAK SPACE}"
 
 def figures(sections: Sequence[Section]) -> list[list[str]]:
     """Every plot of every section as an SVG document."""
-    # While it is imported, matplotlib may tell about its caches, which is nobody's concern here.
+    # While it is imported, matplotlib may log messages about its caches.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     from scarid_cli.reporting.figures import drawn
 
@@ -33,9 +35,31 @@ def figures(sections: Sequence[Section]) -> list[list[str]]:
 def html(
     title: str, sections: Sequence[Section], drawn: list[list[str]], tables: Sequence[Table]
 ) -> str:
-    """The whole page with its figures; `tables` are told with their history at the end."""
+    """The whole page with its figures; it ends with the history of the `tables`."""
     from scarid_cli.reporting.figures import element
 
+    return _template().render(
+        title=title,
+        version=__version__,
+        points=POINTS,
+        count=len(tables),
+        no_break=NO_BREAK,
+        origins=_origins(tables),
+        sections=[
+            {
+                "section": section,
+                "parts": split(section, WIDTH, GAP, wrapped=True) if section.rows else [],
+                "figures": [
+                    (plot.caption, _own(element(document), f"f{i}-{j}-"))
+                    for j, (plot, document) in _numbered(section.plots, documents)
+                ],
+            }
+            for i, (section, documents) in _numbered(sections, drawn)
+        ],
+    )
+
+
+def _template() -> Template:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
@@ -44,30 +68,15 @@ def html(
         undefined=StrictUndefined,
     )
     environment.filters["wrapping"] = _wrapping
-    return environment.get_template("report.html").render(
-        title=title,
-        version=__version__,
-        points=POINTS,
-        count=len(tables),
-        origins=_origins(tables),
-        sections=[
-            {
-                "section": section,
-                "parts": split(section, WIDTH, GAP, wrapped=True) if section.rows else [],
-                "figures": [
-                    (plot.caption, _own(element(document), f"f{i}-{j}-"))
-                    for j, (plot, document) in enumerate(
-                        zip(section.plots, documents, strict=True), start=1
-                    )
-                ],
-            }
-            for i, (section, documents) in enumerate(zip(sections, drawn, strict=True), start=1)
-        ],
-    )
+    return environment.get_template("report.html")
+
+
+def _numbered(first: Iterable[A], second: Iterable[B]) -> Iterator[tuple[int, tuple[A, B]]]:
+    return enumerate(zip(first, second, strict=True), start=1)
 
 
 def _origins(tables: Sequence[Table]) -> list[dict[str, Any]]:
-    """Tables of one run share a history: it is told once."""
+    """Tables of one run share a history, which is listed once."""
     origins: list[dict[str, Any]] = []
     for table in tables:
         same = next((o for o in origins if o["history"] == table.meta.history), None)
@@ -79,10 +88,10 @@ def _origins(tables: Sequence[Table]) -> list[dict[str, Any]]:
 
 
 def _wrapping(header: str) -> str:
-    """The header with a single place for a line break: before the unit."""
-    return header.replace(" ", NO_BREAK).replace(f"{NO_BREAK}[", " [")
+    """The header with spaces that a browser may break at between its lines only."""
+    return " ".join(line.replace(" ", NO_BREAK) for line in header_lines(header))
 
 
 def _own(svg: str, prefix: str) -> Markup:
-    """The figure with names of its own inside: those of a page must be unique."""
+    """The figure with a prefix before its identifiers: those of a page must be unique."""
     return Markup(re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{prefix}", svg))

@@ -1,7 +1,8 @@
-"""What a section of a report is made of: a table, and plots."""
+"""What a section of a report is made of: a table and plots."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Any
@@ -9,11 +10,15 @@ from typing import Any
 from scarid_cli.arrays import Array
 
 NONE = "-"
+PANELS = 8  # of a figure at most, so that it fits a page
 
 
 @dataclass(frozen=True)
 class Bars:
-    """One bar per name; `colours` are the numbers of the labels, pale ones are published."""
+    """One bar for each name; `colours` are the numbers of the labels, `pale` bars are published.
+
+    `doubt` is the value above which the parameters of a bar are doubtful.
+    """
 
     caption: str
     axis: str
@@ -25,8 +30,8 @@ class Bars:
 
 
 @dataclass(frozen=True)
-class Line:
-    """A curve (2, points) of a panel; `colour` is that of a label, None that of measurements."""
+class Series:
+    """A named curve (2, points) of a panel; `colour` is None for measurements and true signals."""
 
     name: str
     colour: int | None
@@ -38,14 +43,14 @@ class Panel:
     """Curves over time; `level` is a horizontal line, `limits` those of the vertical axis."""
 
     axis: str
-    lines: tuple[Line, ...]
+    series: tuple[Series, ...]
     level: float | None = None
     limits: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
 class Panels:
-    """Panels under each other in columns, with one legend; `level` names the horizontal lines."""
+    """Panels in columns with one legend above; `level` names their horizontal lines."""
 
     caption: str
     panels: tuple[Panel, ...]
@@ -60,8 +65,9 @@ Plot = Bars | Panels
 class Section:
     """A table under a title and a note; without rows only its plots are shown.
 
-    The first `keys` columns tell what a row is, the first `texts` of them in words; the others
-    belong together in groups of `group`. With `prose` the last column holds sentences.
+    The first `keys` columns identify a row, and the first `texts` columns are words rather than
+    numbers. The columns after the keys belong together in groups of `group`. With `prose` the last
+    column holds sentences.
     """
 
     title: str
@@ -76,7 +82,7 @@ class Section:
 
 
 def number(value: Any) -> str:
-    """Four significant digits, whole numbers in full; what does not exist is a dash."""
+    """Four significant digits, integers in full, and a dash for what is not a number."""
     if isinstance(value, int) and not isinstance(value, bool):
         return str(value)
     if not isinstance(value, float) or not isfinite(value):
@@ -85,11 +91,16 @@ def number(value: Any) -> str:
     return f"{value + 0.0:#.4g}".rstrip(".")
 
 
-def split(section: Section, width: int, gap: int, *, wrapped: bool = False) -> list[Section]:
-    """The section, or, where its table is wider than this many characters, parts side by side.
+def pages(panels: Sequence[Panel]) -> list[tuple[Panel, ...]]:
+    """The panels in figures that fit a page."""
+    return [tuple(panels[i : i + PANELS]) for i in range(0, len(panels), PANELS)]
 
-    Columns are `gap` characters apart; `wrapped` headers have their unit on a line of its
-    own. Each part repeats the key columns; no part is empty.
+
+def split(section: Section, width: int, gap: int, *, wrapped: bool = False) -> list[Section]:
+    """The section in parts of at most this many characters; each repeats the key columns.
+
+    Columns are `gap` characters apart, and a group of columns is never divided. `wrapped` headers
+    are broken into the lines of `header_lines`.
     """
     columns = list(zip(section.headers, *section.rows, strict=True))
     widths = [_width(column, wrapped=wrapped) + gap for column in columns]
@@ -107,9 +118,14 @@ def split(section: Section, width: int, gap: int, *, wrapped: bool = False) -> l
     return [_part(section, columns, [*range(section.keys), *part]) for part in parts]
 
 
+def header_lines(header: str) -> list[str]:
+    """Where a header may be broken: after the experiment, and before the unit."""
+    return header.replace(": ", ":\n").replace(" [", "\n[").split("\n")
+
+
 def _width(column: tuple[str, ...], *, wrapped: bool) -> int:
     header, *cells = column
-    lines = header.replace(" [", "\n[").split("\n") if wrapped else [header]
+    lines = header_lines(header) if wrapped else [header]
     return max(map(len, (*lines, *cells)))
 
 

@@ -1,4 +1,4 @@
-"""Published values beside ours: a table of them becomes results of its own."""
+"""Published values: they become results that stand beside those of the tables."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from math import nan
 
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.io.table import Table
+from scarid_cli.reporting.kinds import Metrics, Parameters, Result, Trace
 from scarid_cli.reporting.naming import printable
 from scarid_cli.reporting.parts import NONE, Section
-from scarid_cli.reporting.results import Metrics, Parameters, Result, Trace
 
-# (method, experiment, quantity, measure) -> value
+# By method, experiment, quantity and measure.
 Values = dict[tuple[str, str, str, str], float]
 
 
 def read(table: Table) -> Values:
-    """The values of a table of the kind `published`."""
+    """The values in a table of the kind `published`."""
     values: Values = {}
     for batch in table.batches:
         rows = batch.to_pydict()
@@ -29,7 +29,7 @@ def read(table: Table) -> Values:
 
 
 def beside(results: Sequence[Result], values: Values) -> list[Result]:
-    """The results, each followed by what was published for its method and experiment."""
+    """The results, each followed by the published one of its method and experiment."""
     found: list[Result] = []
     for result in results:
         found.append(result)
@@ -49,14 +49,10 @@ def _published(result: Result, values: Values) -> Result | None:
     if not any(key[:2] == (method, experiment) for key in values):
         return None
     if isinstance(result, Parameters):
-        return replace(
-            result,
-            name=name,
-            estimates=tuple(of(p, "estimate") for p in result.names),
-            deviations=tuple(of(p, "relative_deviation") for p in result.names),
-            extra={},
-            robust=(),
-        )
+        estimates = tuple(of(p, "estimate") for p in result.names)
+        known = tuple(of(p, "relative_deviation") for p in result.names)
+        plain = replace(result, name=name, extra={}, robust=())
+        return replace(plain, estimates=estimates, deviations=known)
     if isinstance(result, Trace):
         errors = tuple(of(p, "rms_error") for p in result.names)
         return replace(result, name=name, curves=(), errors=errors)
@@ -69,7 +65,7 @@ def _published(result: Result, values: Values) -> Result | None:
 
 
 def settings(results: Sequence[Result], values: Values) -> list[Section]:
-    """The settings that were published, beside the commands that were run."""
+    """Published settings beside the options of the commands that were run."""
     rows = []
     for result in results:
         if not isinstance(result, Parameters) or result.name.published or result.name.experiment:
@@ -81,13 +77,13 @@ def settings(results: Sequence[Result], values: Values) -> list[Section]:
         rows.append((method, ", ".join(given) or NONE, *used))
     if not rows or not values:
         return []
-    note = "Published settings, and the options that were used."
+    note = "Published settings, and the options with which each command was run here."
     headers = ("method", "published", "differentiate", "identify")
     return [Section("Settings", note, headers, tuple(rows), texts=4)]
 
 
 def _options(commands: Sequence[str], name: str) -> str:
-    """Of the last run of a command, without files."""
+    """The options of the last run of a command, without its files."""
     runs = [c.split()[2:] for c in commands if c.split()[1] == name]
     words = [word for word in (runs[-1] if runs else []) if "/" not in word and word != "--trace"]
     return " ".join(words) or NONE

@@ -2,45 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 from typing import TypeVar
 
 import numpy as np
 
+from scarid_cli.reporting.kinds import Metrics, Parameters, Result, Trace
 from scarid_cli.reporting.parts import NONE, Section, number
 from scarid_cli.reporting.published import Values
-from scarid_cli.reporting.results import Metrics, Parameters, Result, Trace
+from scarid_cli.reporting.wording import of_kind, titled
 
 R = TypeVar("R", bound=Result)
+# The repetitions of one kind of result: by experiment, then by method.
+Repetitions = Mapping[str, Mapping[str, Sequence[R]]]
 BETTER_HIGH = {"r2"}
+RANKING = (
+    *("experiment", "quantity", "measure"),
+    *("published, best first", "same best", "same order"),
+)
+RANKED = (
+    "Share of the experiments in which the method published as the best is the best here, and in "
+    "which all methods come in the published order."
+)
 
 
 def sections(results: Sequence[Result], values: Values | None = None) -> list[Section]:
     """Results of the same name are repetitions."""
-    parameters = _grouped(results, Parameters)
-    traces, metrics = _grouped(results, Trace), _grouped(results, Metrics)
+    parameters, metrics = _repetitions(results, Parameters), _repetitions(results, Metrics)
     found = [
         *_parameters(parameters, "Estimates", lambda r: r.estimates),
         *_parameters(parameters, "Relative standard deviations [%]", lambda r: r.deviations),
-        *_traces(traces),
+        *_traces(_repetitions(results, Trace)),
         *_metrics(metrics),
     ]
-    counts = [len(group) for groups in (parameters, metrics) for group in groups.values()]
-    count = max(counts, default=0)
-    note = f"Median and quartiles of {count} experiments. "
+    count = max(_count(parameters), _count(metrics))
+    note = f"Median [first quartile, third quartile] of {count} experiments. "
     noted = [replace(section, note=note + section.note) for section in found]
     return [*noted, *_rankings(results, values or {})]
 
 
-def _grouped(results: Sequence[Result], kind: type[R]) -> dict[tuple[str, str], list[R]]:
-    """By method and experiment."""
-    groups: dict[tuple[str, str], list[R]] = {}
-    for result in results:
-        if isinstance(result, kind):
-            groups.setdefault((result.name.label, result.name.experiment), []).append(result)
+def _repetitions(results: Sequence[Result], kind: type[R]) -> Repetitions[R]:
+    groups: dict[str, dict[str, list[R]]] = {}
+    for result in of_kind(results, kind):
+        methods = groups.setdefault(result.name.experiment, {})
+        methods.setdefault(result.name.label, []).append(result)
     return groups
+
+
+def _count(groups: Repetitions[R]) -> int:
+    """Of the method that was repeated most often."""
+    return max((len(group) for methods in groups.values() for group in methods.values()), default=0)
 
 
 def spread(values: Sequence[float]) -> str:
@@ -52,95 +65,90 @@ def spread(values: Sequence[float]) -> str:
     return f"{number(float(middle))} [{number(float(low))}, {number(float(high))}]"
 
 
+def _spreads(columns: Iterator[Sequence[float]]) -> list[str]:
+    """The spread of each quantity; one sequence of them for each repetition."""
+    return [spread(values) for values in zip(*columns, strict=True)]
+
+
+def _first(methods: Mapping[str, Sequence[R]]) -> R:
+    return next(iter(methods.values()))[0]
+
+
 def _parameters(
-    groups: dict[tuple[str, str], list[Parameters]],
-    title: str,
-    column: Callable[[Parameters], tuple[float, ...]],
-) -> list[Section]:
-    sections = []
-    for experiment in dict.fromkeys(experiment for _, experiment in groups):
-        chosen = {m: group for (m, e), group in groups.items() if e == experiment}
-        first = next(iter(chosen.values()))[0]
-        columns = [
-            [spread(values) for values in zip(*map(column, group), strict=True)]
-            for group in chosen.values()
-        ]
+    groups: Repetitions[Parameters], title: str, column: Callable[[Parameters], tuple[float, ...]]
+) -> Iterator[Section]:
+    for experiment, methods in groups.items():
+        first = _first(methods)
+        columns = [_spreads(map(column, group)) for group in methods.values()]
         apriori = [number(float(x)) for x in first.robot.apriori] if first.robot else None
         keys = [first.names, first.units, *([apriori] if apriori else [])]
-        sections.append(
-            Section(
-                title=f"{title}: {experiment}" if experiment else title,
-                note="",
-                headers=(*("parameter", "unit", "a priori")[: len(keys)], *chosen),
-                rows=tuple(zip(*keys, *columns, strict=True)),
-                texts=2,
-                keys=len(keys),
-            )
+        yield Section(
+            title=titled(title, experiment),
+            note="",
+            headers=(*("parameter", "unit", "a priori")[: len(keys)], *methods),
+            rows=tuple(zip(*keys, *columns, strict=True)),
+            texts=2,
+            keys=len(keys),
         )
-    return sections
 
 
-def _traces(groups: dict[tuple[str, str], list[Trace]]) -> list[Section]:
-    if not groups:
-        return []
-    first = next(iter(groups.values()))[0]
-    rows = tuple(
-        (method, *(spread(errors) for errors in zip(*(r.errors for r in group), strict=True)))
-        for (method, _), group in groups.items()
-    )
-    note = "Root-mean-square error of each parameter over the record (eq. 35)."
-    return [Section("Errors over the record", note, ("method", *first.names), rows)]
+def _traces(groups: Repetitions[Trace]) -> Iterator[Section]:
+    for experiment, methods in groups.items():
+        rows = ((m, *_spreads(r.errors for r in group)) for m, group in methods.items())
+        yield Section(
+            title=titled("Errors of the running estimates", experiment),
+            note="Root-mean-square error of each running estimate with respect to its a priori "
+            "value, over the whole record (eq. 35).",
+            headers=("method", *_first(methods).names),
+            rows=tuple(rows),
+        )
 
 
-def _metrics(groups: dict[tuple[str, str], list[Metrics]]) -> list[Section]:
-    sections = []
-    for experiment in dict.fromkeys(experiment for _, experiment in groups):
-        chosen = {m: group for (m, e), group in groups.items() if e == experiment}
-        joints = next(iter(chosen.values()))[0].joints
-        rows = [
-            (
-                method,
-                *(
-                    spread([getattr(r.qualities[i], measure) for r in group])
-                    for i in range(len(joints))
-                    for measure in ("r2", "rmse")
-                ),
-            )
-            for method, group in chosen.items()
-        ]
-        headers = [f"tau{i} {name}" for i in joints for name in ("R2", "RMSE")]
-        title = f"Torque prediction: {experiment}" if experiment else "Torque prediction"
-        sections.append(Section(title, "", ("method", *headers), tuple(rows), group=2))
-    return sections
+def _metrics(groups: Repetitions[Metrics]) -> Iterator[Section]:
+    for experiment, methods in groups.items():
+        joints = _first(methods).joints
+        rows = (
+            (method, *_spreads([x for q in r.qualities for x in (q.r2, q.rmse)] for r in group))
+            for method, group in methods.items()
+        )
+        headers = (f"tau{i} {name}" for i in joints for name in ("R2", "RMSE"))
+        title = titled("Torque prediction", experiment)
+        yield Section(title, "", ("method", *headers), tuple(rows), group=2)
 
 
 def _rankings(results: Sequence[Result], values: Values) -> list[Section]:
-    """For each published measure of several methods: its order there, and how often it holds."""
-    asked: dict[tuple[str, str, str], dict[str, float]] = {}
-    for (method, experiment, quantity, measure), value in values.items():
-        if measure in ("r2", "rmse", "rms_error"):
-            asked.setdefault((experiment, quantity, measure), {})[method] = value
+    """How often the published order of the methods holds, for each measure that was published."""
     rows = []
-    for (experiment, quantity, measure), printed in asked.items():
-        sign = -1.0 if measure in BETTER_HIGH else 1.0
-        found = _repetitions(results, experiment, quantity, measure, list(printed))
+    for (experiment, quantity, measure), published in _published(values).items():
+        found = _values(results, experiment, quantity, measure, list(published))
         if not found:
             continue
-        order = sorted(found[0], key=lambda method: sign * printed[method])
-        orders = [sorted(order, key=lambda m, f=f: sign * f[m]) for f in found]  # type: ignore[misc]
-        first = sum(o[0] == order[0] for o in orders) / len(orders)
-        whole = sum(o == order for o in orders) / len(orders)
-        row = (experiment or "-", quantity, measure, " < ".join(order))
-        rows.append((*row, f"{100 * first:.0f} %", f"{100 * whole:.0f} %"))
-    headers = ("experiment", "quantity", "measure", "published, best first", "first", "order")
-    note = "How often the published best method is the best here, and the whole order the same."
-    return [Section("Rankings", note, headers, tuple(rows), texts=4)] if rows else []
+        sign = -1.0 if measure in BETTER_HIGH else 1.0
+        orders = [sorted(x, key=lambda method, x=x: sign * x[method]) for x in found]  # type: ignore[misc]
+        order = sorted(found[0], key=lambda method: sign * published[method])
+        best = _share([o[0] == order[0] for o in orders])
+        whole = _share([o == order for o in orders])
+        rows.append((experiment or NONE, quantity, measure, " < ".join(order), best, whole))
+    return [Section("Rankings", RANKED, RANKING, tuple(rows), texts=4)] if rows else []
 
 
-def _repetitions(
+def _share(cases: Sequence[bool]) -> str:
+    return f"{100 * (sum(cases) / len(cases)):.0f} %"
+
+
+def _published(values: Values) -> dict[tuple[str, str, str], dict[str, float]]:
+    """Values by method for each experiment, quantity and measure that ranks methods."""
+    ranked: dict[tuple[str, str, str], dict[str, float]] = {}
+    for (method, experiment, quantity, measure), value in values.items():
+        if measure in ("r2", "rmse", "rms_error"):
+            ranked.setdefault((experiment, quantity, measure), {})[method] = value
+    return ranked
+
+
+def _values(
     results: Sequence[Result], experiment: str, quantity: str, measure: str, methods: list[str]
 ) -> list[dict[str, float]]:
-    """The values of the methods that are there, experiment by experiment."""
+    """Repetition by repetition, the value of each of these methods that has any."""
     columns: dict[str, list[float]] = {method: [] for method in methods}
     for result in results:
         if result.name.label in columns:
@@ -152,7 +160,7 @@ def _repetitions(
 
 
 def _value(result: Result, experiment: str, quantity: str, measure: str) -> list[float]:
-    """The value that this result has of it, if any."""
+    """The value of this measure in this result; empty if it has none."""
     if result.name.experiment != experiment:
         return []
     if measure == "rms_error":

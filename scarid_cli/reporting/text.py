@@ -1,4 +1,4 @@
-"""A report as text: for a terminal, for a pipe and as Markdown."""
+"""A report as text: on a terminal, in a pipe, and as Markdown."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from scarid_cli.reporting.parts import Section, split
 
 WIDTH = 100  # characters of running text where there is no terminal
 GAP = 2  # characters between the columns of a table
-# One line, under the headers; rich knows to write it in ASCII where it must.
+# One line, under the headers; rich writes it in ASCII where the terminal needs that.
 RULE = Box("\n".join(["    "] * 2 + [" ── "] + ["    "] * 5) + "\n")
 
 
 def terminal(sections: Sequence[Section]) -> str:
-    """Tables for standard output: on a narrow terminal in parts, elsewhere as wide as they are."""
+    """Tables for standard output; on a terminal, those that are too wide are shown in parts."""
     console = Console(markup=False, emoji=False, highlight=False)
     width = console.width if console.is_terminal else WIDTH
     with console.capture() as capture:
@@ -29,11 +29,11 @@ def terminal(sections: Sequence[Section]) -> str:
             if section.note:
                 console.print(section.note, style="dim")
             for part in split(section, width, GAP) if console.is_terminal else [section]:
-                # What does not fit even so is wrapped by the terminal: no number is cut.
+                # A part that is still too wide is wrapped by the terminal: no number is cut.
                 console.width = width if part.prose else max(width, sum(_widths(part)))
                 console.print(_table(part))
                 console.print()
-    # A name that the terminal cannot show does not end the report.
+    # A name with characters that the terminal cannot show must not end the report.
     text = capture.get().encode(console.encoding, "replace").decode(console.encoding)
     return text if console.is_terminal else _stripped(text)
 
@@ -63,7 +63,7 @@ def _stripped(text: str) -> str:
 
 
 def markdown(title: str, sections: Sequence[Section]) -> str:
-    """Tables as GitHub-flavoured Markdown, readable as it is."""
+    """Tables in GitHub-flavoured Markdown, aligned so that the source is readable too."""
     parts = [f"# {_escaped(title)}\n"]
     for section in _with_rows(sections):
         parts.append(f"## {_escaped(section.title)}\n")
@@ -87,5 +87,5 @@ def _markdown_table(section: Section) -> str:
 
 
 def _escaped(text: str) -> str:
-    """With a backslash before what Markdown would take for its own."""
+    """The text with a backslash before each character that Markdown would interpret."""
     return "".join(f"\\{c}" if c in "\\|*<`" else c for c in text)

@@ -1,4 +1,4 @@
-"""Stages: each takes a table and gives one, batch by batch, and knows no files and no click."""
+"""Stages: functions from table to table, batch by batch, that know no files and no options."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class Sink(Protocol):
-    """Where a stage sends a second table: its schema first, then the batches."""
+    """Where a stage sends a second table: first its schema, then its batches."""
 
     def start(self, schema: pa.Schema) -> None: ...
     def write(self, batch: pa.RecordBatch) -> None: ...

@@ -1,4 +1,4 @@
-"""A lab's log with the names, units and clock that the commands expect."""
+"""Give a recorded log the names, units and clock that the commands expect."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pyarrow as pa
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table, doubles, matrix, number
 
-# Unit of a log: what to multiply with, and the unit that comes out.
+# The unit of a log: the factor to multiply by, and the unit that results.
 UNITS = {
     "deg": (pi / 180.0, "rad"),
     "deg/s": (pi / 180.0, "rad/s"),
@@ -37,9 +37,10 @@ UNITS = {
 def adapted(
     table: Table, names: dict[str, str], units: list[tuple[str, str]], rate: float | None
 ) -> Table:
-    """Columns renamed (`names`: new to old), converted (column patterns and units), with a clock.
+    """The table with renamed and converted columns, and with a clock.
 
-    `rate` [Hz] gives a table without t a time column.
+    `names` has the old name of each new column, `units` has patterns of new names with the unit
+    that the log has. A `rate` [Hz] adds a time column to a table without one.
     """
     fields = _renamed(table, names)
     new = [field.name for field in fields]
@@ -58,7 +59,14 @@ def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:
             raise UsageFault(
                 f"{table.name}: no column {old!r} to rename; it has {', '.join(table.columns)}"
             )
-    to = {old: new for new, old in names.items()}
+    to: dict[str, str] = {}
+    for new, old in names.items():
+        if old in to:
+            raise UsageFault(
+                f"--map: column {old!r} cannot become both {to[old]!r} and {new!r}; "
+                "give it one new name"
+            )
+        to[old] = new
     fields = [f.with_name(to.get(f.name, f.name)) for f in table.schema]
     twice = next((f.name for f in fields if [g.name for g in fields].count(f.name) > 1), None)
     if twice:
@@ -72,8 +80,8 @@ def _scales(names: list[str], units: list[tuple[str, str]]) -> dict[str, tuple[f
         scale = _scale(text)
         if scale is None:
             raise UsageFault(
-                f"--unit {pattern}={text}: unknown unit; there are {', '.join(UNITS)}, rad, ..., "
-                "also with a number before"
+                f"--unit {pattern}={text}: unknown unit; write one of {', '.join(UNITS)}, rad, "
+                "..., or a factor and a unit, such as '0.001 rad'"
             )
         found = [name for name in names if fnmatchcase(name, pattern)]
         if not found:
@@ -83,7 +91,7 @@ def _scales(names: list[str], units: list[tuple[str, str]]) -> dict[str, tuple[f
 
 
 def _scale(text: str) -> tuple[float, str] | None:
-    """Of `deg`, or of a count of an encoder: `0.001534 rad`."""
+    """The factor and the unit of `deg`, say, or of an encoder count: `0.001534 rad`."""
     first, _, rest = text.partition(" ")
     try:
         factor, unit = float(first), rest

@@ -1,4 +1,4 @@
-"""Run processes over columns of a table; rows leave as soon as all their columns have."""
+"""Run processes over columns of a table; a row leaves as soon as all its columns are there."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Task:
 
 @dataclass
 class Running:
-    """A task with its state, and the parts of its outputs that wait for the other tasks."""
+    """A task, its state, and the parts of its outputs that wait for other tasks."""
 
     task: Task
     state: Any = None
@@ -48,7 +48,7 @@ class Running:
         return sum(len(part[0]) for part in self.parts if part)
 
     def take(self, rows: int) -> dict[str, Array]:
-        """The first rows of each output."""
+        """Remove and return the first rows of each output."""
         parts = [part for part in self.parts if part]
         columns = [np.concatenate(pieces) for pieces in zip(*parts, strict=True)]
         self.parts = [tuple(column[rows:] for column in columns)]
@@ -64,20 +64,20 @@ class Edges:
     end: int = 0
 
     def marks(self, first: int, rows: int, total: float) -> pa.Array:
-        """The column `settled` of so many rows from the first on, of a record of total rows."""
+        """The column `settled` of these rows, of a record that has `total` rows."""
         at = np.arange(first, first + rows)
         return integers((at >= self.start) & (at < total - self.end))
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The tasks of a record, and the rows at its ends that they leave unsettled."""
+    """The tasks for a record, and the settling rows at its ends."""
 
     tasks: list[Task]
     edges: Edges = field(default_factory=Edges)
 
     def lag(self, period: float) -> float:
-        """By how many rows the output of the slowest waits; inf for the whole record."""
+        """By how many rows the slowest output is late; inf if it waits for the whole record."""
         return max((task.process.lag(period) for task in self.tasks), default=0)
 
     def check(self, period: float) -> None:
@@ -92,11 +92,11 @@ def processed(
     planned: Callable[[Table], tuple[Table, Plan]],
     left_out: list[TooShort] | None = None,
 ) -> Table:
-    """The table with the columns that tasks write, and the column `settled` if the schema has it.
+    """The table with the columns that the tasks write, and `settled` if the schema has it.
 
-    A row keeps its time: a process that looks ahead delays all other columns with its own. Each
-    segment between gaps is a record of its own, with its own plan; those too short for it are
-    left out, and `left_out` receives why.
+    A row keeps its time: a process that looks ahead delays all other columns as well. Each segment
+    between gaps is a record of its own, with its own plan. A segment that is too short for its plan
+    is left out, and `left_out` receives the reason.
     """
     batches = _segments(table, schema, planned, [] if left_out is None else left_out)
     return replace(table, schema=schema, batches=batches)
@@ -126,7 +126,7 @@ def _segments(
 
 
 class Counted:
-    """Batches, and how many rows they had so far."""
+    """Batches, and the number of rows that they had so far."""
 
     def __init__(self, batches: Iterator[pa.RecordBatch]) -> None:
         self._batches = batches
@@ -142,8 +142,8 @@ class Counted:
 
 
 def _rows(table: Table, plan: Plan, schema: pa.Schema, first: int) -> Iterator[pa.RecordBatch]:
-    """Of a record whose first row has this number in the table."""
-    period = table.meta.period or 0.0
+    """The rows of a record whose first row has this number in the table."""
+    period = table.period
     running = [Running(task) for task in plan.tasks]
     waiting = Waiting(table.name, schema, plan.edges, before=first)
     for batch in table.batches:
@@ -165,9 +165,9 @@ def _rows(table: Table, plan: Plan, schema: pa.Schema, first: int) -> Iterator[p
 
 @dataclass
 class Waiting:
-    """The rows of a record whose outputs are not all there yet; `first` numbers the first.
+    """The rows of a record that wait for some of their columns; `first` numbers the first one.
 
-    `before` rows of the table came before this record.
+    `before` is the number of rows of the table before this record.
     """
 
     name: str
@@ -183,7 +183,7 @@ class Waiting:
         self.rows += batch.num_rows
 
     def joined(self, running: list[Running], total: float) -> Iterator[pa.RecordBatch]:
-        """The rows that every task has settled, with its columns; of a record of total rows."""
+        """The rows whose columns are all there, of a record that has `total` rows."""
         rows = min((run.rows for run in running), default=self.rows)
         values: dict[str, Array] = {}
         for run in running if rows else ():

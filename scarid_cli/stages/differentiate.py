@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from math import inf
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.processes.matching import settling_rows
-from scarid_cli.algorithms.processes.process import Matched, Method
+from scarid_cli.algorithms.processes.method import MatchedForm, Method
 from scarid_cli.errors import TooShort
 from scarid_cli.io.table import SEGMENT, Table, matrix, number, without
 from scarid_cli.stages.columns import Edges, Plan, Task, processed
@@ -20,18 +19,18 @@ from scarid_cli.stages.columns import Edges, Plan, Task, processed
 def differentiate(
     table: Table, methods: list[Method], left_out: list[TooShort] | None = None
 ) -> Table:
-    """A motion: the table with dq and ddq columns, one method per joint, in their order.
+    """A motion: the table with columns dq and ddq, given one method per joint in their order.
 
-    Each segment between gaps by itself; `left_out` receives why one was, and then the column
-    `settled` is 0 where an end of a segment still shows.
+    Each segment between gaps is treated by itself, and then `settled` is 0 in its settling rows.
+    `left_out` receives why a segment was left out.
     """
     return _motion(table, methods, _plain, left_out, marked=SEGMENT in table.columns)
 
 
 def matched(table: Table, methods: list[Method], left_out: list[TooShort] | None = None) -> Table:
-    """A motion whose positions and torques belong to the instant of the derivatives.
+    """A motion whose positions and torques belong to the same instant as the derivatives.
 
-    The column `settled` is 0 where an end of the record, or of a segment, still shows.
+    The column `settled` is 0 in the settling rows at the ends of the record, or of a segment.
     """
     return _motion(table, methods, _matching, left_out, marked=True)
 
@@ -48,9 +47,9 @@ def _motion(
     marked: bool,
 ) -> Table:
     """The table as a motion, with the lag of its rows [s] in the metadata."""
-    period = table.meta.period or 0.0
+    period = table.period
     schema = _schema(table, len(methods), [pa.field("settled", pa.int64())] if marked else [])
-    if any(hasattr(method, "fitted") for method in methods):  # these need to see the record first
+    if any(method.TUNES_ITSELF for method in methods):  # these need to see the record first
         rows = inf
 
         def planned(segment: Table) -> tuple[Table, Plan]:
@@ -80,7 +79,7 @@ def _plain(table: Table, methods: list[Method]) -> Plan:
     if SEGMENT not in table.columns:
         return Plan(tasks)
     forms = [method.matched() for method in methods]
-    return Plan(tasks, _edges(forms, table.meta.period or 0.0))
+    return Plan(tasks, _edges(forms, table.period))
 
 
 def _matching(table: Table, methods: list[Method]) -> Plan:
@@ -90,29 +89,26 @@ def _matching(table: Table, methods: list[Method]) -> Plan:
         tasks.append(Task(f"q{i}", form, (f"q{i}", f"dq{i}", f"ddq{i}")))
         if form.torque_filter and f"tau{i}" in table.columns:
             tasks.append(Task(f"tau{i}", form.torque_filter, (f"tau{i}",)))
-    return Plan(tasks, _edges(forms, table.meta.period or 0.0))
+    return Plan(tasks, _edges(forms, table.period))
 
 
-def _edges(forms: list[Matched], period: float) -> Edges:
-    spreads = [(0, 0)]
+def _edges(forms: list[MatchedForm], period: float) -> Edges:
+    settling = [(0, 0)]
     for form in forms:
         form.init(0.0, period)  # refuses settings
         if form.torque_filter:
-            spreads.append(settling_rows(form.torque_filter, period))
-    before, after = (max(sides) for sides in zip(*spreads, strict=True))
+            settling.append(settling_rows(form.torque_filter, period))
+    before, after = (max(sides) for sides in zip(*settling, strict=True))
     return Edges(after, before)
 
 
 def _fitted(table: Table, methods: list[Method]) -> tuple[Table, list[Method]]:
-    """Methods that tune themselves, by the whole record."""
+    """The methods, those that tune themselves tuned on the whole record."""
     batches = list(table.batches)
     columns = [f"q{i}" for i in range(1, len(methods) + 1)]
     positions = np.concatenate([matrix(batch, columns) for batch in batches], axis=1)
-    period = table.meta.period or 0.0
-    fitted: list[Any] = [
-        method.fitted(q, period) if hasattr(method, "fitted") else method
-        for method, q in zip(methods, positions, strict=True)
-    ]
+    period = table.period
+    fitted = [method.fitted(q, period) for method, q in zip(methods, positions, strict=True)]
     return replace(table, batches=iter(batches)), fitted
 
 

@@ -1,4 +1,4 @@
-"""Low-pass chosen columns: row by row as they come, or forwards and backwards over all of them."""
+"""Low-pass filter columns of a table: row by row, or forwards and backwards over the record."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from scarid_cli.stages.columns import Plan, Task, processed
 def filtered(
     table: Table, filters: dict[str, Process], left_out: list[TooShort] | None = None
 ) -> Table:
-    """The table with some columns filtered, each by its own process, between gaps.
+    """The table with some columns filtered, each by its own process, in each segment by itself.
 
-    `left_out` receives why a segment was.
+    `left_out` receives why a segment was left out.
     """
     plan = Plan([Task(name, lowpass, (name,)) for name, lowpass in filters.items()])
-    plan.check(table.meta.period or 0.0)
+    plan.check(table.period)
     return processed(table, table.schema, lambda segment: (segment, plan), left_out)

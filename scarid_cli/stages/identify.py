@@ -75,7 +75,7 @@ def identify(
     if checkpoint is None:
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
-        checkpoint = Checkpoint.begun(state, table.meta.period or 0.0, holds=holds)
+        checkpoint = Checkpoint.begun(state, table.period, holds=holds)
     for batch, rows in treated(table, robot, treatment, checkpoint.seen):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:

@@ -10,24 +10,24 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.io import schemas
-from scarid_cli.io.reader import nominal_period
+from scarid_cli.io.clock import nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, steps_of
 
 
 def described(table: Table) -> Iterator[str]:
-    """Kind, robot, columns with type and unit, rows, sampling and history, a line each."""
+    """A table's kind, robot, rows, sampling, metadata, columns and history, in lines of text."""
     meta = table.meta
     schema = schemas.load(meta.kind) if meta.kind else schemas.detect(table.columns)
-    origin = f"version {meta.version}" if meta.kind else "told by its columns"
+    origin = f"version {meta.version}" if meta.kind else "inferred from its columns"
     yield f"table     {table.name}"
     yield f"kind      {f'{schema.kind} ({origin})' if schema else 'unknown'}"
     yield f"robot     {meta.robot or 'not stated'}"
     rows, clock = _read(table)
     yield f"rows      {rows:,}"
     if clock:
-        yield f"time      {clock.told(rows)}"
+        yield f"time      {clock.description(rows)}"
     for key, value in sorted(meta.extra.items()):
-        yield from _told(key, value)
+        yield from _metadata(key, value)
     yield "columns"
     width = max((len(name) for name in table.columns), default=0)
     for field in table.schema:
@@ -42,8 +42,8 @@ def described(table: Table) -> Iterator[str]:
             yield f"    {name}: {f'sha256 {digest}' if digest else 'a pipe'}"
 
 
-def _told(key: str, value: Any) -> Iterator[str]:
-    """A value on its line; what a list holds, on lines of their own."""
+def _metadata(key: str, value: Any) -> Iterator[str]:
+    """A value on one line, or the items of a list on a line each."""
     if isinstance(value, list):
         yield key
         yield from (f"  {_shown(item)}" for item in value)
@@ -58,8 +58,8 @@ def _shown(value: Any) -> str:
 
 
 @dataclass
-class Clock:
-    """First and last time, first interval, and the time [s] in the gaps between segments."""
+class Sampling:
+    """The first and the last time, the first interval and the time in gaps, all in [s]."""
 
     start: float
     end: float
@@ -67,7 +67,7 @@ class Clock:
     gaps: int = 0
     missing: float = 0.0
 
-    def told(self, rows: int) -> str:
+    def description(self, rows: int) -> str:
         text = f"{self.start:.9g} s to {self.end:.9g} s"
         between = rows - 1 - self.gaps
         if self.interval is None or between < 1:
@@ -81,14 +81,14 @@ class Clock:
         return f"{text}, nominal {1.0 / period:.6g} Hz, mean {1.0 / mean:.6g} Hz{gaps}"
 
 
-def _read(table: Table) -> tuple[int, Clock | None]:
-    """The number of rows, and the clock where there is one."""
+def _read(table: Table) -> tuple[int, Sampling | None]:
+    """The number of rows, and their sampling if the table has a time column."""
     types = {field.name: field.type for field in table.schema}
     timed = pa.types.is_floating(types.get("t", pa.null()))
     # In a table of another kind the column may be something else.
     marked = pa.types.is_integer(types.get(SEGMENT, pa.null()))
     rows = 0
-    clock: Clock | None = None
+    clock: Sampling | None = None
     last: Instant | None = None
     for batch in table.batches:
         rows += batch.num_rows
@@ -98,7 +98,7 @@ def _read(table: Table) -> tuple[int, Clock | None]:
         steps, jumps, last = steps_of(batch.select(["t", SEGMENT] if marked else ["t"]), last)
         if clock is None:
             start = batch.column("t")[0].as_py()
-            clock = Clock(start, start)
+            clock = Sampling(start, start)
         within = steps[jumps == 0][first:]
         if clock.interval is None and len(within):
             clock.interval = float(within[0])

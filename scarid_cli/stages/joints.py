@@ -1,4 +1,4 @@
-"""Logs as a robot's description tells them: columns, units, motors that drive its joints."""
+"""Convert logs as a robot's description says: columns, units, motors that drive its joints."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.table import Table, matrix, number, with_columns
 from scarid_cli.stages.adapt import adapted
 
-Way = Callable[[Array], Array]
+Transform = Callable[[Array], Array]
 
 
 def as_described(
@@ -24,14 +24,17 @@ def as_described(
     units: list[tuple[str, str]],
     rate: float | None,
 ) -> Table:
-    """`adapted` by what a robot's description says of its logs; what is given goes before that."""
+    """The table, adapted as the robot's description says; arguments override the description."""
     log = robot.log
     if log is None:
-        raise UsageFault(f"{robot.name}: its description has no [log] that says what logs hold")
-    clocked = "t" in table.columns or "t" in {**log.columns, **names}
+        raise UsageFault(
+            f"{robot.name}: its description has no [log] that says what logs hold; add one"
+        )
+    described = {new: old for new, old in log.columns.items() if old not in names.values()}
+    clocked = "t" in table.columns or "t" in {**described, **names}
     table = adapted(
         table,
-        {**log.columns, **names},
+        {**described, **names},
         [*log.units, *units],
         rate if rate or clocked else log.rate,
     )
@@ -39,12 +42,12 @@ def as_described(
 
 
 def at_joints(table: Table, robot: Robot, log: LogFormat) -> Table:
-    """Angles, torques or currents of motors turned into positions [rad or m] and torques of joints.
+    """Angles, torques or currents of motors become positions [rad or m] and torques of joints.
 
-    Whatever of the two the log has of joints stays as it is.
+    Signals that the log already has of the joints stay as they are.
     """
-    ways: dict[tuple[str, ...], Way] = {}
-    for names, way in _groups(log):
+    transforms: dict[tuple[str, ...], Transform] = {}
+    for names, transform in _groups(log):
         for name in names:
             columns = [name.replace("{i}", str(i)) for i in range(1, len(robot.joints) + 1)]
             present = [column in table.columns for column in columns]
@@ -53,20 +56,20 @@ def at_joints(table: Table, robot: Robot, log: LogFormat) -> Table:
                     table.name,
                     f"the columns {', '.join(table.columns)}",
                     expected=f"one of each motor of {robot.name}",
-                    remedy="a joint's value may depend on several motors: name them all",
+                    remedy="name the columns of all motors: a joint may depend on several of them",
                     column=columns[present.index(False)],
                 )
             if all(present):
-                ways[tuple(columns)] = way
-    made = {column for columns in ways for column in columns}
+                transforms[tuple(columns)] = transform
+    made = {column for columns in transforms for column in columns}
     schema = pa.schema(
         [_field(table, robot, f.name) if f.name in made else f for f in table.schema]
     )
     meta = replace(table.meta, robot=robot.name)
-    return replace(table, schema=schema, meta=meta, batches=_rows(table, schema, ways))
+    return replace(table, schema=schema, meta=meta, batches=_rows(table, schema, transforms))
 
 
-def _groups(log: LogFormat) -> Iterator[tuple[tuple[str, ...], Way]]:
+def _groups(log: LogFormat) -> Iterator[tuple[tuple[str, ...], Transform]]:
     if log.positions != JOINT:
         yield ("q{i}", "q{i}_ref"), log.positions_of_joints
         yield ("dq{i}", "ddq{i}", "dq{i}_ref", "ddq{i}_ref"), log.velocities_of_joints
@@ -75,16 +78,16 @@ def _groups(log: LogFormat) -> Iterator[tuple[tuple[str, ...], Way]]:
 
 
 def _field(table: Table, robot: Robot, name: str) -> pa.Field:
-    """A torque has its joint's unit, whatever its motor's was in."""
+    """A torque gets the unit of its joint, whatever the unit of the motor's signal was."""
     torques = {f"tau{i}": joint.torque_unit for i, joint in enumerate(robot.joints, start=1)}
     return number(name, torques.get(name) or table.unit(name))
 
 
 def _rows(
-    table: Table, schema: pa.Schema, ways: dict[tuple[str, ...], Way]
+    table: Table, schema: pa.Schema, transforms: dict[tuple[str, ...], Transform]
 ) -> Iterator[pa.RecordBatch]:
     for batch in table.batches:
         new: dict[str, Array] = {}
-        for columns, way in ways.items():
-            new |= dict(zip(columns, way(matrix(batch, list(columns))), strict=True))
+        for columns, transform in transforms.items():
+            new |= dict(zip(columns, transform(matrix(batch, list(columns))), strict=True))
         yield with_columns(batch, schema, new)

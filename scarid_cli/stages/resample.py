@@ -1,4 +1,4 @@
-"""Put a log with a jittered clock on a regular one, and split it at its gaps."""
+"""Resample a log with a jittered clock at a constant rate, and split it at its gaps."""
 
 from __future__ import annotations
 
@@ -10,7 +10,13 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.processes.resampling import Clock, Decimator, Resampler, Run, State
+from scarid_cli.algorithms.processes.resampling import (
+    Clock,
+    Decimator,
+    DecimatorState,
+    Resampler,
+    ResamplerState,
+)
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import (
@@ -24,27 +30,27 @@ from scarid_cli.io.table import (
     with_columns,
 )
 
-SLOWER = 0.05  # of the log's own period: a new one that is longer by more lowers the rate
-FIRST = 32  # intervals, which tell the rate of the log
-BRIDGED = 5.0  # periods of the log: a longer interval is a gap, unless it is within a new period
+SLOWER = 0.05  # fraction of the log's period by which a longer new period counts as a lower rate
+FIRST = 32  # intervals whose median is taken for the log's period
+MAX_GAP = 5.0  # periods of the log; a longer interval is a gap, unless a new period is as long
 
 
 def resample(
     table: Table,
     rate: float,
     max_gap: float | None = None,
-    told: Callable[[Clock], None] = lambda _: None,
+    report: Callable[[Clock], None] = lambda _: None,
 ) -> Table:
-    """The table at a constant rate [Hz]; `told` hears of the clock once all rows have gone by.
+    """The table at a constant rate [Hz]; `report` is given the old clock after the last row.
 
-    Numbers are interpolated, and low-passed if the new period is longer than the log's own; other
-    columns have the value of the row before. An interval longer than `max_gap` [s] (by
-    default BRIDGED) is not bridged: after it the column `segment` is one higher.
+    Numbers are interpolated linearly, and low-passed if the new period is longer than that of the
+    log; other columns keep the value of the previous row. An interval longer than `max_gap` [s]
+    (by default MAX_GAP periods) is a gap, after which the column `segment` is one higher.
     """
     fields = [field for field in table.schema if field.name != SEGMENT]
     schema = pa.schema([*fields, pa.field(SEGMENT, pa.int64())])
     meta = replace(table.meta, period=1.0 / rate)
-    batches = _rows(table, schema, 1.0 / rate, max_gap, told)
+    batches = _rows(table, schema, 1.0 / rate, max_gap, report)
     return replace(table, schema=schema, meta=meta, batches=batches)
 
 
@@ -75,30 +81,30 @@ def _rows(
     schema: pa.Schema,
     period: float,
     max_gap: float | None,
-    told: Callable[[Clock], None],
+    report: Callable[[Clock], None],
 ) -> Iterator[pa.RecordBatch]:
     own, batches = _begun(table)
-    splitting = Splitting(table.name, max_gap or max(BRIDGED * own, period))
+    splitting = Splitting(table.name, max_gap or max(MAX_GAP * own, period))
     factor = max(1, int(np.ceil(period / own - SLOWER)))
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]
-    laying = Laying(Resampler(period / factor), schema, numbers)
-    thinning = Thinning(Decimator(factor), schema, numbers, period) if factor > 1 else None
+    interpolation = Interpolation(Resampler(period / factor), schema, numbers)
+    decimation = Decimation(Decimator(factor), schema, numbers, period) if factor > 1 else None
     for batch in batches:
         for begins, piece in splitting.pieces(batch):
-            if begins and thinning:
-                yield from thinning.finish()
-            found = laying.rows(piece, splitting.segment, begins=begins)
-            if found and thinning:
-                found = thinning.rows(found, laying.first, laying.start)
+            if begins and decimation:
+                yield from decimation.finish()
+            found = interpolation.rows(piece, splitting.segment, begins=begins)
+            if found and decimation:
+                found = decimation.rows(found, interpolation.first, interpolation.start)
             if found:
                 yield found
-    if thinning:
-        yield from thinning.finish()
-    told(splitting.clock)
+    if decimation:
+        yield from decimation.finish()
+    report(splitting.clock)
 
 
 class Splitting:
-    """Batches in pieces: without repeated rows, and cut at gaps longer than `limit` [s]."""
+    """Cuts batches into pieces without repeated rows, at gaps longer than `limit` [s]."""
 
     def __init__(self, name: str, limit: float) -> None:
         self._name = name
@@ -109,7 +115,7 @@ class Splitting:
         self.clock = Clock()
 
     def pieces(self, batch: pa.RecordBatch) -> Iterator[tuple[bool, pa.RecordBatch]]:
-        """Each with whether it begins a segment."""
+        """The pieces of a batch, each with whether a segment begins with it."""
         steps, jumps, last = steps_of(batch, self._last)
         self._check(steps)
         begins = (steps > self._limit) | (jumps != 0)
@@ -146,16 +152,16 @@ class Splitting:
 
 
 @dataclass
-class Laying:
-    """The new rows of a segment, and its last samples with all their columns.
+class Interpolation:
+    """Interpolates the new rows of a segment; `held` are its last samples with all columns.
 
-    `first` is the number of the first row it gave last.
+    `first` is the number of the first of the rows that it returned last.
     """
 
     resampler: Resampler
     schema: pa.Schema
     numbers: list[str]
-    state: State | None = None
+    state: ResamplerState | None = None
     held: pa.RecordBatch | None = None
     first: int = 0
 
@@ -165,7 +171,7 @@ class Laying:
         return self.state.start if self.state else 0.0
 
     def rows(self, piece: pa.RecordBatch, segment: int, *, begins: bool) -> pa.RecordBatch | None:
-        """What the samples of this piece settle."""
+        """The new rows up to the last sample of this piece, if there are any."""
         t, *values = matrix(piece, ["t", *self.numbers])
         x = np.array(values).reshape(len(self.numbers), len(t))
         if begins:
@@ -185,27 +191,30 @@ class Laying:
         new = {"t": at, SEGMENT: mark, **dict(zip(self.numbers, found, strict=True))}
         return _made(together, self.schema, new, left)
 
-    def _at(self, t: float, x: Array) -> State:
+    def _at(self, t: float, x: Array) -> ResamplerState:
         if self.state is None:
             return self.resampler.init(t, x)
         return self.resampler.after_gap(self.state, t, x)
 
 
 @dataclass
-class Thinning:
-    """Every `factor`-th row, low-passed; rows that wait keep their other columns."""
+class Decimation:
+    """Low-passes rows and keeps every `factor`-th; `held` are rows that wait, with all columns."""
 
     decimator: Decimator
     schema: pa.Schema
     numbers: list[str]
     period: float
-    state: Run | None = None
+    state: DecimatorState | None = None
     held: pa.RecordBatch | None = None
     at: int = 0  # number of the first row held
     start: float = 0.0  # time of row 0
 
     def rows(self, batch: pa.RecordBatch, first: int, start: float) -> pa.RecordBatch | None:
-        """What the rows of this batch settle; its first has this number, row 0 this time [s]."""
+        """The rows that are complete with this batch, if any.
+
+        `first` is the number of the batch's first row, `start` the time of row 0 [s].
+        """
         x = matrix(batch, self.numbers)
         if self.state is None:
             self.state = self.decimator.init(first, len(self.numbers))
@@ -216,7 +225,7 @@ class Thinning:
         return self._joined(numbers, found)
 
     def finish(self) -> Iterator[pa.RecordBatch]:
-        """The rows that are left at the end of a segment."""
+        """The remaining rows at the end of a segment."""
         if self.state:
             numbers, found = self.decimator.finish(self.state)
             joined = self._joined(numbers, found)
@@ -241,7 +250,7 @@ class Thinning:
 def _made(
     source: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any], places: Numbers
 ) -> pa.RecordBatch:
-    """New columns, and the others as they are at these places of the source."""
+    """A batch of new columns, and of the other columns at these rows of the source."""
     others = {
         name: source.column(name).take(pa.array(places)) for name in schema.names if name not in new
     }

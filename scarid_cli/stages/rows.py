@@ -99,10 +99,10 @@ def treated(
 def _treated(
     table: Table, robot: Robot, treatment: Treatment, seen: int
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
-    columns = Columns(robot, table.meta.period or 0.0)
+    columns = Columns(robot, table.period)
     slow = np.array(treatment.slow) if treatment.slow else None
     late = None if treatment.decimate else slow
-    held, gaps = [], Gaps(table.meta.period or 0.0)
+    held, gaps = [], Gaps(table.period)
     start, end = treatment.skip
     for first, kept in _after(start, settled_runs(_without_last(end, table.batches))):
         rows = columns.rows(table.columns, kept, seen + first + gaps.before(kept), late)

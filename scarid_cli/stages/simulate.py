@@ -23,7 +23,7 @@ def simulate(table: Table, loop: ClosedLoop, log_rate: float, *, truth: bool) ->
     The robot starts at rest at the first position of the trajectory. The log has the reference
     beside the measured columns; `truth` adds the true ones.
     """
-    period = table.meta.period or 0.0
+    period = table.period
     ratio = _whole(loop.control_rate * period, "the trajectory's rate")
     keep = _whole(loop.control_rate / log_rate, "the log rate")
     schema = _schema(loop.robot, truth=truth)
@@ -79,7 +79,7 @@ def _rows(
 def _references(table: Table, joints: int, ratio: int) -> Iterator[tuple[float, Motion]]:
     """The time [s] of the first row, and the reference at the ticks of the loop, in chunks."""
     columns = [f"{name}{i}_ref" for name in SIGNALS for i in range(1, joints + 1)]
-    period = table.meta.period or 0.0
+    period = table.period
     start: float | None = None
     last = np.empty((3 * joints, 0))
     for batch in table.batches:

@@ -15,7 +15,7 @@ from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning import judges, search
 from scarid_cli.arrays import Array
-from scarid_cli.errors import BadData
+from scarid_cli.errors import BadData, TooShort
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, matrix, segments
 
@@ -42,12 +42,13 @@ class Tried:
 class Record:
     """Positions and torques of a whole log (joints, rows), sampled every h [s].
 
-    Of one with gaps, the longest segment.
+    Of a log with gaps, it is the longest segment.
     """
 
     q: Array
     tau: Array | None
     h: float
+    name: str = "log"
 
     @classmethod
     def of(cls, table: Table, joints: int, *, torques: bool) -> Record:
@@ -59,7 +60,8 @@ class Record:
         )
         rows = max(parts, key=lambda part: part.shape[1])
         tau = np.ascontiguousarray(rows[joints:]) if torques else None
-        return cls(np.ascontiguousarray(rows[:joints]), tau, table.meta.period or 0.0)
+        q = np.ascontiguousarray(rows[:joints])
+        return cls(q, tau, table.period, table.name)
 
 
 def online() -> list[str]:
@@ -70,15 +72,18 @@ def online() -> list[str]:
 def tune(
     record: Record, names: list[str], robot: Robot | None, seed: int, progress: Callable[[], object]
 ) -> list[Tried]:
-    """Everything that was tried, method by method; the last of a kind that is `best` was chosen."""
+    """All trials, method by method; of each method and joint the one that is `best` is chosen."""
     rows: list[Tried] = []
-    for name in names:
-        method = DIFFERENTIATORS.load(name)()
-        found = list(_for_torques(name, method, record, robot, seed, progress)) if robot else []
-        if not robot:
+    try:
+        for name in names:
+            method = DIFFERENTIATORS.load(name)()
+            if robot:
+                rows += _for_torques(name, method, record, robot, seed, progress)
+                continue
             for joint, q in enumerate(record.q, start=1):
-                found += _for_positions(name, method, joint, q, record.h, seed, progress)
-        rows += found
+                rows += _for_positions(name, method, joint, q, record.h, seed, progress)
+    except TooShort as reason:
+        raise TooShort(f"{record.name}: {reason}") from None
     return rows
 
 
@@ -92,7 +97,7 @@ def _for_positions(
     progress: Callable[[], object],
 ) -> Iterator[Tried]:
     judge = judges.distance_to_smoother(q, h)
-    if judges.has_likelihood(method):
+    if method.HAS_LIKELIHOOD:
         likelihood = judges.negative_log_likelihood(q, h)
         fitted = judges.fit(method, q, h)
         for tried in (method, fitted) if values(method)["noise"] else (fitted,):
@@ -107,16 +112,14 @@ def _for_positions(
 
 
 def _for_torques(
-    name: str, method: Any, record: Record, robot: Robot | None, seed: int,
-    progress: Callable[[], object],
-) -> Iterator[Tried]:  # fmt: skip
-    assert robot is not None
+    name: str, method: Any, record: Record, robot: Robot, seed: int, progress: Callable[[], object]
+) -> Iterator[Tried]:
     assert record.tau is not None
     judge = judges.error_of_torques(robot, record.q, record.tau, record.h)
     ranges = method.TUNED
-    if judges.has_likelihood(method):
-        # What is likely follows the vibration of the joint too; what identifies best may be slower.
-        method = judges.fit(method, record.q[0], record.h)
+    if method.HAS_LIKELIHOOD:
+        # The most likely intensity also follows vibrations; a lower one may identify better.
+        method = judges.fit(method, record.q, record.h)
         ranges = {"intensity": Range(1e-12 * method.intensity, 1e2 * method.intensity)}
     trials = []
     for trial in search.search(method, ranges, judge, record.h, seed):

@@ -31,6 +31,10 @@ CASES = {
     "short row": (with_line(5, "0.04,1"), "row 5: found 2 values, expected 3"),
     "long row": (with_line(5, "0.04,1,2,3"), "row 5: found 4 values, expected 3"),
     "repeated time": (with_line(5, "0.03,4,2"), "row 5, column t: found 0.03 after 0.03, expected"),
+    "time that stands still at the start": (
+        [GOOD[0], "0,1,2", *GOOD[1:]],
+        "row 2, column t: found 0.0 after 0, expected time to increase",
+    ),
     "time running back": (with_line(5, "0.01,4,2"), "row 5, column t: found 0.01 after 0.03"),
     "jitter": (
         with_line(5, "0.042,4,2"),
@@ -72,6 +76,42 @@ def write_parquet(path: Path, fields: list[pa.Field], rows: int = 20) -> None:
     t = np.arange(rows) / 100
     columns = [t if f.name == "t" else t.astype(f.type.to_pandas_dtype()) for f in fields]
     pq.write_table(pa.table(columns, schema=pa.schema(fields)), path)
+
+
+@pytest.mark.parametrize("command", ["filter", "differentiate"])
+def test_whole_numbers_are_as_good_as_others(command: str, scarid: Run, tmp_path: Path) -> None:
+    """A log of encoder counts, say, whose columns are integers."""
+    log, numbers = tmp_path / "log.parquet", tmp_path / "log.csv"
+    k = np.arange(300)
+    pq.write_table(pa.table({"t": k / 100, "q1": k**2 // 500, "n": k}), log)
+    assert scarid("convert", log, "-o", numbers).status == 0
+    result = scarid(command, log)
+    assert result.status == 0
+    assert result.out == scarid(command, numbers).out
+
+
+BEYOND = {
+    "unread": ("differentiate --no-match", 0),
+    "read": ("differentiate --match", 65),
+    "interpolated": ("resample --rate 200", 65),
+}
+
+
+@pytest.mark.parametrize("name", BEYOND)
+def test_values_are_checked_in_the_columns_that_a_command_reads(
+    name: str, scarid: Run, tmp_path: Path
+) -> None:
+    """The others pass as they are."""
+    log = tmp_path / "log.csv"
+    lines = with_line(5, "0.04,4,nan")
+    log.write_text("".join(f"{line}\n" for line in lines))
+    command, status = BEYOND[name]
+    result = scarid(*command.split(), log)
+    assert result.status == status
+    if status:
+        assert "row 5, column tau1: found nan, expected a finite number" in result.err
+    else:
+        assert result.out.splitlines()[5].startswith("0.04,4,nan,")
 
 
 def test_a_wrong_unit_is_told(scarid: Run, tmp_path: Path) -> None:
@@ -155,82 +195,6 @@ def test_what_is_no_table_is_told(data: bytes, scarid: Run, tmp_path: Path) -> N
     result = scarid("info", log)
     assert result.status == 65
     assert result.err == f"scarid info: {log}: neither CSV nor Parquet nor Arrow; is it a table?\n"
-
-
-USAGE = {
-    "no such file": (["filter", "nowhere.csv"], "nowhere.csv: no such file"),
-    "no such option": (["filter", "--frob"], "No such option '--frob'"),
-    "no such command": (["frobnicate"], "No such command 'frobnicate'"),
-    "one output twice": (["identify", "--trace", "-"], "standard output: two tables cannot share"),
-    "no such robot": (
-        ["trajgen", "--robot", "r2d2"],
-        "unknown robot 'r2d2'; choose emps, planar2-gravity, scara2",
-    ),
-    "no such method": (["differentiate", "--method", "magic"], "'magic' is not one of"),
-    "no such column": (["filter", "-c", "q7", "LOG"], "no column 'q7'; the table has t, q1"),
-    "no such setting": (["differentiate", "--set", "gamma2=1", "LOG"], "has no setting 'gamma2'"),
-    "no number": (["differentiate", "--set", "noise=x", "LOG"], "'x' is not a number"),
-    "negative gain": (["differentiate", "--set", "noise=-1", "LOG"], "noise must be positive"),
-    "too many values": (["differentiate", "--set", "noise=1,2,3", "LOG"], "3 values for 2 joints"),
-    "even window": (
-        ["differentiate", "--method", "savgol", "--set", "window=80", "LOG"],
-        "window must be odd, not 80",
-    ),
-    "cutoff above half the rate": (
-        ["differentiate", "--method", "zero-phase", "--set", "cutoff=60", "LOG"],
-        "cutoff 60 Hz is not below half the rate, 50 Hz",
-    ),
-    "no such preset": (
-        ["differentiate", "--method", "p2smd", "--preset", "best", "LOG"],
-        "it has table1",
-    ),
-    "time filtered": (["filter", "-c", "*", "LOG"], "the time column t cannot be filtered"),
-    "two cut-offs": (["filter", "--cutoff", "1", "--natural-frequency", "1"], "not both"),
-    "cut-off above Nyquist": (
-        ["filter", "--cutoff", "50", "LOG"],
-        "not below half the rate, 50 Hz",
-    ),
-    "p0 of ls": (["identify", "--estimator", "ls", "--p0", "1"], "ls has no setting 'p0'"),
-    "trace of ls": (["identify", "--estimator", "ls", "--trace", "t.csv"], "no estimates after"),
-    "setting without a value": (["identify", "--set", "p0"], "write NAME=VALUE"),
-    "setting that is no number": (["identify", "--set", "p0=x"], "'x' is not a number"),
-    "skip of three": (["identify", "--skip", "1,2,3"], "at the start and at the end"),
-    "decimation by a half": (["identify", "--decimate", "0.5"], "whole numbers from 2"),
-    "negative slow": (["identify", "--drop-slow", "-1"], "cannot be negative"),
-    "sign over no velocity": (["identify", "--smooth-sign", "0"], "must be positive"),
-    "state of aligned rows": (["identify", "--align", "--save", "s.npz"], "go row by row"),
-    "state of held rows": (
-        ["identify", "--estimator", "irls", "--save", "s.npz"],
-        "go row by row",
-    ),
-    "forgetting above 1": (["identify", "--forgetting", "1.1"], "forgetting must not exceed 1"),
-    "unknown extension": (["convert", "LOG", "-o", "x.xlsx"], "x.xlsx: unknown extension"),
-    "bounds of no size": (
-        ["trajgen", "--q-max", "0"],
-        "--q-max: the bounds must be positive and finite",
-    ),
-    "duration too short": (["trajgen", "--duration", "1"], "too short for 2 segments"),
-    "rates do not fit": (
-        ["simulate", "--control-rate", "300", "REF"],
-        "whole multiple of the traj",
-    ),
-}
-
-
-@pytest.mark.parametrize("name", USAGE)
-def test_a_wrong_command_line_is_told_in_one_line(
-    name: str, scarid: Run, samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    words, message = USAGE[name]
-    if "REF" in words:
-        assert scarid("trajgen", "--duration", 2, "-o", "ref.csv").status == 0
-    files = {"LOG": str(samples / "scara2.csv"), "REF": "ref.csv"}
-    result = scarid(*(files.get(word, word) for word in words))
-    assert result.status == 2
-    assert message in result.err
-    assert result.err.count("\n") == 1
-    assert result.out == ""
 
 
 @pytest.mark.parametrize(

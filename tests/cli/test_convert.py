@@ -39,6 +39,11 @@ def test_the_bits_do_not_depend_on_how_bytes_arrive(shell: Shell) -> None:
     assert result.out == "t,q1,x\n" + 3 * "0.125,0.125,0.125\n"
 
 
+def test_every_map_counts(shell: Shell) -> None:
+    result = shell("scarid convert --map q8=q1 --map q9=q2,tau9=tau1 $SAMPLES/scara2.csv | head -1")
+    assert result.out.startswith("t,q8,q9,tau9,tau2,")
+
+
 @pytest.mark.parametrize("extension", ["npz", "mat"])
 def test_arrays_become_columns(extension: str, shell: Shell, tmp_path: Path) -> None:
     arrays = {"t": np.arange(3) * 0.01, "q": np.arange(6.0).reshape(3, 2), "tau": np.ones((2, 3))}
@@ -57,6 +62,9 @@ def test_arrays_become_columns(extension: str, shell: Shell, tmp_path: Path) -> 
         ("--map q1 LOG", 2, "--map q1: write NAME=VALUE"),
         ("--map q3=nothing LOG", 2, "no column 'nothing'"),
         ("--map q1=q2 LOG", 2, "two columns would be called 'q1'"),
+        ("--map q8=q1,q9=q1 LOG", 2, "cannot become both 'q8' and 'q9'; give it one new name"),
+        ("--map q9=q1 --map q8=q1 LOG", 2, "cannot become both 'q9' and 'q8'"),
+        ("--map q9=q1 --map q9=q2 LOG", 2, "'q9' is given twice, for 'q1' and for 'q2'"),
         ("--unit q1=furlong LOG", 2, "unknown unit"),
         ("--unit x=deg LOG", 2, "no column 'x'"),
         ("--rate 100 LOG", 2, "has a time column t"),
@@ -138,7 +146,7 @@ def test_a_log_of_motors_becomes_one_of_joints(shell: Shell, tmp_path: Path) -> 
     [
         ("--robot emps log.csv", 2, "its description has no [log]"),
         ("--robot robot.toml log.csv", 2, "no column 'enc2' to rename; it has enc1"),
-        ("--robot robot.toml --map q2=other log.csv", 65, "name them all"),
+        ("--robot robot.toml --map q2=other log.csv", 65, "name the columns of all motors"),
     ],
 )
 def test_a_log_that_does_not_fit_its_robot_is_told(

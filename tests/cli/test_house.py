@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import importlib
+import inspect
 import re
 import subprocess
 import sys
@@ -10,6 +12,7 @@ import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
+import click
 import pytest
 from conftest import ROOT, Result
 from importlinter.cli import lint_imports
@@ -22,6 +25,7 @@ from scarid_cli.algorithms.choices.registry import (
     Registry,
 )
 from scarid_cli.cli import COMMANDS, options
+from scarid_cli.cli import scarid as scarid_group
 from scarid_cli.io import schemas, writer
 from scarid_cli.reporting import schemas as page
 
@@ -100,6 +104,21 @@ def test_every_command_has_help_with_examples(name: str, scarid: Run) -> None:
     examples = [line for line in text.splitlines() if line.strip().startswith("scarid ")]
     assert len(examples) >= 2
     assert not re.search(r"\.\.\.$", COMMANDS[name])
+
+
+ACTIONS = [path.stem for path in (ROOT / "scarid_cli/cli/actions").glob("[a-z]*.py")]
+
+
+@pytest.mark.parametrize("name", ACTIONS)
+def test_an_action_takes_the_options_that_its_command_declares(name: str) -> None:
+    command = scarid_group.get_command(click.Context(scarid_group), name)
+    assert command
+    declared = {parameter.name for parameter in command.params} - set(options.SHARED)
+    action = importlib.import_module(f"scarid_cli.cli.actions.{name}")
+    taken = inspect.signature(action.run).parameters.values()
+    named = {parameter.name for parameter in taken if parameter.kind is not parameter.VAR_KEYWORD}
+    assert named <= {"job", *declared}
+    assert named == {"job", *declared} or len(named) < len(taken)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from bench import peak, stages
+from memory import peak, stages
 
 
 @pytest.mark.parametrize("name", ["resample", "filter", "differentiate", "identify", "validate"])

@@ -1,136 +1,33 @@
-"""`scarid report`: the same tables three ways, a page that needs nothing else, honest failures."""
+"""`scarid report`: the same tables in three forms, and a page that needs nothing else."""
 
 from __future__ import annotations
 
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from html.parser import HTMLParser
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 import pytest
-from conftest import Result, refused
-
-from scarid_cli.algorithms.robots import reading
-from scarid_cli.io.table import METADATA_KEY, Metadata
+from conftest import Result
+from reports import (
+    DIGEST,
+    SCARA,
+    column,
+    estimates,
+    markdown_rows,
+    page_of,
+    result_tables,
+    write,
+)
 
 Run = Callable[..., Result]
-SCARA = reading.load("scara2")
-DIGEST = "0123456789abcdef" * 4
-HISTORY = (
-    {"command": "scarid filter 'a & b.csv'", "version": "0.1.0", "inputs": {"a & b.csv": DIGEST}},
-    {"command": "scarid identify", "version": "0.1.0", "inputs": {"<stdin>": None}},
-)
-T = np.arange(1200) * 0.005
-
-
-def write(path: Path, kind: str | None, columns: Mapping[str, Any], **meta: Any) -> Path:
-    document = Metadata(kind=kind, robot="scara2" if kind else None, history=HISTORY, **meta)
-    table = pa.table(dict(columns)).replace_schema_metadata({METADATA_KEY: document.to_json()})
-    pq.write_table(table, path)
-    return path
-
-
-def estimates(scale: float) -> np.ndarray:
-    """Running estimates (parameters, samples) that approach scaled a priori values."""
-    return scale * SCARA.apriori[:, None] + np.outer(np.arange(1.0, 9.0), np.exp(-T))
 
 
 @pytest.fixture
 def tables(tmp_path: Path) -> list[Path]:
-    """One table of each kind for two methods."""
-    paths = []
-    for method, scale in (("b-method", 1.1), ("a-method", 0.9)):
-        parameters = {
-            "parameter": SCARA.names,
-            "unit": [p.unit for p in SCARA.parameters],
-            "estimate": scale * SCARA.apriori,
-            "standard_error": np.full(8, 0.01),
-            "relative_deviation": pa.array([1.5, 2.5, 41.25, 4.5, 5.5, None, 7.5, 8.5]),
-        }
-        trace = dict(zip(["t", *SCARA.names], [T, *estimates(scale)], strict=True))
-        metrics = {
-            "joint": [1, 2],
-            "r2": [0.96123, None],
-            "rmse": [1.23456, 0.1],
-            "unit": ["N m", "N m"],
-            "relative_error": [12.0, 34.0],
-            "samples": [1200, 1200],
-        }
-        tau = {f"tau{i}": np.sin(i * T) for i in (1, 2)}
-        prediction = {"t": T, **tau, **{f"{k}_pred": scale * x for k, x in tau.items()}}
-        extra = {"condition_number": 14.881, "samples": 1200, "residual_deviation": 0.51234}
-        paths += [
-            write(tmp_path / f"{method}.parameters.parquet", "parameters", parameters, extra=extra),
-            write(tmp_path / f"{method}.trace.parquet", "trace", trace),
-            write(tmp_path / f"{method}.direct.metrics.parquet", "metrics", metrics),
-            write(tmp_path / f"{method}.direct.prediction.parquet", "prediction", prediction),
-        ]
-    return paths
-
-
-@dataclass
-class Page(HTMLParser):
-    """What a browser would make of a page: tables, identifiers and references."""
-
-    rows: list[list[str]] = field(default_factory=list)
-    ids: list[str] = field(default_factory=list)
-    references: list[str] = field(default_factory=list)
-    tags: list[str] = field(default_factory=list)
-    text: str = ""
-    in_cell: bool = False
-
-    def __post_init__(self) -> None:
-        super().__init__()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append(tag)
-        if tag == "tr":
-            self.rows.append([])
-        if tag in ("td", "th"):
-            self.rows[-1].append("")
-            self.in_cell = True
-        for name, value in attrs:
-            self.ids += [value or ""] if name == "id" else []
-            self.references += [value or ""] if name in ("href", "src", "xlink:href") else []
-            self.references += re.findall(r"url\(([^)]*)\)", value or "")
-
-    def handle_endtag(self, tag: str) -> None:
-        self.in_cell = self.in_cell and tag not in ("td", "th")
-
-    def handle_data(self, data: str) -> None:
-        self.text += data
-        if self.in_cell:
-            self.rows[-1][-1] += data.replace("\N{NO-BREAK SPACE}", " ")
-
-
-def page_of(path: Path) -> Page:
-    page = Page()
-    page.feed(path.read_text("utf-8"))
-    return page
-
-
-def markdown_rows(document: str) -> list[list[str]]:
-    lines = [line for line in document.splitlines() if line.startswith("|")]
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
-
-
-def column(rows: list[list[str]], header: str, first: str) -> dict[str, str]:
-    """The cells under a header, by row, of the table whose first header is `first`."""
-    start = next(i for i, row in enumerate(rows) if row[0] == first and header in row)
-    at = rows[start].index(header)
-    found: dict[str, str] = {}
-    for row in rows[start + 2 :]:
-        if row[0] in ("parameter", "method"):
-            break
-        found[row[0]] = row[at]
-    return found
+    return result_tables(tmp_path)
 
 
 def test_terminal_markdown_and_page_hold_the_same_tables(
@@ -193,7 +90,7 @@ def test_two_runs_give_the_same_bytes(tables: list[Path], tmp_path: Path, scarid
         assert first.read_bytes() == second.read_bytes()
 
 
-def test_the_page_tells_how_each_table_was_made(
+def test_the_page_lists_how_each_table_was_made(
     tables: list[Path], tmp_path: Path, scarid: Run
 ) -> None:
     html = tmp_path / "r.html"
@@ -238,7 +135,7 @@ def test_standard_input_is_the_default(tables: list[Path], shell: Run) -> None:
     assert "stdin" in result.out
 
 
-def test_predictions_alone_are_told_to_need_the_page(
+def test_predictions_alone_are_reported_to_need_the_page(
     tables: list[Path], tmp_path: Path, scarid: Run
 ) -> None:
     result = scarid("report", tables[3])
@@ -266,71 +163,3 @@ def test_a_long_record_makes_a_small_page(tmp_path: Path, scarid: Run) -> None:
     html = tmp_path / "r.html"
     assert scarid("report", path, "--html", html).status == 0
     assert html.stat().st_size < 150_000
-
-
-# --- failures -----------------------------------------------------------------------------------
-
-
-def test_a_trajectory_is_no_result(tmp_path: Path, scarid: Run) -> None:
-    path = tmp_path / "reference.csv"
-    assert scarid("trajgen", "-q", "--duration", 2, "-o", path).status == 0
-    refused(scarid("report", path), 2, str(path), "trajectory", "parameters, trace, metrics, ")
-
-
-@pytest.mark.parametrize("kind", [None, "recipe"])
-def test_a_table_of_unknown_kind_is_bad_data(kind: str | None, tmp_path: Path, scarid: Run) -> None:
-    path = write(tmp_path / "x.parquet", kind, {"a": [1.0]})
-    refused(scarid("report", path), 65, str(path), "expected")
-
-
-def test_a_table_given_twice_is_refused(tables: list[Path], scarid: Run) -> None:
-    refused(scarid("report", tables[0], tables[0]), 2, str(tables[0]), "twice")
-    refused(scarid("report", "-", "-"), 2, "- is given twice")
-
-
-def test_two_documents_in_one_file_are_refused(tables: list[Path], scarid: Run) -> None:
-    refused(scarid("report", tables[0], "--html", "x", "--markdown", "x"), 2, "two files")
-
-
-@pytest.mark.parametrize(
-    ("columns", "told"),
-    [
-        ({"t": [0.0, 1.0], "p": [1.0, float("nan")]}, ["row 2", "column p", "finite"]),
-        ({"t": [0.0, 1.0], "p": pa.array([None, 1.0])}, ["row 1", "column p", "empty"]),
-        ({"t": [0.0, 1.0], "p": ["a", "b"]}, ["column p", "string"]),
-        ({"t": [0.0, 1.0]}, ["column t alone"]),
-        ({"t": [1.0, 0.0], "p": [1.0, 1.0]}, ["row 2", "column t"]),
-    ],
-)
-def test_a_bad_trace_is_told_by_row_and_column(
-    columns: dict[str, Any], told: list[str], tmp_path: Path, scarid: Run
-) -> None:
-    path = write(tmp_path / "m.trace.parquet", "trace", columns)
-    refused(scarid("report", path), 65, str(path), *told)
-
-
-def test_a_prediction_without_a_joint_is_told(tmp_path: Path, scarid: Run) -> None:
-    columns = {"t": [0.0, 1.0], "tau1": [1.0, 1.0], "tau1_pred": [1.0, 1.0], "tau2": [1.0, 1.0]}
-    path = write(tmp_path / "m.parquet", "prediction", columns)
-    refused(scarid("report", path), 65, str(path), "tau2_pred")
-
-
-def test_parameters_without_rows_are_told(tmp_path: Path, scarid: Run) -> None:
-    path = tmp_path / "m.csv"
-    path.write_text("parameter,unit,estimate\n")
-    refused(scarid("report", path), 65, str(path), "no rows")
-
-
-def test_a_failure_leaves_what_was_there(tables: list[Path], tmp_path: Path, scarid: Run) -> None:
-    old, new = tmp_path / "old.html", tmp_path / "new.md"
-    old.write_text("kept")
-    bad = write(tmp_path / "z.trace.parquet", "trace", {"t": [0.0, 1.0], "p": [1.0, np.inf]})
-    before = sorted(tmp_path.iterdir())
-    refused(scarid("report", *tables, bad, "--html", old, "--markdown", new), 65, str(bad))
-    assert old.read_text() == "kept"
-    assert sorted(tmp_path.iterdir()) == before
-
-
-def test_a_place_that_cannot_be_written_is_told_first(tables: list[Path], scarid: Run) -> None:
-    refused(scarid("report", "nosuch", "--html", "/nowhere/r.html"), 74, "/nowhere/r.html")
-    refused(scarid("report", tables[0], "--html", "/dev/full"), 74, "/dev/full")

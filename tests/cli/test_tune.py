@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import Result
+from conftest import Result, refused
 
 Run = Callable[..., Result]
 
@@ -71,25 +71,39 @@ def test_what_is_set_by_hand_comes_last(log: Path, tmp_path: Path, scarid: Run) 
 @pytest.mark.parametrize(
     ("text", "status", "message"),
     [
-        (None, 65, "no such file; make one with `scarid tune --save`"),
-        ("nonsense", 65, "found no settings, expected a file as `scarid tune --save` makes it"),
-        ("[kalman]\nnoise = [1e-4]\n", 65, "found no settings"),
+        ("nonsense", 65, "this is not a file of settings; make one with `scarid tune --save`"),
+        ("[kalman]\nnoise = [1e-4]\n", 65, "this is not a file of settings"),
         ('method = "none"\n', 2, "no method 'none'"),
         ('method = "kalman"\n[kalman]\nnose = [1.0]\n', 2, "kalman has no setting 'nose'"),
         ('method = "kalman"\n[kalman]\nnoise = [1, 2, 3]\n', 2, "3 values for 2 joints"),
+        ('method = "kalman"\n[kalman]\nnoise = [1]\n', 2, "1 value for 2 joints (kalman, noise)"),
+        ('method = "kalman"\n', 2, "no settings for kalman, only for none"),
+        (
+            'method = "p2smd"\n[p2smd]\n[rts]\n',
+            2,
+            "no settings for kalman, only for p2smd, rts; choose one of these with --method",
+        ),
     ],
 )
 def test_a_wrong_file_of_settings_is_told_in_one_line(
-    text: str | None, status: int, message: str, log: Path, tmp_path: Path, scarid: Run
+    text: str, status: int, message: str, log: Path, tmp_path: Path, scarid: Run
 ) -> None:
     saved = tmp_path / "x.toml"
-    if text is not None:
-        saved.write_text(text)
-    result = scarid("differentiate", "--settings", saved, log)
-    assert result.status == status
-    assert message in result.err
-    assert result.err.count("\n") == 1
-    assert result.out == ""
+    saved.write_text(text)
+    method = ["--method", "kalman"] if "[p2smd]" in text else []
+    refused(scarid("differentiate", "--settings", saved, *method, log), status, message)
+
+
+@pytest.mark.parametrize(
+    "words", [(), ("--method", "p2smd"), ("--robot", "scara2")], ids=["kalman", "p2smd", "robot"]
+)
+def test_too_short_a_log_is_refused_with_the_rows_it_needs(
+    words: tuple[str, ...], log: Path, tmp_path: Path, scarid: Run
+) -> None:
+    short = tmp_path / "short.csv"
+    short.write_text("".join(log.read_text("utf-8").splitlines(keepends=True)[:4]))
+    result = scarid("tune", *words, short)
+    refused(result, 65, "short.csv: 3 rows are too few", "at least 10 rows")
 
 
 def test_a_log_that_does_not_move_leaves_no_files(tmp_path: Path, scarid: Run) -> None:

@@ -1,4 +1,4 @@
-"""Online identification without a filter: what matching is for."""
+"""Online identification without a filter before the soft sensor: what matching achieves."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ def test_setting_without_sense_is_refused(name: str, setting: str, value: float)
 
 
 def observer(q: Array, gamma0: float, gamma1: float, h: float) -> tuple[Array, Array]:
-    """P2SMD (paper eq. 7-8) without its adaptive terms, as transfer functions.
+    """P2SMD without its adaptive terms, as transfer functions.
 
     Euler's rule puts w / h for s, with w = z - 1:
     v = gamma0 w (w + h gamma1) / D q, a = gamma0 gamma1 w^2 / D q,
@@ -200,7 +200,7 @@ def test_p2smd_stays_bounded_for_half_an_hour_at_standstill() -> None:
     peaks = []
     for second in moving[-1] + LSB * dither:
         state, (_, a) = method.step(state, second)
-        nu, adaptive = state.values[2], state.values[3:]
+        nu, adaptive = state.values[p2smd.NU], state.values[p2smd.ETA0 :]
         assert abs(nu) <= method.nu_max
         assert np.all((adaptive >= 0.0) & (adaptive <= method.cap))
         peaks.append(np.abs(a).max())

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 import scarid_cli.kernels
+from scarid_cli.algorithms.differentiators.kalman import Differentiator as Kalman
 from scarid_cli.algorithms.filters.butterworth import Butterworth
 from scarid_cli.algorithms.filters.kalman import Records
-from scarid_cli.algorithms.filters.kalman import Settings as Kalman
 from scarid_cli.algorithms.plants.loop import mechanism
 from scarid_cli.algorithms.robots.reading import load
 
@@ -91,8 +91,7 @@ def kalman(rng: np.random.Generator) -> Arguments:
     q[::50] += 1.0
     q[300:] += 0.5
     state = Kalman().model(0.005).at_rest(float(q[0]))
-    numbers = [state.x, state.P, state.gain, state.work]
-    return [q, np.empty((400, 4)), *numbers, state.model.F, state.model.Q, state.model.noise]
+    return [q, np.empty((400, 4)), *state.arrays, *state.model.arrays]
 
 
 def kalman_records(rng: np.random.Generator) -> Arguments:

@@ -8,28 +8,30 @@ import numpy as np
 import pytest
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.filters.butterworth import Butterworth
 from scarid_cli.algorithms.processes.delays import delays, lateness, reference
 from scarid_cli.algorithms.processes.matching import over, settling_rows
+from scarid_cli.algorithms.processes.method import Matching
 from scarid_cli.arrays import Array
 
 H = 0.005
 NAMES = DIFFERENTIATORS.names
 every_method = pytest.mark.parametrize("name", NAMES)
-# Without its adaptive terms p2smd is linear.
-LINEAR: dict[str, dict[str, float]] = {
-    "algebraic": {},
-    "backward": {},
-    "ed-fir": {},
-    "high-gain": {},
-    "kalman": {},
-    "kalman-lag": {"damping": 1.3, "frequency": 2.0},
-    "p2smd": {"cap": 1e-15},
-    "savgol": {},
-    "savgol-end": {},
-    "tracking": {},
-    "zero-phase": {},
-}
-EXACT = pytest.mark.parametrize(("name", "settings"), LINEAR.items(), ids=LINEAR)
+
+
+def declared(*kinds: Matching) -> list[str]:
+    """The methods that declare to be matched in one of these ways."""
+    return [name for name in NAMES if DIFFERENTIATORS.load(name).MATCHING in kinds]
+
+
+# With which settings a method is its linearisation on these motions, where not by default.
+LINEAR_WITH: dict[str, dict[str, float]] = {"p2smd": {"cap": 1e-15}}
+# More settings with which a method must be exact.
+EXACT = [
+    *((name, LINEAR_WITH.get(name, {})) for name in declared(Matching.EXACT, Matching.LINEARISED)),
+    ("kalman-lag", {"damping": 1.3, "frequency": 2.0}),
+    ("p2smd", {"cap": 1e-15, "implicit": 1}),
+]
 
 
 def positions(rows: int = 3000) -> Array:
@@ -39,19 +41,18 @@ def positions(rows: int = 3000) -> Array:
 
 def form(name: str, q: Array, **settings: float) -> Any:
     """The matched form of a method, tuned by the positions if it tunes itself."""
-    method = DIFFERENTIATORS.load(name)(**settings)
-    return (method.fitted(q, H) if hasattr(method, "fitted") else method).matched()
+    return DIFFERENTIATORS.load(name)(**settings).fitted(q, H).matched()
 
 
 def through(torque_filter: Any, x: Array) -> Array:
     return x if torque_filter is None else over(torque_filter, x, H)[0]
 
 
-@EXACT
+@pytest.mark.parametrize(("name", "settings"), EXACT)
 def test_matched_derivatives_are_central_differences_of_the_filtered_position(
     name: str, settings: dict[str, float]
 ) -> None:
-    """Exactly in discrete time, but for the ends, where the filters come to rest."""
+    """Exactly in discrete time, except at the ends, where the filters come to rest."""
     q = positions()
     matched = form(name, q, **settings)
     u, v, a = over(matched, q, H)
@@ -62,10 +63,23 @@ def test_matched_derivatives_are_central_differences_of_the_filtered_position(
     np.testing.assert_allclose(a[settled], curvature[799:-299], rtol=0.0, atol=1e-7)
 
 
-def test_p2smd_in_implicit_steps_is_matched_exactly_too() -> None:
-    test_matched_derivatives_are_central_differences_of_the_filtered_position(
-        "p2smd", {"cap": 1e-15, "implicit": 1}
-    )
+@pytest.mark.parametrize("name", declared(Matching.MEASURED))
+def test_a_method_matched_by_measured_delays_is_not_linear(name: str) -> None:
+    """A linear one could be matched exactly, and would escape the test above."""
+    q = positions(1000)
+    method = DIFFERENTIATORS.load(name)()
+    once, twice = (np.array(over(method, x, H)) for x in (q, 2.0 * q))
+    assert np.abs(2.0 * once - twice).max() > 0.01 * np.abs(once).max()
+
+
+@pytest.mark.parametrize("name", declared(Matching.UNFILTERED))
+def test_an_unfiltered_method_keeps_position_and_torque(name: str) -> None:
+    q = positions()
+    matched = form(name, q)
+    u, *derivatives = over(matched, q, H)
+    assert matched.torque_filter is None
+    np.testing.assert_array_equal(u, q)
+    np.testing.assert_array_equal(derivatives, over(DIFFERENTIATORS.load(name)(), q, H))
 
 
 @pytest.mark.parametrize("name", ["kalman-lag", "savgol"])
@@ -78,7 +92,7 @@ def test_the_matched_acceleration_is_the_methods_own(name: str) -> None:
     np.testing.assert_allclose(matched[1000:-300], own[1000:-300], rtol=0.0, atol=1e-6)
 
 
-@pytest.mark.parametrize("name", ["rts", "spline"])
+@pytest.mark.parametrize("name", declared(Matching.SECOND_ORDER))
 def test_smoothers_are_matched_to_second_order_in_the_period(name: str) -> None:
     """Differences of a smooth curve are off by h^2 / 6 of the third derivative, / 12 of the fourth.
 
@@ -98,7 +112,7 @@ def test_smoothers_are_matched_to_second_order_in_the_period(name: str) -> None:
 
 
 @every_method
-def test_the_companion_keeps_a_constant(name: str) -> None:
+def test_the_torque_filter_keeps_a_constant(name: str) -> None:
     torque_filter = form(name, positions()).torque_filter
     np.testing.assert_allclose(through(torque_filter, np.full(3000, 3.7)), 3.7, rtol=1e-10)
 
@@ -109,8 +123,8 @@ def test_position_and_torque_go_the_same_way(name: str) -> None:
     matched = form(name, q)
     settled = slice(1000, -300)
     u = through(matched.torque_filter, q)
-    # spline: the torque gets the least-squares spline of the same knots
-    tolerance = 1e-6 if name in ("spline", "rts") else 1e-12
+    # A spline, for one, takes the torque through the least-squares spline of the same knots.
+    tolerance = 1e-6 if name in declared(Matching.SECOND_ORDER) else 1e-12
     np.testing.assert_allclose(over(matched, q, H)[0][settled], u[settled], atol=tolerance)
 
 
@@ -142,8 +156,8 @@ def test_torque_matched_to_its_motion_gives_the_mass_back(name: str) -> None:
     tau = through(matched.torque_filter, force)
     inner = slice(800, -300)
     mass = float(a[inner] @ tau[inner] / (a[inner] @ a[inner]))
-    linear = name in LINEAR or name in ("central", "rts", "spline")
-    assert mass == pytest.approx(3.0, rel=0.01 if linear else 0.1)
+    measured = name in declared(Matching.MEASURED)
+    assert mass == pytest.approx(3.0, rel=0.1 if measured else 0.01)
 
 
 @pytest.mark.parametrize("name", ["ed-fir", "p2smd"])
@@ -179,16 +193,14 @@ def test_measured_delays_of_a_linear_method_are_those_of_its_phase() -> None:
     assert v == pytest.approx(0.0, abs=0.01)
 
 
-def test_spread_of_a_causal_filter_is_its_settling_time() -> None:
+def test_a_causal_filter_settles_after_its_settling_time() -> None:
     """One pole: 1 % after ln(100) time constants, its slope .5 % of the first after ln(200)."""
-    from scarid_cli.algorithms.filters.butterworth import Butterworth
-
     before, after = settling_rows(Butterworth(4.0, 1), H)
     assert before == 0
     assert after == pytest.approx(np.log(200.0) / (2.0 * np.pi * 4.0) / H, abs=2)
 
 
-def test_spread_of_a_zero_phase_filter_has_two_sides() -> None:
+def test_a_zero_phase_filter_settles_on_both_sides() -> None:
     before, after = settling_rows(form("zero-phase", positions()).torque_filter, H)
     assert before == pytest.approx(after, abs=1)
     assert before > 10

@@ -1,4 +1,4 @@
-"""A small part of `make montecarlo`: are the intervals true, and is bias caught?"""
+"""A small part of `make montecarlo`: coverage of the intervals, and detection of bias."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def test_the_stated_intervals_contain_the_truth_and_those_of_white_residuals_do_
 
 
 @pytest.mark.parametrize("method", ["kalman", "high-gain", "savgol-end"])
-def test_bias_is_called_so_and_nothing_else_is(method: str) -> None:
+def test_bias_is_reported_and_nothing_else_is(method: str) -> None:
     differentiator = DIFFERENTIATORS.load(method)()
 
-    def called(seed: int, *, match: bool) -> bool:
+    def reported(seed: int, *, match: bool) -> bool:
         reasons = identified(differentiator, log(seed), match=match)[-1]["reasons"]
         return any(reason.startswith("biased") for reason in reasons)
 
-    assert sum(called(seed, match=False) for seed in RUNS[:10]) == 10
-    assert sum(called(seed, match=True) for seed in RUNS[:10]) <= 1
+    assert sum(reported(seed, match=False) for seed in RUNS[:10]) == 10
+    assert sum(reported(seed, match=True) for seed in RUNS[:10]) <= 1

@@ -128,7 +128,7 @@ def test_repetitions_become_medians_quartiles_and_rankings(
         " $k/motion.parquet | sed -n 2p | cut -d, -f2; done"
     )
     assert result.status == 0, result.err
-    assert "Median and quartiles of 3 experiments." in result.out
+    assert "Median [first quartile, third quartile] of 3 experiments." in result.out
     middle = sorted(map(float, result.out.split()[-3:]))[1]
     assert f"{middle:#.4g}" in result.out
     assert "p2smd < 2smd" in result.out

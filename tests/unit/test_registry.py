@@ -18,6 +18,8 @@ from scarid_cli.algorithms.choices.registry import (
     Registry,
 )
 from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.processes.method import Matching, Method
+from scarid_cli.errors import UsageFault
 
 REGISTRIES = {registry.folder: registry for registry in (DIFFERENTIATORS, ESTIMATORS, EXCITATIONS)}
 CHOICES = [
@@ -77,13 +79,46 @@ def test_description_is_the_docstring(registry: Registry, name: str) -> None:
     assert described.split() == (module_of(registry, name).__doc__ or "").split()
 
 
+MATCHED = {
+    Matching.UNFILTERED: r"Matched \(unfiltered\)",
+    Matching.EXACT: r"Matched \(exact",
+    Matching.SECOND_ORDER: r"Matched \(to second order in the period\)",
+    Matching.LINEARISED: "Matched by its linearisation",
+    Matching.MEASURED: "Matched by measured delays",
+}
+
+
 @pytest.mark.parametrize("name", DIFFERENTIATORS.names)
-def test_a_differentiator_says_its_class_and_how_it_is_matched(name: str) -> None:
+def test_a_differentiator_says_its_class_its_delay_and_how_it_is_matched(name: str) -> None:
     classes = {0: "Causal", inf: "Whole record"}
-    text = DIFFERENTIATORS.describe(name)
-    assert classes.get(DIFFERENTIATORS.load(name)().lag(0.005), "Fixed lag") in text
-    assert re.search(r"[Dd]elay", text) or name in ("central", "savgol")
-    assert "Matched" in text
+    method, text = DIFFERENTIATORS.load(name), DIFFERENTIATORS.describe(name)
+    found = classes.get(method().lag(0.005), "Fixed lag")
+    assert re.search(rf"^{found}\b", text, re.MULTILINE)
+    assert re.search(r"^Delay: ", text, re.MULTILINE)
+    assert re.search(rf"^{MATCHED[method.MATCHING]}", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize("name", DIFFERENTIATORS.names)
+def test_a_differentiator_declares_its_capabilities_on_the_base_class(name: str) -> None:
+    """A method that tunes itself has a `fitted` of its own, any other gives itself back."""
+    method = DIFFERENTIATORS.load(name)
+    assert issubclass(method, Method)
+    assert method.MATCHING in Matching
+    assert (method.fitted is not Method.fitted) == method.TUNES_ITSELF
+    settings = {"noise", "intensity"}
+    assert (settings <= {field.name for field in fields(method)}) == method.HAS_LIKELIHOOD
+
+
+@every_choice
+def test_whole_numbers_are_made_once(registry: Registry, name: str) -> None:
+    """Settings declared `int` take 4.0, as the command line passes it, and refuse 4.5."""
+    method = registry.load(name)
+    for field in (field for field in fields(method) if field.type in (int, "int")):
+        value = getattr(method(**{field.name: float(field.default)}), field.name)
+        assert isinstance(value, int)
+        assert value == field.default
+        with pytest.raises(UsageFault, match=rf"^{field.name} must be a whole number, not"):
+            method(**{field.name: field.default + 0.5})
 
 
 @every_choice

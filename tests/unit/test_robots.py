@@ -60,10 +60,15 @@ def test_file_describes_a_robot_as_a_built_in_does(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize("name", ["scara3", "nowhere/robot.toml", "../robots/scara2.tml"])
+@pytest.mark.parametrize("name", ["scara3", "../robots/scara2.tml"])
 def test_unknown_robot_is_refused_with_the_choice(name: str) -> None:
     with pytest.raises(UsageFault, match=r"unknown robot .*choose emps, planar2-gravity, scara2"):
         load(name)
+
+
+def test_a_description_that_is_not_there_is_refused() -> None:
+    with pytest.raises(UsageFault, match=r"^nowhere/robot\.toml: no such file$"):
+        load("nowhere/robot.toml")
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,7 @@ def test_in_eulers_steps_every_error_is_proportional_to_the_period(order: int) -
 
 
 def written_out(q: Array, order: int, bound: float, filters: int, h: float) -> tuple[Array, Array]:
-    """The recursions of Livne and Levant (2014) and Levant and Livne (2020), term by term."""
+    """The recursions of Levant and Livne (2014, 2020) as they are printed, with Taylor terms."""
     total = order + filters
     lam = [x * bound ** ((i + 1) / (total + 1)) for i, x in enumerate(LAMBDA[total - 1])]
     w, z = [0.0] * filters, [float(q[0]), *[0.0] * order]

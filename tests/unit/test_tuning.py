@@ -17,6 +17,7 @@ from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.tuning import judges, search
 from scarid_cli.arrays import Array
+from scarid_cli.errors import TooShort
 from scarid_cli.stages.tune import Record, chosen, online, tune
 
 RESOLUTION = 2.0 * np.pi / 2**14
@@ -101,6 +102,40 @@ def test_likelihood_prefers_its_fit(name: str) -> None:
         assert judge(fitted) < judge(replace(fitted, noise=factor * fitted.noise))
     sigma = RESOLUTION * np.hypot(1.0 / np.sqrt(12.0), 0.3)
     assert fitted.noise == pytest.approx(sigma, rel=0.05)
+
+
+def two_joints(*sigmas: float) -> Array:
+    """Quintic moves of two joints with white noise of these standard deviations."""
+    rng = np.random.default_rng(0)
+    q = reference(PERIOD)[0]
+    return np.array([q + sigma * rng.standard_normal(len(q)) for sigma in sigmas])
+
+
+@pytest.mark.parametrize("sigmas", [(1e-4, 1e-3), (1e-3, 1e-4)])
+def test_settings_for_all_joints_come_from_all_joints(
+    sigmas: tuple[float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of one variance for two records, the most likely is the mean of theirs, in either order."""
+    monkeypatch.setattr(search, "search", lambda method, *_: iter([search.Trial(method, 1.0)]))
+    q = two_joints(*sigmas)
+    rows = tune(Record(q, np.zeros_like(q), PERIOD), ["kalman"], load("scara2"), 0, list)
+    noise = rows[0].trial.method.noise
+    assert noise == pytest.approx(np.sqrt(np.mean(np.square(sigmas))), rel=0.05)
+
+
+def test_joints_that_move_alike_are_tuned_as_one_of_them() -> None:
+    q = two_joints(3e-4)
+    alone, both = (judges.fit(DIFFERENTIATORS.load("kalman")(), x, PERIOD) for x in (q, [*q, *q]))
+    assert both.states == alone.states
+    assert both.noise == pytest.approx(alone.noise, rel=1e-2)
+
+
+def test_a_record_needs_more_rows_than_its_model_has_states_and_settings() -> None:
+    """Five states, and noise, intensity, damping and frequency: ten rows, as the message says."""
+    method, (q,) = DIFFERENTIATORS.load("kalman")(), two_joints(3e-4)
+    assert judges.fit(method, q[100:110], PERIOD).noise > 1e-6
+    with pytest.raises(TooShort, match=r"^9 rows are too few .* at least 10 rows$"):
+        judges.fit(method, q[100:109], PERIOD)
 
 
 def test_the_same_seed_gives_the_same_trials() -> None:

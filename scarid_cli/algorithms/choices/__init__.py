@@ -1,1 +1,1 @@
-"""What a user can choose: algorithms by name, their settings, and where `tune` searches."""
+"""What a user can choose: algorithms by name, their settings, and the ranges `tune` searches."""

@@ -1,4 +1,4 @@
-"""Where `scarid tune` looks for a setting."""
+"""The range in which `scarid tune` searches a setting."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Range:
-    """Where a setting is looked for, on a logarithmic scale.
+    """The range of a setting, searched on a logarithmic scale.
 
-    `samples`: the range is in seconds, the setting in samples. `step`: the setting is rounded to
-    1, 1 + step, 1 + 2 step, ...; 0 for any number.
+    If `samples` is true, the range is in seconds and the setting in samples. If `step` is not 0,
+    the setting is rounded to one of 1, 1 + step, 1 + 2 step, ...; if it is 0, any number is taken.
     """
 
     low: float
@@ -19,7 +19,7 @@ class Range:
     step: int = 0
 
     def setting(self, x: float, h: float) -> float:
-        """From the unit interval."""
+        """The setting at x of the unit interval, for a record sampled every h [s]."""
         value: float = self.low * (self.high / self.low) ** min(max(x, 0.0), 1.0)
         if self.samples:
             value /= h

@@ -1,6 +1,7 @@
-"""A folder of algorithms is a registry: each module in it is one choice of a command's option.
+"""Registries: each module in a folder of algorithms is one choice of an option of a command.
 
-Names and descriptions are read without importing the modules, so that `--help` stays quick.
+Names and descriptions are read from the files without importing the modules, so that `--help`
+stays quick.
 """
 
 from __future__ import annotations
@@ -16,9 +17,10 @@ FOLDER = Path(__file__).parents[1]
 
 @dataclass(frozen=True)
 class Registry:
-    """The modules of one folder below `algorithms`, each defining a class of the same name.
+    """The modules of one folder below `algorithms`, each of which defines a class `class_name`.
 
-    A module `ed_fir` is called `ed-fir`, and `_2smd` (a module cannot begin with a digit) `2smd`.
+    The module `ed_fir` is the choice `ed-fir`; the module `_2smd` (the name of a module cannot
+    begin with a digit) is the choice `2smd`.
     """
 
     folder: str
@@ -26,16 +28,17 @@ class Registry:
 
     @property
     def names(self) -> list[str]:
+        """All choices, sorted."""
         stems = (path.stem for path in (FOLDER / self.folder).glob("*.py"))
         return sorted(_name(stem) for stem in stems if not stem.startswith("__"))
 
     def load(self, name: str) -> Any:
-        """The class of a choice."""
+        """Import the module of a choice and return its class."""
         module = f"scarid_cli.algorithms.{self.folder}.{_stem(name)}"
         return getattr(importlib.import_module(module), self.class_name)
 
     def describe(self, name: str) -> str:
-        """The module's documentation."""
+        """The docstring of the module of a choice."""
         path = FOLDER / self.folder / f"{_stem(name)}.py"
         return ast.get_docstring(ast.parse(path.read_text("utf-8"))) or ""
 

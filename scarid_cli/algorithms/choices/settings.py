@@ -1,4 +1,7 @@
-"""Checks that the settings of an algorithm make sense; a UsageFault says which does not."""
+"""Settings of algorithms, and the checks that refuse settings which make no sense.
+
+Every check raises a UsageFault whose message names the setting and its value.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +11,32 @@ from typing import Any
 
 from scarid_cli.errors import UsageFault
 
-# Metadata of a field that is no setting: the stage fills it in.
+# Metadata of a field that is not a setting: the stage fills it in.
 GIVEN = {"given": True}
 
 
+class Validated:
+    """A frozen dataclass of settings that are checked once, when it is made.
+
+    Fields declared `int` must be whole numbers and are converted: the command line passes 81.0,
+    the algorithm sees 81.
+    """
+
+    def __post_init__(self) -> None:
+        for field in fields(self):  # type: ignore[arg-type]  # subclasses are dataclasses
+            if field.type in (int, "int"):
+                value = getattr(self, field.name)
+                if not abs(value) < inf or value % 1:
+                    raise UsageFault(f"{field.name} must be a whole number, not {value:g}")
+                object.__setattr__(self, field.name, int(value))
+        self.check()
+
+    def check(self) -> None:
+        """Raise a UsageFault if a setting makes no sense; by default every value is accepted."""
+
+
 def names_of(method: Any) -> list[str]:
-    """The settings of an algorithm, of its class or of one with values."""
+    """The names of the settings of an algorithm, given its class or an instance."""
     return [f.name for f in fields(method) if "given" not in f.metadata]
 
 
@@ -25,24 +48,17 @@ def require_positive(settings: Any, *names: str) -> None:
 
 
 def require_positive_or_infinite(settings: Any, *names: str) -> None:
-    """Each named setting, a limit, must be above zero."""
+    """Each named setting is a limit: it must be above zero, and may be infinite."""
     for name in names:
         if not getattr(settings, name) > 0.0:
             raise UsageFault(f"{name} must be positive, not {getattr(settings, name):g}")
 
 
 def require_not_negative(settings: Any, *names: str) -> None:
-    """Each named setting must be finite and zero or above."""
+    """Each named setting must be finite, and zero or above."""
     for name in names:
         if not 0.0 <= getattr(settings, name) < inf:
             raise UsageFault(f"{name} must not be negative, not {getattr(settings, name):g}")
-
-
-def require_whole(settings: Any, *names: str) -> None:
-    """Each named setting must be a whole number."""
-    for name in names:
-        if not abs(getattr(settings, name)) < inf or getattr(settings, name) % 1:
-            raise UsageFault(f"{name} must be a whole number, not {getattr(settings, name):g}")
 
 
 def require_odd(settings: Any, *names: str) -> None:
@@ -52,18 +68,18 @@ def require_odd(settings: Any, *names: str) -> None:
             raise UsageFault(f"{name} must be odd, not {getattr(settings, name):g}")
 
 
-def require_between(settings: Any, low: float, high: float, *names: str) -> None:
-    """Each named setting must be a whole number from low to high."""
+def require_between(settings: Any, low: int, high: int, *names: str) -> None:
+    """Each named setting, declared `int`, must be from low to high."""
     for name in names:
-        if getattr(settings, name) % 1 or not low <= getattr(settings, name) <= high:
+        if not low <= getattr(settings, name) <= high:
             raise UsageFault(
-                f"{name} must be a whole number from {low:g} to {high:g}, "
+                f"{name} must be a whole number from {low} to {high}, "
                 f"not {getattr(settings, name):g}"
             )
 
 
 def require_below_nyquist(cutoff: float, h: float) -> None:
-    """A cut-off [Hz] that a signal sampled every h [s] can have."""
+    """The cutoff [Hz] must be below half the rate of a signal sampled every h [s]."""
     if cutoff * h >= 0.5:
         raise UsageFault(f"cutoff {cutoff:g} Hz is not below half the rate, {0.5 / h:g} Hz")
 

@@ -1,12 +1,16 @@
-"""Second-order sliding mode differentiator (paper eq. 6 with its exponent mended; Levant 2003).
+"""Second-order sliding-mode differentiator (2SMD) of Levant.
 
-Causal, explicit Euler, output at the posterior states. Exact after convergence if eta2 exceeds the
-jerk; then the delay is that of the sampling, else tens of milliseconds. Matched (--match): by the
-delays measured on quintic moves of 1 rad in 0.8 to 2 s at the settings given.
-Rule: eta0 = 2 L^(1/3), eta1 = 1.5 L^(1/2), eta2 = 1.1 L, with L the largest jerk [1/s3].
-eta0 = 10: as in Table 1.
-eta1 = 12, eta2 = 70: the rule for L = 64 rad/s3, what moves of 1 rad in a second need. Table 1
-prints 8 and 5 (preset table1), which cannot follow a jerk above 4.5 rad/s3.
+Causal. It runs the recursion of Levant (Int. J. Control 76 (2003) 924) in explicit Euler steps.
+That is equation 6 of the paper with its exponent corrected to 2/3. The output is taken from the
+states after each update, brought back to the present sample.
+Delay: that of the sampling if eta2 exceeds the largest jerk of the motion, otherwise tens of
+milliseconds.
+Matched by measured delays: position, velocity and torque are delayed by what the method delays
+quintic moves of 1 rad in 0.8 to 2 s with the settings given.
+Rule: for the largest jerk L [1/s3], take eta0 = 2 L^(1/3), eta1 = 1.5 L^(1/2) and eta2 = 1.1 L.
+eta0 = 10: first gain, as in Table 1 of the paper.
+eta1 = 12, eta2 = 70: second and third gain, by the rule for L = 64 rad/s3, which moves of 1 rad in
+a second need. Table 1 prints 8 and 5 (preset table1), which cannot follow a jerk above 4.5 rad/s3.
 """
 
 from __future__ import annotations
@@ -18,14 +22,13 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.settings import require_positive
-from scarid_cli.algorithms.processes.delays import Measured
-from scarid_cli.algorithms.processes.process import Causal, Recursion
+from scarid_cli.algorithms.filters.sliding import SlidingMode
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import smd2
 
 
 @dataclass(frozen=True)
-class Differentiator(Causal):
+class Differentiator(SlidingMode):
     eta0: float = 10.0
     eta1: float = 12.0
     eta2: float = 70.0
@@ -37,18 +40,11 @@ class Differentiator(Causal):
         "eta2": Range(1.0, 10000.0),
     }
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "eta0", "eta1", "eta2")
 
-    def init(self, x: float, h: float) -> Recursion:
-        return Recursion(np.array([x, 0.0, 0.0]), h)
+    def start(self, x: float) -> Array:
+        return np.array([x, 0.0, 0.0])
 
-    def step(self, state: Recursion, x: Array) -> tuple[Recursion, tuple[Array, ...]]:
-        state = state.copy()
-        v, a = np.empty_like(x), np.empty_like(x)
-        gains = np.array([self.eta0, self.eta1, self.eta2])
-        smd2.differentiate(x, v, a, state.values, gains, state.h)
-        return state, (v, a)
-
-    def matched(self) -> Measured:
-        return Measured(self)
+    def law(self, x: Array, v: Array, a: Array, values: Array, h: float) -> None:
+        smd2.differentiate(x, v, a, values, np.array([self.eta0, self.eta1, self.eta2]), h)

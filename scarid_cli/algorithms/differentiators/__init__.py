@@ -1,15 +1,17 @@
 """Differentiators: each module of this folder is one method of `scarid differentiate`.
 
-A module defines `Differentiator`, a frozen dataclass of settings for one joint, with
+A module defines `Differentiator`, a frozen dataclass of settings for one joint, which derives from
+`processes.method.Method`. That base class says what a method has to define and what it may declare.
+Bases for the usual families leave little to write:
 
-- `lag(h)`: by how many samples the output of a row has to wait, sampled every h [s]; inf for the
-  whole record;
-- `init(x, h)`: the state before the first position x [rad or m];
-- `step(state, x)`: the state after the positions x, and the velocities [1/s] and accelerations
-  [1/s2] of the samples that are settled by then;
-- `finish(state)`: those of the last `lag` samples, once there are no more;
-- `matched()`: the phase-matched form (see `process.Matched`);
-- `fitted(x, h)`, if it tunes itself: the method for a whole record x of positions;
-- `PRESETS`: named settings (`table1`: as printed in the paper);
-- `TUNED`: where `scarid tune` looks for which settings.
+- `filters.sliding.SlidingMode`: a recursion with a nonlinear law;
+- `filters.convolution.FirMethod`: two FIR filters and the low-pass they are differences of;
+- `filters.observer.ObserverMethod`: an observer of constant gain in the Kalman kernel;
+- `filters.kalman_method.KalmanMethod`: a Kalman filter or smoother;
+- `processes.records.RecordMethod`: a smoother of the whole record;
+- `processes.linearised.LinearisedMethod`: any method that is nearly linear.
+
+The docstring of the module is what `scarid differentiate --help` prints. It says what the method
+does, its source, its class (causal, fixed lag or whole record), its delay, how it is matched and
+how to choose its settings, and describes each setting in a line `name = default [unit]: ...`.
 """

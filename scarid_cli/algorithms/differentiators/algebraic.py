@@ -1,12 +1,15 @@
-"""Algebraic differentiator: a Jacobi polynomial expansion over a sliding window (Mboup et al.).
+"""Algebraic differentiator: a Jacobi polynomial expansion over a sliding window.
 
-Causal. Numer. Algorithms 50 (2009) 439; survey of Othmane, Kiltz, Rudolph (2022); sampled as in
-AlgDiff ("analytic" for the velocity, "analytic trapezoidal" for the acceleration). Delay:
-window (alpha + 1) / (alpha + beta + 2) for degree 0. Matched (--match, exact): position and torque
-pass the kernel whose differences the derivatives are. Rule: the window by the delay that may be.
-window = 0.1 [s]: of the expansion, rounded to whole samples.
-alpha = 4, beta = 4: of the weight (1 - x)^alpha (1 + x)^beta, each above 1.
-degree = 0: of the expansion, 0 to 6; above 0 evaluated at the last zero of the next polynomial.
+Causal. Mboup, Join and Fliess, Numer. Algorithms 50 (2009) 439; survey by Othmane, Kiltz and
+Rudolph (2022). It is sampled as in the toolbox AlgDiff: "analytic" for the velocity, "analytic
+trapezoidal" for the acceleration.
+Delay: window (alpha + 1) / (alpha + beta + 2) for degree 0.
+Matched (exact): position and torque pass the kernel of which the derivatives are differences.
+Rule: choose the window by the delay that can be accepted.
+window = 0.1 [s]: length of the window, rounded to whole samples.
+alpha = 4, beta = 4: exponents of the weight (1 - x)^alpha (1 + x)^beta, each above 1.
+degree = 0: degree of the expansion, 0 to 6; above 0 it is evaluated at the last zero of the next
+polynomial.
 """
 
 from __future__ import annotations
@@ -33,7 +36,7 @@ class Differentiator(FirMethod):
 
     TUNED: ClassVar = {"window": Range(0.02, 1.0)}
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "window")
         require_above(self, 1.0, "alpha", "beta")
         require_between(self, 0, 6, "degree")
@@ -49,8 +52,8 @@ class Differentiator(FirMethod):
             raise UsageFault(f"window must be 3 samples or more, not {self.window / h:.3g}")
         x = 1.0 - 2.0 * np.arange(1, samples) / samples
         kernel = np.zeros_like(x)
-        at = last_zero(int(self.degree) + 1, self.alpha, self.beta) if self.degree else 0.0
-        for n in range(int(self.degree) + 1):
+        at = last_zero(self.degree + 1, self.alpha, self.beta) if self.degree else 0.0
+        for n in range(self.degree + 1):
             share = jacobi(n, self.alpha, self.beta, np.array(at))
             share /= squared_norm(n, self.alpha, self.beta)
             kernel += share * jacobi(n, self.alpha, self.beta, x)
@@ -69,12 +72,12 @@ def jacobi(n: int, alpha: float, beta: float, x: Array) -> Array:
 
 
 def binomial(x: float, k: int) -> float:
-    """x over k, for a real x of at least k."""
+    """The binomial coefficient x over k, for a real x of at least k."""
     return gamma(x + 1.0) / (gamma(k + 1.0) * gamma(x - k + 1.0))
 
 
 def squared_norm(n: int, alpha: float, beta: float) -> float:
-    """The integral of the weight and the squared polynomial, but for 2^(alpha + beta + 1)."""
+    """The integral of the weight times the squared polynomial, over 2^(alpha + beta + 1)."""
     return (
         gamma(n + alpha + 1.0)
         * gamma(n + beta + 1.0)
@@ -83,10 +86,13 @@ def squared_norm(n: int, alpha: float, beta: float) -> float:
 
 
 def last_zero(n: int, alpha: float, beta: float) -> float:
-    """The largest zero of the Jacobi polynomial of degree n (Golub and Welsch)."""
+    """The largest zero of the Jacobi polynomial of degree n, for alpha and beta above 1.
+
+    As an eigenvalue (Golub and Welsch, Math. Comp. 23 (1969) 221).
+    """
     k = np.arange(n)
     total = 2.0 * k + alpha + beta
-    diagonal = (beta**2 - alpha**2) / (total * (total + 2.0))  # alpha and beta are above 1
+    diagonal = (beta**2 - alpha**2) / (total * (total + 2.0))
     k, total = k[1:], total[1:]
     square = (
         4.0 * k * (k + alpha) * (k + beta) * (k + alpha + beta)

@@ -1,8 +1,9 @@
-"""Backward (Euler) difference, once for velocity, twice for acceleration: no filter.
+"""Backward (Euler) difference without a filter: once for the velocity, twice for the acceleration.
 
-Causal. For positions that are filtered already, online. Delay: half a sample for the velocity, one
-sample for the acceleration. Matched (--match, exact): the velocity is averaged over two samples,
-position and torque are delayed by one. No settings.
+Causal. It is meant for positions that have been filtered already, online.
+Delay: half a sample for the velocity, one sample for the acceleration.
+Matched (exact): the velocity is averaged over two samples, and position and torque are delayed by
+one sample. No settings.
 """
 
 from __future__ import annotations

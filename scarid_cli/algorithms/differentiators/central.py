@@ -1,75 +1,79 @@
-"""Central difference, twice: no delay and no filter, for positions that are filtered already.
+"""Central difference without a filter: once for the velocity, twice for the acceleration.
 
-The field's standard after a zero-phase filter. Fixed lag of two samples; one-sided at both ends,
-like numpy.gradient. Matched as it is. No settings.
+Fixed lag of two samples; at both ends of the record the differences are one-sided, as in
+numpy.gradient. It is meant for positions that have been filtered already: after a zero-phase filter
+it is the standard of the field.
+Delay: none.
+Matched (unfiltered): position and torque stay as they are. No settings.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.ranges import Range
-from scarid_cli.algorithms.processes.matching import WithPosition
+from scarid_cli.algorithms.processes.matching import Unfiltered
+from scarid_cli.algorithms.processes.method import Matching, Method
 from scarid_cli.arrays import Array
 
 
 @dataclass(frozen=True)
-class Line:
-    """One differentiator: the last samples (at most two), and whether the first has its output."""
+class RunningDifference:
+    """One differentiation: the last samples (at most two), and whether the first has its output."""
 
     held: Array
     begun: bool = False
 
 
 @dataclass(frozen=True)
-class State:
-    position: Line
-    velocity: Line
+class CentralState:
+    """The differentiation of positions and of velocities, and the velocities that wait."""
+
+    position: RunningDifference
+    velocity: RunningDifference
     waiting: Array
     h: float
 
 
 @dataclass(frozen=True)
-class Differentiator:
-    PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
-    TUNED: ClassVar[dict[str, Range]] = {}
+class Differentiator(Method):
+    MATCHING = Matching.UNFILTERED
 
     def lag(self, h: float) -> float:  # noqa: ARG002 (the same at every rate)
         return 2
 
-    def matched(self) -> WithPosition:
-        return WithPosition(self)
+    def matched(self) -> Unfiltered:
+        return Unfiltered(self)
 
-    def init(self, x: float, h: float) -> State:  # noqa: ARG002 (no state before the first sample)
+    def init(self, x: float, h: float) -> CentralState:  # noqa: ARG002 (the first step brings it)
         none = np.empty(0)
-        return State(Line(none), Line(none), none, h)
+        return CentralState(RunningDifference(none), RunningDifference(none), none, h)
 
-    def step(self, state: State, x: Array) -> tuple[State, tuple[Array, ...]]:
+    def step(self, state: CentralState, x: Array) -> tuple[CentralState, tuple[Array, ...]]:
         position, v = advance(state.position, x, state.h)
         velocity, a = advance(state.velocity, v, state.h)
         waiting = np.concatenate((state.waiting, v))
-        return State(position, velocity, waiting[len(a) :], state.h), (waiting[: len(a)], a)
+        after = CentralState(position, velocity, waiting[len(a) :], state.h)
+        return after, (waiting[: len(a)], a)
 
-    def finish(self, state: State) -> tuple[Array, ...]:
-        last = settle(state.position, state.h)
+    def finish(self, state: CentralState) -> tuple[Array, ...]:
+        last = last_derivative(state.position, state.h)
         velocity, a = advance(state.velocity, last, state.h)
-        a = np.concatenate((a, settle(velocity, state.h)))
+        a = np.concatenate((a, last_derivative(velocity, state.h)))
         return np.concatenate((state.waiting, last)), a
 
 
-def advance(line: Line, x: Array, h: float) -> tuple[Line, Array]:
-    """The derivatives that the new samples settle."""
-    samples = np.concatenate((line.held, x))
+def advance(running: RunningDifference, x: Array, h: float) -> tuple[RunningDifference, Array]:
+    """The differentiation after the samples x, and the derivatives known by then."""
+    samples = np.concatenate((running.held, x))
     inner = (samples[2:] - samples[:-2]) / (2.0 * h)
-    if line.begun or len(samples) < 2:
-        return Line(samples[-2:], line.begun), inner
+    if running.begun or len(samples) < 2:
+        return RunningDifference(samples[-2:], running.begun), inner
     first = (samples[1:2] - samples[:1]) / h
-    return Line(samples[-2:], begun=True), np.concatenate((first, inner))
+    return RunningDifference(samples[-2:], begun=True), np.concatenate((first, inner))
 
 
-def settle(line: Line, h: float) -> Array:
-    """The derivative of the last sample."""
-    return np.diff(line.held) / h
+def last_derivative(running: RunningDifference, h: float) -> Array:
+    """The one-sided derivative of the last sample."""
+    return np.diff(running.held) / h

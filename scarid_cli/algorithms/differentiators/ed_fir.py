@@ -1,10 +1,13 @@
-"""Euler (backward) difference and a low-pass FIR filter, once for velocity, twice for acceleration.
+"""Euler (backward) difference and FIR low-pass: once for velocity, twice for acceleration.
 
-The paper's ED+FIR: a Hamming window design. Causal. Delay: order / 2 samples and half a sample a
-stage (27.5 ms for the velocity and 55 ms for the acceleration at 200 Hz). Matched (--match,
-exact): the velocity passes both filters, position and torque as well.
-Rule: the cutoff a little above the fastest motion; an order of 3.3 rate / cutoff really reaches it.
-order = 10, cutoff = 5 [Hz]: as in Table 1. So short a filter is -3 dB at 12.8 Hz, not at 5 Hz.
+Causal. The paper's ED+FIR, with a Hamming window design.
+Delay: order / 2 samples and half a sample per stage, at 200 Hz 27.5 ms for the velocity and 55 ms
+for the acceleration.
+Matched (exact): the velocity passes both filters, as position and torque do.
+Rule: choose the cutoff a little above the fastest motion. The filter reaches it only with an order
+of about 3.3 rate / cutoff.
+order = 10, cutoff = 5 [Hz]: as in Table 1 of the paper. So short a filter is -3 dB at 12.8 Hz, not
+at 5 Hz.
 """
 
 from __future__ import annotations
@@ -15,11 +18,7 @@ from typing import ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.choices.ranges import Range
-from scarid_cli.algorithms.choices.settings import (
-    require_below_nyquist,
-    require_positive,
-    require_whole,
-)
+from scarid_cli.algorithms.choices.settings import require_below_nyquist, require_positive
 from scarid_cli.algorithms.filters.convolution import FirMethod
 from scarid_cli.arrays import Array
 
@@ -32,9 +31,8 @@ class Differentiator(FirMethod):
     PRESETS: ClassVar = {"table1": {}}
     TUNED: ClassVar = {"order": Range(0.02, 0.5, samples=True, step=1), "cutoff": Range(1.0, 50.0)}
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "order", "cutoff")
-        require_whole(self, "order")
 
     def taps(self, h: float) -> tuple[Array, ...]:
         stage = np.convolve(self._stage(h), [1.0, -1.0]) / h
@@ -46,11 +44,14 @@ class Differentiator(FirMethod):
 
     def _stage(self, h: float) -> Array:
         require_below_nyquist(self.cutoff, h)
-        return lowpass(int(self.order), self.cutoff * h)
+        return lowpass(self.order, self.cutoff * h)
 
 
 def lowpass(order: int, cutoff: float) -> Array:
-    """Taps (order + 1) of a windowed-sinc low-pass of unit gain; cutoff in cycles per sample."""
+    """The taps (order + 1) of a windowed-sinc low-pass of unit gain.
+
+    cutoff: in cycles per sample.
+    """
     n = np.arange(order + 1) - order / 2.0
     taps: Array = np.sinc(2.0 * cutoff * n) * np.hamming(order + 1)
     taps /= taps.sum()

@@ -1,13 +1,19 @@
-"""Arbitrary-order sliding mode differentiator (Levant 2003; Livne and Levant 2014).
+"""Levant's sliding-mode differentiator of arbitrary order.
 
-Causal; Automatica 50 (2014) 2026. Homogeneous discrete form, or Euler's; output at the posterior
-states. Exact after convergence if the bound holds. Delay: with noise, tens of milliseconds at the
-default. Matched (--match): by the delays measured on quintic moves of 1 rad in 0.8 to 2 s at the
-settings given. Rule: the bound is the largest derivative of order + 1 of the motion; a quintic move
-of d in T has a jerk of 60 d / T^3 and a snap of 360 d / T^4.
-bound = 400 [1/s^(order+1)]: of the snap for order 3.
-order = 3: 1 to 5; with 1 a second one of the same bound differentiates the velocity.
-euler = 0: 1 for Euler's steps, whose error is proportional to the period for every derivative.
+Causal. Levant, Int. J. Control 76 (2003) 924, in the homogeneous discrete form of Livne and Levant
+(Automatica 50 (2014) 2026), or in Euler steps. The output is taken from the states after each
+update, brought back to the present sample. Without noise the error converges to that of the
+sampling if the bound holds.
+Delay: with noise, tens of milliseconds at the default.
+Matched by measured delays: position, velocity and torque are delayed by what the method delays
+quintic moves of 1 rad in 0.8 to 2 s with the settings given. If those moves exceed the bound, the
+delay is some 25 ms too long on motions within it.
+Rule: the bound is the largest derivative of order + 1 of the motion. A quintic move of d in the
+time T has a jerk of 60 d / T^3 and a snap of 360 d / T^4.
+bound = 400 [1/s^(order+1)]: the largest snap for order 3.
+order = 3: the order of differentiation, 1 to 5; for 1 a second differentiator of the same bound
+differentiates the velocity.
+euler = 0: 1 for Euler steps, in which the error of every derivative is proportional to the period.
 """
 
 from __future__ import annotations
@@ -19,39 +25,32 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.settings import require_between, require_positive
-from scarid_cli.algorithms.filters.sliding import gains
-from scarid_cli.algorithms.processes.delays import Measured
-from scarid_cli.algorithms.processes.process import Causal, Recursion
+from scarid_cli.algorithms.filters.sliding import SlidingMode, gains
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import levant
 
 
 @dataclass(frozen=True)
-class Differentiator(Causal):
+class Differentiator(SlidingMode):
     bound: float = 400.0
     order: int = 3
     euler: int = 0
 
     TUNED: ClassVar = {"bound": Range(1.0, 1e6)}
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "bound")
         require_between(self, 1, 5, "order")
         require_between(self, 0, 1, "euler")
 
-    def init(self, x: float, h: float) -> Recursion:
-        states = np.zeros((2, int(self.order) + 1))
-        states[0, 0] = x
-        return Recursion(states, h)
+    def start(self, x: float) -> Array:
+        values = np.zeros((2, self.order + 1))
+        values[0, 0] = x
+        return values
 
-    def step(self, state: Recursion, x: Array) -> tuple[Recursion, tuple[Array, ...]]:
-        state = state.copy()
-        v, a, unused = np.empty_like(x), np.empty_like(x), np.empty_like(x)
-        constant, taylor, h = gains(int(self.order), self.bound), not self.euler, state.h
-        levant.differentiate(x, v, a, state.values[0], constant, 0, taylor, h)
+    def law(self, x: Array, v: Array, a: Array, values: Array, h: float) -> None:
+        first, second = values
+        constant, taylor = gains(self.order, self.bound), not self.euler
+        levant.differentiate(x, v, a, first, constant, 0, taylor, h)
         if self.order == 1:
-            levant.differentiate(v, a, unused, state.values[1], constant, 0, taylor, h)
-        return state, (v, a)
-
-    def matched(self) -> Measured:
-        return Measured(self)
+            levant.differentiate(v, a, np.empty_like(x), second, constant, 0, taylor, h)

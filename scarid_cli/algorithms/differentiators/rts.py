@@ -1,73 +1,67 @@
-"""Kalman smoother over the whole record (Rauch, Tung, Striebel 1965), tuned by the data.
+"""Kalman smoother over the whole record, tuned by the data.
 
-Whole record, in linear time. Noise and model by maximum likelihood of the innovations, intensity by
-generalised cross-validation (held-out positions), unless given: nothing has to be known. D.12 of
-the equations; backwards as in Durbin and Koopman, section 4.4. No delay. Matched (--match):
-position and torque are smoothed alike; exact to second order in the period. Rule: none.
-noise = 0: standard deviation of the position; 0: all settings but the gate from the data.
-intensity = 0: spectral density of the white noise, [rad2/s7] for 4 states; 0: likewise.
-states = 4: 3 to 5.
+Whole record, in linear time. Rauch, Tung and Striebel, AIAA J. 3 (1965) 1445, with the backward
+recursion of Durbin and Koopman (Time Series Analysis by State Space Methods, section 4.4). Noise
+and model are those of maximum likelihood, the intensity that of generalised cross-validation on
+held-out positions, unless noise and intensity are given. See docs/theory.md, section "Maximum
+likelihood and cross-validation".
+Delay: none.
+Matched (to second order in the period): position and torque are smoothed alike.
+Rule: none; nothing has to be known.
+noise = 0: standard deviation of the position; 0 to find all settings except the gate from the data.
+intensity = 0: spectral density of the white noise, [rad2/s7] for 4 states; 0 likewise.
+states = 4: number of states, 3 to 5.
 damping = frequency = 0: of the acceleration process [1/s], [rad/s].
-gate = 20: standard deviations from which on an innovation is a glitch and left out (3 in a row
-at most).
+gate = 20: number of standard deviations beyond which an innovation is taken for a glitch and left
+out (at most 3 in a row).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from math import inf
+from dataclasses import dataclass
 
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import require_not_negative
 from scarid_cli.algorithms.filters import kalman
-from scarid_cli.algorithms.processes.process import Whole
+from scarid_cli.algorithms.filters.kalman_method import KalmanMethod
+from scarid_cli.algorithms.processes.method import Matching
+from scarid_cli.algorithms.processes.process import WholeRecord
+from scarid_cli.algorithms.processes.records import RecordMethod
 from scarid_cli.algorithms.tuning.likelihood import best_model, best_smoothing
 from scarid_cli.arrays import Array
 
 
 @dataclass(frozen=True)
-class Smoother(kalman.Settings, Whole):
-    """Position, velocity and acceleration."""
-
+class Differentiator(KalmanMethod, RecordMethod):
     noise: float = 0.0
     intensity: float = 0.0
 
-    def require_noise(self) -> None:
+    MATCHING = Matching.SECOND_ORDER
+    TUNES_ITSELF = True
+
+    def check_noise(self) -> None:
         require_not_negative(self, "noise", "intensity")
 
-    def over(self, x: Array, h: float) -> tuple[Array, ...]:
-        state, records = kalman.recorded(self.model(h).at_rest(x[0]), x)
-        return tuple(np.ascontiguousarray(kalman.smoothed(records, state).T))
-
-
-@dataclass(frozen=True)
-class Differentiator(Smoother):
-    def over(self, x: Array, h: float) -> tuple[Array, ...]:
-        return Smoother.over(self.fitted(x, h), x, h)[1:]
-
     def fitted(self, x: Array, h: float) -> Differentiator:
-        """With the noise and the model of these positions, and the intensity to smooth them."""
         if self.noise and self.intensity:
             return self
         return best_smoothing(best_model(self, x, h), x, h)
 
-    def matched(self) -> Matched:
-        return Matched(**vars(self))
+    def smoothed(self, x: Array, h: float) -> tuple[Array, ...]:
+        method = self.fitted(x, h)
+        state, records = kalman.recorded(method.model(h).at_rest(x[0]), x)
+        return tuple(np.ascontiguousarray(kalman.smoothed(records, state).T))
+
+    def torque_filter(self) -> SmoothedSignal:
+        return SmoothedSignal(self.ungated())
 
 
 @dataclass(frozen=True)
-class Matched(Smoother):
-    """All three as they are: the derivatives are those of the smoothed position."""
+class SmoothedSignal(WholeRecord):
+    """A signal smoothed as the method smooths positions, without its derivatives."""
 
-    @property
-    def torque_filter(self) -> Position:
-        return Position(**vars(replace(self, gate=inf)))
-
-
-@dataclass(frozen=True)
-class Position(Smoother):
-    """The smoothed signal alone."""
+    method: Differentiator
 
     def over(self, x: Array, h: float) -> tuple[Array, ...]:
-        return Smoother.over(self, x, h)[:1]
+        return self.method.smoothed(x, h)[:1]

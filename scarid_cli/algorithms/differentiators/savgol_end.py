@@ -1,12 +1,15 @@
 """Savitzky-Golay at the end of its window: the polynomial that fits the last samples best.
 
-Causal. Savitzky and Golay, Anal. Chem. 36 (1964) 1627; scipy.signal.savgol_coeffs with pos at the
-newest sample. No delay on motions of the degree; on quintic moves of 0.8 to 2 s 31 ms at the
-default, 200 Hz. Matched (--match, exact): position and torque pass the low-pass whose difference
-the derivative of the degree is, and the derivatives are its differences. Rule: the longest window
-over which the motion is nearly a polynomial; noise falls with its length to the power 2.5.
-window = 45: samples.
-degree = 3: of the polynomial, 2 or more and below the window.
+Causal. Savitzky and Golay, Anal. Chem. 36 (1964) 1627; the same as scipy.signal.savgol_coeffs with
+`pos` at the newest sample.
+Delay: none on motions that are polynomials of the degree; on quintic moves of 0.8 to 2 s 31 ms at
+the default and 200 Hz.
+Matched (exact): position and torque pass the low-pass of which the highest derivative of the
+polynomial is a difference, and velocity and acceleration are differences of it.
+Rule: choose the longest window over which the motion is nearly a polynomial. The noise of the
+acceleration falls with the length to the power 2.5.
+window = 45: length in samples.
+degree = 3: of the polynomial, at least 2 and below the window.
 """
 
 from __future__ import annotations
@@ -27,14 +30,14 @@ class Differentiator(FirMethod):
 
     TUNED: ClassVar = {"window": Range(0.03, 1.0, samples=True, step=1)}
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_window(self)
 
     def taps(self, h: float) -> tuple[Array, ...]:
         return self._taps(1, h), self._taps(2, h)
 
     def lowpass(self, h: float) -> Array:
-        return integrated(self._taps(int(self.degree), h), int(self.degree), h)
+        return integrated(self._taps(self.degree, h), self.degree, h)
 
     def _taps(self, order: int, h: float) -> Array:
-        return derivative_taps(int(self.window), int(self.degree), order, 0, h)
+        return derivative_taps(self.window, self.degree, order, 0, h)

@@ -1,9 +1,13 @@
-"""Quintic smoothing spline (Reinsch; FITPACK through scipy), the noise estimated from the data.
+"""Quintic smoothing spline through the whole record, with the noise estimated from the data.
 
-Whole record. As few knots as leave a residual of the noise: scipy.interpolate.UnivariateSpline
-with s = rows noise^2. No delay. Matched (--match): the torque passes the least-squares spline of
-the same knots. Rule: none; give the noise if the encoder is coarser than the motion in a sample.
-noise = 0: standard deviation of the position; 0: from its differences of high order.
+Whole record. Reinsch, Numer. Math. 10 (1967) 177, as implemented in FITPACK: the spline
+scipy.interpolate.UnivariateSpline with s = rows noise^2 has as few knots as leave a residual of the
+size of the noise.
+Delay: none.
+Matched (to second order in the period): the torque passes the least-squares spline of the same
+knots.
+Rule: none; give the noise if an encoder step is coarser than the motion within a sample.
+noise = 0: standard deviation of the position; 0 to estimate it from differences of high order.
 """
 
 from __future__ import annotations
@@ -14,7 +18,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import require_not_negative
-from scarid_cli.algorithms.processes.process import Whole
+from scarid_cli.algorithms.processes.method import Matching
+from scarid_cli.algorithms.processes.process import WholeRecord
+from scarid_cli.algorithms.processes.records import RecordMethod
 from scarid_cli.algorithms.tuning.likelihood import noise_of
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
@@ -23,57 +29,44 @@ DEGREE = 5
 
 
 @dataclass(frozen=True)
-class Spline(Whole):
-    """Position, velocity and acceleration."""
-
+class Differentiator(RecordMethod):
     noise: float = 0.0
 
-    def __post_init__(self) -> None:
+    MATCHING = Matching.SECOND_ORDER
+    TUNES_ITSELF = True
+
+    def check(self) -> None:
         require_not_negative(self, "noise")
 
-    def over(self, x: Array, h: float) -> tuple[Array, ...]:
+    def smoothed(self, x: Array, h: float) -> tuple[Array, ...]:
         t = times(x, h)
         spline = smoothing(self.noise, x, h)
         return tuple(np.asarray(spline(t, order)) for order in range(3))
 
+    def fitted(self, x: Array, h: float) -> FittedSpline:
+        return FittedSpline(self.noise, tuple(smoothing(self.noise, x, h).get_knots()))
 
-@dataclass(frozen=True)
-class Differentiator(Spline):
-    def over(self, x: Array, h: float) -> tuple[Array, ...]:
-        return Spline.over(self, x, h)[1:]
-
-    def fitted(self, x: Array, h: float) -> Fitted:
-        """With the knots that these positions need."""
-        return Fitted(self.noise, tuple(smoothing(self.noise, x, h).get_knots()))
+    def torque_filter(self) -> SplineProjection:
+        raise NotImplementedError("the knots for the torque are known once the spline is fitted")
 
 
 @dataclass(frozen=True)
-class Fitted(Differentiator):
-    """With known knots [s]."""
+class FittedSpline(Differentiator):
+    """The method with the knots [s] that the positions of a record need."""
 
     knots: tuple[float, ...] = ()
 
-    def matched(self) -> Matched:
-        return Matched(self.noise, self.knots)
+    def torque_filter(self) -> SplineProjection:
+        return SplineProjection(self.knots)
 
 
 @dataclass(frozen=True)
-class Matched(Spline):
-    """All three as they are."""
-
-    knots: tuple[float, ...] = ()
-
-    @property
-    def torque_filter(self) -> Projection:
-        return Projection(self.knots)
-
-
-@dataclass(frozen=True)
-class Projection(Whole):
+class SplineProjection(WholeRecord):
     """The least-squares spline of given knots [s]."""
 
     knots: tuple[float, ...]
-    edges: ClassVar[tuple[int, int]] = (0, 0)
+
+    SETTLING_ROWS: ClassVar = (0, 0)
 
     def over(self, x: Array, h: float) -> tuple[Array, ...]:
         from scipy.interpolate import LSQUnivariateSpline
@@ -85,14 +78,14 @@ class Projection(Whole):
 
 
 def times(x: Array, h: float) -> Array:
-    """From zero on [s]."""
+    """The times [s] of the rows, from zero on; TooShort if they are too few for a spline."""
     if len(x) <= DEGREE:
         raise TooShort(f"spline needs a log of more than {DEGREE} rows, not {len(x)}")
     return np.arange(float(len(x))) * h
 
 
 def smoothing(noise: float, x: Array, h: float) -> Any:
-    """FITPACK's spline whose residual is as large as the noise."""
+    """The spline of FITPACK whose residual is as large as the noise."""
     from scipy.interpolate import UnivariateSpline
 
     sigma = noise or noise_of(x)

@@ -1,7 +1,7 @@
-"""Butterworth low-pass as a cascade of second-order sections (paper section 3.2, data filtering).
+"""Butterworth low-pass as a cascade of second-order sections (section 3.2 of the paper).
 
-Designed by the bilinear transform with the cut-off pre-warped, as MATLAB and scipy do. The causal
-form starts at rest at the first sample, so that it makes no transient.
+The filter is designed by the bilinear transform with pre-warped cutoff, as in MATLAB and scipy. The
+causal form starts at rest at the first sample, so that it makes no transient on a constant.
 """
 
 from __future__ import annotations
@@ -11,29 +11,27 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import (
+    Validated,
     require_below_nyquist,
     require_positive,
-    require_whole,
 )
-from scarid_cli.algorithms.filters.sections import SectionState, advanced, at_rest
-from scarid_cli.algorithms.processes.process import Causal, Record, Whole
+from scarid_cli.algorithms.filters.sections import SectionFilter
+from scarid_cli.algorithms.processes.process import Samples, WholeRecord
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
 
 
 @dataclass(frozen=True)
-class Butterworth(Causal):
-    """Low-pass of an order with -3 dB at the cut-off [Hz]."""
+class Butterworth(Validated, SectionFilter):
+    """The causal low-pass of an order, with -3 dB at the cutoff [Hz]."""
 
     cutoff: float
     order: int = 4
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "cutoff", "order")
-        require_whole(self, "order")
 
     def sections(self, h: float) -> Array:
-        """Rows b0, b1, b2, a1, a2, each section of unit gain at rest; h [s]."""
         require_below_nyquist(self.cutoff, h)
         w = 2.0 * np.tan(np.pi * self.cutoff * h)
         rows = [_pair(w, angle) for angle in _angles(self.order)]
@@ -41,48 +39,42 @@ class Butterworth(Causal):
             rows.append(_single(w))
         return np.array(rows)
 
-    def init(self, x: float, h: float) -> SectionState:
-        """At rest at x."""
-        return at_rest(self.sections(h), x)
-
-    def step(self, state: SectionState, x: Array) -> tuple[SectionState, tuple[Array, ...]]:
-        """The filtered samples x, causally."""
-        state, y = advanced(state, x)
-        return state, (y,)
-
 
 @dataclass(frozen=True)
-class ZeroPhase(Whole):
-    """Forwards and backwards; the record is extended oddly at both ends, as MATLAB does."""
+class ZeroPhase(Validated, WholeRecord):
+    """The low-pass run forwards and backwards over the record.
+
+    The record is extended oddly at both ends by three times the order, as MATLAB does.
+    """
 
     cutoff: float
     order: int = 4
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         Butterworth(self.cutoff, self.order)
 
-    def init(self, x: float, h: float) -> Record:
+    def init(self, x: float, h: float) -> Samples:
         self._sections(h)
         return super().init(x, h)
 
     def over(self, x: Array, h: float) -> tuple[Array, ...]:
         from scipy import signal
 
-        padding = 3 * int(self.order)
+        padding = 3 * self.order
         if len(x) <= padding:
             raise TooShort(
-                f"a zero-phase filter of this order needs a log of more than {padding} rows, not "
-                f"{len(x)}"
+                f"a zero-phase filter of order {self.order} needs a log of more than {padding} "
+                f"rows, not {len(x)}"
             )
         sections = np.insert(self._sections(h), 3, 1.0, axis=1)
         return (signal.sosfiltfilt(sections, x, padtype="odd", padlen=padding),)
 
     def _sections(self, h: float) -> Array:
-        return Butterworth(self.cutoff, int(self.order)).sections(h)
+        return Butterworth(self.cutoff, self.order).sections(h)
 
 
 def _angles(order: int) -> Array:
-    """Angles of the upper left half-plane poles from the negative real axis."""
+    """The angles of the poles in the upper left half-plane, from the negative real axis [rad]."""
     angles: Array = np.pi * (2 * np.arange(1, order // 2 + 1) + order % 2 - 1) / (2 * order)
     return angles
 

@@ -1,23 +1,24 @@
-"""Finite impulse response filters with their state, and differentiators made of them."""
+"""Filters of finite impulse response (FIR) with their state, and differentiators made of them."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.processes.matching import Differences
+from scarid_cli.algorithms.processes.matching import CentralDifferences
+from scarid_cli.algorithms.processes.method import Matching, Method
 from scarid_cli.algorithms.processes.process import Causal
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import fir
 
 
 @dataclass(frozen=True)
-class Window:
-    """The last samples, the taps of each output, the lag, and how many outputs are yet to drop.
+class ConvolutionState:
+    """The last samples, the taps of each output, the lag, and the outputs still to be dropped.
 
-    A filter that looks so many samples ahead makes as many outputs before that of its first row.
+    A filter that looks `lag` samples ahead makes as many outputs before that of its first row.
     """
 
     held: Array
@@ -26,24 +27,27 @@ class Window:
     drop: int
 
 
-class Convolution(Causal, ABC):
-    """Filters of one length, at rest before the first sample and, with a lag, after the last."""
+class Convolution(Causal):
+    """Filters of the same length, side by side.
+
+    They are at rest before the first sample and, if they look ahead, after the last one.
+    """
 
     @abstractmethod
     def taps(self, h: float) -> tuple[Array, ...]:
-        """One set for each output, for the newest sample first; h [s]."""
+        """The taps of each output, that of the newest sample first; h [s]."""
 
-    def init(self, x: float, h: float) -> Window:
+    def init(self, x: float, h: float) -> ConvolutionState:
         taps, lag = self.taps(h), int(self.lag(h))
-        return Window(np.full(len(taps[0]) - 1, x), taps, lag, lag)
+        return ConvolutionState(np.full(len(taps[0]) - 1, x), taps, lag, lag)
 
-    def step(self, state: Window, x: Array) -> tuple[Window, tuple[Array, ...]]:
+    def step(self, state: ConvolutionState, x: Array) -> tuple[ConvolutionState, tuple[Array, ...]]:
         samples = np.concatenate((state.held, x))
         outputs = tuple(convolved(samples, taps)[state.drop :] for taps in state.taps)
         held = samples[len(x) :]
         return replace(state, held=held, drop=max(state.drop - len(x), 0)), outputs
 
-    def finish(self, state: Window) -> tuple[Array, ...]:
+    def finish(self, state: ConvolutionState) -> tuple[Array, ...]:
         if not state.lag:
             return ()
         return self.step(state, np.full(state.lag, state.held[-1]))[1]
@@ -56,22 +60,31 @@ def convolved(samples: Array, taps: Array) -> Array:
     return y
 
 
-class FirMethod(Convolution):
-    """A differentiator of finite impulse response."""
+class LowpassMethod(Method):
+    """A differentiator that is a FIR low-pass followed by differences."""
+
+    MATCHING = Matching.EXACT
 
     @abstractmethod
     def lowpass(self, h: float) -> Array:
-        """What a derivative is the difference of: taps of unit sum; h [s]."""
+        """The taps of the low-pass, of unit sum; h [s].
 
-    def matched(self) -> Differences:
-        return Differences(Lowpass(self))
+        The acceleration, or the derivative from which the method is matched, is its difference.
+        """
+
+    def matched(self) -> CentralDifferences:
+        return CentralDifferences(FirLowpass(self))
+
+
+class FirMethod(Convolution, LowpassMethod):
+    """A causal differentiator whose velocity and acceleration are two FIR filters."""
 
 
 @dataclass(frozen=True)
-class Lowpass(Convolution):
-    """The low-pass of a differentiator, one sample early where that looks ahead."""
+class FirLowpass(Convolution):
+    """The low-pass of a differentiator."""
 
-    method: FirMethod
+    method: LowpassMethod
 
     def lag(self, h: float) -> float:
         return self.method.lag(h)
@@ -81,7 +94,7 @@ class Lowpass(Convolution):
 
 
 def integrated(taps: Array, order: int, h: float) -> Array:
-    """The low-pass whose difference of this order these taps of a derivative are."""
+    """The low-pass of which these taps of a derivative are the difference of the given order."""
     for _ in range(order):
         taps = np.cumsum(taps)[:-1] * h
     return taps

@@ -1,27 +1,54 @@
-"""An observer of constant gain, and the low-pass that it is between position and acceleration."""
+"""Observers: differentiators that settle to a constant gain, and their low-pass.
+
+See docs/theory.md, section "Phase matching".
+"""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.kalman import State, filtered
+from scarid_cli.algorithms.filters.kalman import KalmanState, derivatives, filtered
+from scarid_cli.algorithms.processes.matching import CentralDifferences
+from scarid_cli.algorithms.processes.method import Matching, Method
 from scarid_cli.algorithms.processes.process import Causal
 from scarid_cli.arrays import Array
 
 
-def readout(observer: State, h: float, c: Array, order: int = 2) -> Array:
-    """u such that y(k+1) = u x(k), x the filtered state, has h^order c p as a difference.
+class ObserverMethod(Causal, Method):
+    """A causal differentiator that runs the Kalman kernel and settles to a constant gain."""
 
-    p is the predicted state; c p must be zero as long as the derivatives of lower order of the
-    measurement are constant. Of order 2 the difference is central: y(k+1) - 2 y(k) + y(k-1). With
-    the closed loop A = F (I - K H): w (A - I)^order = h^order c A and u = w F.
+    MATCHING = Matching.EXACT
+
+    @abstractmethod
+    def observer(self, x: float, h: float) -> KalmanState:
+        """The observer of constant gain, at rest at the position x; h [s]."""
+
+    def ungated(self) -> ObserverMethod:
+        """The same observer without a gate against encoder glitches, for torques."""
+        return self
+
+    def step(self, state: KalmanState, x: Array) -> tuple[KalmanState, tuple[Array, ...]]:
+        state, rows = filtered(state, x)
+        return state, derivatives(rows)
+
+    def matched(self) -> CentralDifferences:
+        return CentralDifferences(ObserverLowpass(self), ObserverLowpass(self.ungated()))
+
+
+def readout(observer: KalmanState, h: float, c: Array, order: int = 2) -> Array:
+    """The weights u (m) for which h^order c p is a difference of y(k+1) = u x(k).
+
+    x is the filtered state, p the predicted one; c p (c has m weights) must be zero as long as the
+    derivatives of lower order of the measurement are constant. For order 2 the difference is the
+    central one, y(k+1) - 2 y(k) + y(k-1). With the closed loop A = F (I - K H), w solves
+    w (A - I)^order = h^order c A, and u = w F.
     """
     F, K = observer.model.F, observer.gain
     identity = np.eye(len(K))
-    # In units of the observer's own time constant, where all numbers are of one size.
+    # In units of the observer's own time constant, in which all numbers are of one size.
     scale = (K[0] / K[1]) ** np.arange(len(K))
     F, K = F * scale[:, None] / scale[None, :], K * scale
     A = F @ (identity - np.outer(K, identity[0]))
@@ -31,44 +58,43 @@ def readout(observer: State, h: float, c: Array, order: int = 2) -> Array:
 
 
 def read(u: Array, rows: Array) -> Array:
-    """u x for each filtered state x; column by column, for the same bits in any number of rows."""
+    """u x for each filtered state x (rows, m).
+
+    Column by column, so that the bits do not depend on the number of rows.
+    """
     y: Array = u[0] * rows[:, 0]
     for weight, column in zip(u[1:], rows.T[1:], strict=True):
         y += weight * column
     return y
 
 
-class Observing(Protocol):
-    """A method that, once settled, is an observer of constant gain."""
-
-    def observer(self, x: float, h: float) -> State:
-        """At rest at x."""
-
-
 @dataclass(frozen=True)
-class ObserverState:
-    """The observer, and the readout of its low-pass."""
+class ObserverLowpassState:
+    """The observer, and the weights (m) that read the low-passed position from its state."""
 
-    observer: State
+    observer: KalmanState
     u: Array
 
 
 @dataclass(frozen=True)
-class Lowpass(Causal):
+class ObserverLowpass(Causal):
     """What an observer is between position and its highest derivative, one sample early.
 
-    All poles and no zero: it does not overshoot as what lies below the acceleration would.
+    It has all poles of the observer and no zero, so it does not overshoot, as the transfer function
+    between position and acceleration would.
     """
 
-    method: Observing
+    method: ObserverMethod
 
-    def init(self, x: float, h: float) -> ObserverState:
+    def init(self, x: float, h: float) -> ObserverLowpassState:
         observer = self.method.observer(x, h)
         m = len(observer.x)
         u = readout(observer, h, np.eye(m)[-1], m - 1)
-        # Unit gain: a model with damping follows a constant acceleration not quite.
-        return ObserverState(observer, u / u[0])
+        # Of unit gain, for a model with damping does not quite follow a constant acceleration.
+        return ObserverLowpassState(observer, u / u[0])
 
-    def step(self, state: ObserverState, x: Array) -> tuple[ObserverState, tuple[Array, ...]]:
+    def step(
+        self, state: ObserverLowpassState, x: Array
+    ) -> tuple[ObserverLowpassState, tuple[Array, ...]]:
         observer, rows = filtered(state.observer, x)
-        return ObserverState(observer, state.u), (read(state.u, rows),)
+        return ObserverLowpassState(observer, state.u), (read(state.u, rows),)

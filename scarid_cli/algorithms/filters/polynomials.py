@@ -1,4 +1,7 @@
-"""Derivatives of the polynomial that fits a window of samples best (Savitzky and Golay)."""
+"""Least-squares polynomials over a window of samples, and their derivatives.
+
+Savitzky and Golay, Anal. Chem. 36 (1964) 1627.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.settings import require_whole
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
 
 def require_window(settings: Any) -> None:
-    """`window` and `degree` must be whole, and make a fit with a second derivative."""
-    require_whole(settings, "window", "degree")
+    """`window` and `degree` must make a polynomial fit that has a second derivative."""
     if settings.degree < 2:
         raise UsageFault(f"degree must be at least 2, not {settings.degree:g}")
     if settings.window <= settings.degree:
@@ -24,8 +25,11 @@ def require_window(settings: Any) -> None:
 
 
 def derivative_taps(window: int, degree: int, order: int, age: int, h: float) -> Array:
-    """The derivative of this order at the sample `age` periods h [s] ago, newest sample first."""
-    # Chebyshev's polynomials on -1..1: powers would be nearly dependent.
+    """The taps of a derivative of this order at the sample `age` periods h [s] ago.
+
+    The tap of the newest sample comes first.
+    """
+    # In Chebyshev polynomials on -1..1, for powers would be nearly dependent.
     x = np.linspace(1.0, -1.0, window)
     scale = (window - 1) * h / 2.0
     basis = np.polynomial.chebyshev.chebder(np.eye(degree + 1), order)
@@ -36,6 +40,6 @@ def derivative_taps(window: int, degree: int, order: int, age: int, h: float) ->
 
 @cache
 def fitting(window: int, degree: int) -> Array:
-    """The matrix from samples to the coefficients of the polynomial."""
+    """The matrix (degree + 1, window) from samples to Chebyshev coefficients of the polynomial."""
     x = np.linspace(1.0, -1.0, window)
     return np.asarray(np.linalg.pinv(np.polynomial.chebyshev.chebvander(x, degree)), dtype=float)

@@ -1,11 +1,21 @@
-"""Gains of the sliding mode differentiators (Levant 2003; Levant and Livne 2020)."""
+"""The base of sliding-mode differentiators, and the gains of Levant's family.
+
+Levant, Int. J. Control 76 (2003) 924; Levant and Livne, Eur. J. Control (2020), doi
+10.1016/j.ejcon.2019.08.006. See docs/theory.md, section "Sliding-mode differentiators".
+"""
 
 from __future__ import annotations
 
+from abc import abstractmethod
+
 import numpy as np
 
+from scarid_cli.algorithms.processes.delays import MeasuredDelays
+from scarid_cli.algorithms.processes.method import MatchedForm, Matching, Method
+from scarid_cli.algorithms.processes.process import Causal, Recursion
 from scarid_cli.arrays import Array
 
+# lambda_0 ... lambda_n of the orders n = 1 to 7
 LAMBDA = (
     (1.5, 1.1),
     (2.0, 2.12, 1.1),
@@ -17,10 +27,43 @@ LAMBDA = (
 )
 
 
-def gains(order: int, bound: float) -> Array:
-    """lambda_i bound^((i + 1) / (order + 1)) for i = 0 ... order, orders 1 to 7.
+class SlidingMode(Causal, Method):
+    """A sliding-mode differentiator: a nonlinear recursion from one position to the next.
 
-    bound: the largest derivative of order + 1.
+    A method states its settings, the numbers that its recursion starts with, and its law. It has
+    no linearisation, since its gain is infinite at zero error, so it is matched by measured delays.
+    """
+
+    MATCHING = Matching.MEASURED
+
+    @abstractmethod
+    def start(self, x: float) -> Array:
+        """The numbers of the recursion before the first position x."""
+
+    @abstractmethod
+    def law(self, x: Array, v: Array, a: Array, values: Array, h: float) -> None:
+        """Write the velocities and accelerations of the positions x, sampled every h [s].
+
+        `values`, the numbers of the recursion, are changed in place.
+        """
+
+    def init(self, x: float, h: float) -> Recursion:
+        return Recursion(self.start(x), h)
+
+    def step(self, state: Recursion, x: Array) -> tuple[Recursion, tuple[Array, ...]]:
+        state = state.copy()
+        v, a = np.empty_like(x), np.empty_like(x)
+        self.law(x, v, a, state.values, state.h)
+        return state, (v, a)
+
+    def matched(self) -> MatchedForm:
+        return MeasuredDelays(self)
+
+
+def gains(order: int, bound: float) -> Array:
+    """The gains lambda_i bound^((i + 1) / (order + 1)) for i = 0 ... order, of orders 1 to 7.
+
+    bound: the largest derivative of order + 1 of the motion.
     """
     powers = np.arange(1, order + 2) / (order + 1)
     scaled: Array = np.array(LAMBDA[order - 1]) * bound**powers

@@ -1,33 +1,31 @@
-"""A fixed-lag smoother of constant gain, and the low-pass that it is."""
+"""The low-pass that a fixed-lag smoother of constant gain is between position and acceleration.
+
+See docs/theory.md, sections "Kalman filters and smoothers" and "Phase matching".
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
 from scarid_cli.algorithms.filters.convolution import convolved
-from scarid_cli.algorithms.filters.kalman import State, filtered, lag_weights
-from scarid_cli.algorithms.filters.observer import Observing, read, readout
+from scarid_cli.algorithms.filters.kalman import KalmanState, filtered, lag_weights
+from scarid_cli.algorithms.filters.kalman_method import KalmanMethod
+from scarid_cli.algorithms.filters.observer import read, readout
+from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.arrays import Array
 
 
-class Smoothing(Observing, Protocol):
-    """An observer whose rows wait for a lag."""
-
-    def lag(self, h: float) -> float: ...
-
-
 @dataclass(frozen=True)
-class LowpassState:
+class SmootherLowpassState:
     """The filter, and its low-passed predictions and innovations of the last rows.
 
-    Each has its readout; taps: what the innovations weigh in the smoothed acceleration. drop: as
-    many outputs belong to no row yet.
+    readouts: the weights that read either from the filter's state. taps: what the innovations
+    weigh in the smoothed acceleration. drop: the number of outputs that belong to no row yet.
     """
 
-    observer: State
+    observer: KalmanState
     predictions: Array
     innovations: Array
     readouts: tuple[Array, Array]
@@ -36,33 +34,35 @@ class LowpassState:
 
 
 @dataclass(frozen=True)
-class Lowpass:
+class SmootherLowpass(Process):
     """What the smoother is between position and acceleration, one sample early.
 
-    The smoothed acceleration is the predicted one and a sum over the innovations that follow; so
-    its low-pass is a sum of their low-passes.
+    The smoothed acceleration is the predicted one plus a weighted sum of the innovations that
+    follow, so its low-pass is the same sum of their low-passes.
     """
 
-    method: Smoothing
+    method: KalmanMethod
 
     def lag(self, h: float) -> float:
         return self.method.lag(h)
 
-    def init(self, x: float, h: float) -> LowpassState:
+    def init(self, x: float, h: float) -> SmootherLowpassState:
         lag = int(self.lag(h))
         observer = self.method.observer(x, h)
         position, _, acceleration, *_ = np.eye(len(observer.x))
-        variance = observer.P[0, 0] + observer.model.noise[0]
+        variance = observer.P[0, 0] + observer.model.variance
         prediction = readout(observer, h, acceleration)
         innovation = readout(observer, h, -position / variance)
         taps = lag_weights(observer, lag)[::-1, 2]
-        # Unit gain: a model with damping follows a constant acceleration not quite.
+        # Of unit gain, for a model with damping does not quite follow a constant acceleration.
         gain = prediction[0] + innovation[0] * taps.sum()
         readouts = (prediction / gain, innovation / gain)
         predictions, innovations = (np.full(lag, u[0] * x) for u in readouts)
-        return LowpassState(observer, predictions, innovations, readouts, taps, lag)
+        return SmootherLowpassState(observer, predictions, innovations, readouts, taps, lag)
 
-    def step(self, state: LowpassState, x: Array) -> tuple[LowpassState, tuple[Array, ...]]:
+    def step(
+        self, state: SmootherLowpassState, x: Array
+    ) -> tuple[SmootherLowpassState, tuple[Array, ...]]:
         observer, rows = filtered(state.observer, x)
         predictions, innovations = (
             np.concatenate((held, read(u, rows)))
@@ -78,6 +78,6 @@ class Lowpass:
         )
         return after, (y[state.drop :],)
 
-    def finish(self, state: LowpassState) -> tuple[Array, ...]:
+    def finish(self, state: SmootherLowpassState) -> tuple[Array, ...]:
         standing = np.full(len(state.taps) - 1, state.observer.x[0])
         return self.step(state, standing)[1]

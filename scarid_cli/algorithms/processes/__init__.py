@@ -1,1 +1,1 @@
-"""One column through a process: the interface, phase matching, measured delays, resampling."""
+"""Processes: whatever a stage runs over one column, and how torques follow it in phase."""

@@ -1,8 +1,9 @@
-"""Phase matching: position, derivatives and torque of one instant (A.3 of the equations; ours).
+"""Phase matching: position, derivatives and torque of one instant.
 
-tau = W(q, dq, ddq) theta holds between signals of the same instant only. A linear method is a
-low-pass followed by differences; its matched form gives the derivatives that are exactly the
-central differences of the low-passed position, and torques go through the same low-pass.
+tau = W(q, dq, ddq) theta holds only between signals of the same instant, but a differentiator
+delays. A linear method is a low-pass followed by differences. Its matched form gives the low-passed
+position with exactly its central differences, and torques pass the same low-pass. See
+docs/theory.md, section "Phase matching".
 """
 
 from __future__ import annotations
@@ -10,10 +11,11 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.processes.method import MatchedForm, Method
 from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.arrays import Array
 
@@ -21,7 +23,7 @@ POSITION, ACCELERATION = 0.01, 0.005  # see settling_rows
 
 
 @dataclass(frozen=True)
-class Behind:
+class LowpassedSamples:
     """The state of a low-pass, its last two outputs, and the sampling period [s]."""
 
     lowpass: Any
@@ -29,44 +31,45 @@ class Behind:
     h: float
 
 
-class AfterLowpass:
-    """What is made of a low-pass and the samples on both sides."""
+class AfterLowpass(Process):
+    """A process that looks at the output of a low-pass and at the samples on both sides of it."""
 
     lowpass: Process
 
     def lag(self, h: float) -> float:
         return self.lowpass.lag(h)
 
-    def init(self, x: float, h: float) -> Behind:
-        return Behind(self.lowpass.init(x, h), np.full(2, x), h)
+    def init(self, x: float, h: float) -> LowpassedSamples:
+        return LowpassedSamples(self.lowpass.init(x, h), np.full(2, x), h)
 
-    def step(self, state: Behind, x: Array) -> tuple[Behind, tuple[Array, ...]]:
+    def step(self, state: LowpassedSamples, x: Array) -> tuple[LowpassedSamples, tuple[Array, ...]]:
         after, (y,) = self.lowpass.step(state.lowpass, x)
         samples = np.concatenate((state.last, y))
-        return Behind(after, samples[-2:], state.h), self.outputs(samples, state.h)
+        return LowpassedSamples(after, samples[-2:], state.h), self.outputs(samples, state.h)
 
-    def finish(self, state: Behind) -> tuple[Array, ...]:
+    def finish(self, state: LowpassedSamples) -> tuple[Array, ...]:
         rest = self.lowpass.finish(state.lowpass)
         return self.outputs(np.concatenate((state.last, *rest)), state.h) if rest else ()
 
     @abstractmethod
     def outputs(self, samples: Array, h: float) -> tuple[Array, ...]:
-        """Those of all samples but the first and the last."""
+        """The outputs of all samples but the first and the last."""
 
 
 @dataclass(frozen=True)
-class Differences(AfterLowpass):
+class CentralDifferences(AfterLowpass, MatchedForm):
     """The matched form of a linear method: its low-pass, and the central differences of that.
 
-    torques: the same low-pass where it is another for torques, without a gate against glitches.
+    `torques` is the low-pass for torques where it is not that for positions: the same one without
+    a gate against encoder glitches.
     """
 
     lowpass: Process
     torques: Process | None = None
 
     @property
-    def torque_filter(self) -> Delayed:
-        return Delayed(self.torques or self.lowpass)
+    def torque_filter(self) -> DelayedLowpass:
+        return DelayedLowpass(self.torques or self.lowpass)
 
     def outputs(self, samples: Array, h: float) -> tuple[Array, ...]:
         v = (samples[2:] - samples[:-2]) / (2.0 * h)
@@ -74,8 +77,8 @@ class Differences(AfterLowpass):
 
 
 @dataclass(frozen=True)
-class Delayed(AfterLowpass):
-    """A low-pass and the sample of delay by which its differences are central."""
+class DelayedLowpass(AfterLowpass):
+    """A low-pass, delayed by the sample that central differences of it need."""
 
     lowpass: Process
 
@@ -84,7 +87,7 @@ class Delayed(AfterLowpass):
 
 
 @dataclass(frozen=True)
-class Beside:
+class WaitingPositions:
     """The state of a method, and the positions that wait for their derivatives."""
 
     own: Any
@@ -92,43 +95,47 @@ class Beside:
 
 
 @dataclass(frozen=True)
-class WithPosition:
-    """The matched form of a method that adds no dynamics: the position as it is."""
+class Unfiltered(MatchedForm):
+    """The matched form of a method that delays nothing: the position is as it was measured."""
 
-    method: Process
-    torque_filter: ClassVar[None] = None
+    method: Method
+
+    @property
+    def torque_filter(self) -> None:
+        return None
 
     def lag(self, h: float) -> float:
         return self.method.lag(h)
 
-    def init(self, x: float, h: float) -> Beside:
-        return Beside(self.method.init(x, h), np.empty(0))
+    def init(self, x: float, h: float) -> WaitingPositions:
+        return WaitingPositions(self.method.init(x, h), np.empty(0))
 
-    def step(self, state: Beside, x: Array) -> tuple[Beside, tuple[Array, ...]]:
+    def step(self, state: WaitingPositions, x: Array) -> tuple[WaitingPositions, tuple[Array, ...]]:
         own, outputs = self.method.step(state.own, x)
         positions = np.concatenate((state.positions, x))
         rows = len(outputs[0]) if outputs else 0
-        return Beside(own, positions[rows:]), (positions[:rows], *outputs) if outputs else ()
+        after = WaitingPositions(own, positions[rows:])
+        return after, (positions[:rows], *outputs) if outputs else ()
 
-    def finish(self, state: Beside) -> tuple[Array, ...]:
+    def finish(self, state: WaitingPositions) -> tuple[Array, ...]:
         return state.positions, *self.method.finish(state.own)
 
 
 def settling_rows(process: Process, h: float) -> tuple[int, int]:
-    """Rows before and after a step over which the response is off, or still moves.
+    """The rows before and after a step [sampled every h, in s] over which the response is off.
 
-    So many rows at the end and at the start of a record are not what they would be in the middle:
-    the position by more than 1 % of a step, or, where the record begins in motion, the acceleration
-    by more than .5 % of what a step of the velocity does to it.
+    As many rows at the end and at the start of a record are not what they would be in the middle
+    of a longer one. The response counts as settled once the position is within 1 % of the step,
+    and the acceleration, for a record that begins in motion, within 0.5 % of its response to a
+    step of the velocity. Both numbers are measured on steps, unless the process declares them.
     """
-    return _settling_rows(process, h)  # type: ignore[arg-type]  # processes are frozen dataclasses
+    return _settling_rows(process, h)
 
 
-@lru_cache(maxsize=64)  # the joints of a robot often have the same
+@lru_cache(maxsize=64)  # processes are frozen dataclasses; the joints often have the same one
 def _settling_rows(process: Process, h: float) -> tuple[int, int]:
-    known: tuple[int, int] | None = getattr(process, "edges", None)
-    if known is not None:
-        return known
+    if process.SETTLING_ROWS is not None:
+        return process.SETTLING_ROWS
     half = 64
     while True:
         step = np.repeat([0.0, 1.0], half)
@@ -146,7 +153,7 @@ def _settling_rows(process: Process, h: float) -> tuple[int, int]:
 
 
 def over(process: Process, x: Array, h: float) -> tuple[Array, ...]:
-    """The outputs of a process for a whole record x."""
+    """The outputs of a process for a whole record x, sampled every h [s]."""
     state, begun = process.step(process.init(float(x[0]), h), x)
     rest = process.finish(state)
     parts = [rows for rows in (begun, rest) if rows]

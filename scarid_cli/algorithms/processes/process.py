@@ -1,48 +1,47 @@
-"""What a stage runs over a column: recursions, filters and smoothers behind one interface."""
+"""The interface of everything that a stage runs over a column: filters, recursions, smoothers."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.arrays import Array
 
 
-class Process(Protocol):
-    """One column in, one or more out: positions to derivatives, torques to filtered torques.
+class Process(ABC):
+    """Takes one column and gives one or more: derivatives of positions, filtered torques.
 
-    The output of a row waits for `lag(h)` more rows, sampled every h [s]; for all of them if that
-    is inf. `init(x, h)` is the state before the first sample x.
+    SETTLING_ROWS declares how many rows before and after a step the output is off, where that is
+    known; otherwise `matching.settling_rows` measures it.
     """
 
-    def lag(self, h: float) -> float: ...
-    def init(self, x: float, h: float) -> Any: ...
-    def step(self, state: Any, x: Array) -> tuple[Any, tuple[Array, ...]]: ...
-    def finish(self, state: Any) -> tuple[Array, ...]: ...
+    SETTLING_ROWS: ClassVar[tuple[int, int] | None] = None
 
+    @abstractmethod
+    def lag(self, h: float) -> float:
+        """The number of later rows that the output of a row waits for; inf for all of them.
 
-class Matched(Process, Protocol):
-    """Position, velocity and acceleration of one instant, and how to bring a torque there.
+        h: sampling period [s].
+        """
 
-    The position is low-passed or delayed, and the derivatives are its own.
-    """
+    @abstractmethod
+    def init(self, x: float, h: float) -> Any:
+        """The state before the first sample x of a column sampled every h [s]."""
 
-    @property
-    def torque_filter(self) -> Process | None:
-        """What torques go through; None if the position is as it was."""
+    @abstractmethod
+    def step(self, state: Any, x: Array) -> tuple[Any, tuple[Array, ...]]:
+        """The state after the samples x, and the output of the rows that are complete by then.
 
+        The state that is passed in is not changed.
+        """
 
-class Method(Process, Protocol):
-    """The interface of every differentiator (see `differentiators/__init__.py`)."""
-
-    PRESETS: ClassVar[dict[str, dict[str, float]]]
-    TUNED: ClassVar[dict[str, Range]]
-
-    def matched(self) -> Matched: ...
+    @abstractmethod
+    def finish(self, state: Any) -> tuple[Array, ...]:
+        """The output of the rows that still wait at the end of the record."""
 
 
 @dataclass(frozen=True)
@@ -57,54 +56,49 @@ class Recursion:
         return replace(self, values=self.values.copy())
 
 
-class Causal:
+class Causal(Process):
     """A process whose output belongs to the sample just taken."""
-
-    PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
-    TUNED: ClassVar[dict[str, Range]] = {}
 
     def lag(self, h: float) -> float:  # noqa: ARG002 (the same at every rate)
         return 0
 
-    def finish(self, state: Any) -> tuple[Array, ...]:  # noqa: ARG002 (nothing is owed)
+    def finish(self, state: Any) -> tuple[Array, ...]:  # noqa: ARG002 (no row waits)
         return ()
 
 
 @dataclass(frozen=True)
-class Record:
-    """A record that grows: the samples just taken, and those before them."""
+class Samples:
+    """The samples of a record so far: those just taken, and a link to those before them."""
 
     last: Array
-    before: Record | None
+    before: Samples | None
     h: float
 
     def joined(self) -> Array:
+        """All samples, from the first on."""
         parts = []
-        record: Record | None = self
-        while record:
-            parts.append(record.last)
-            record = record.before
+        samples: Samples | None = self
+        while samples:
+            parts.append(samples.last)
+            samples = samples.before
         return np.concatenate(parts[::-1])
 
 
-class Whole:
-    """A process that needs the whole record before the first row of its output."""
-
-    PRESETS: ClassVar[dict[str, dict[str, float]]] = {}
-    TUNED: ClassVar[dict[str, Range]] = {}
+class WholeRecord(Process):
+    """A process that needs the whole record before it gives the first row of its output."""
 
     def lag(self, h: float) -> float:  # noqa: ARG002 (the same at every rate)
         return inf
 
-    def init(self, x: float, h: float) -> Record:  # noqa: ARG002 (the record has it)
-        return Record(np.empty(0), None, h)
+    def init(self, x: float, h: float) -> Samples:  # noqa: ARG002 (the first step brings it)
+        return Samples(np.empty(0), None, h)
 
-    def step(self, state: Record, x: Array) -> tuple[Record, tuple[Array, ...]]:
-        return Record(x, state, state.h), ()
+    def step(self, state: Samples, x: Array) -> tuple[Samples, tuple[Array, ...]]:
+        return Samples(x, state, state.h), ()
 
-    def finish(self, state: Record) -> tuple[Array, ...]:
+    def finish(self, state: Samples) -> tuple[Array, ...]:
         return self.over(state.joined(), state.h)
 
+    @abstractmethod
     def over(self, x: Array, h: float) -> tuple[Array, ...]:
-        """The output for all samples x of a record."""
-        raise NotImplementedError
+        """The output for all samples x of a record, sampled every h [s]."""

@@ -1,7 +1,8 @@
-"""A jittered log on a regular clock.
+"""Resampling of a log with a jittered clock to a regular clock.
 
-Values between samples lie on straight lines. Where the rate is lowered, these are taken at a
-multiple of it and decimated by a low-pass without delay. Nothing is laid across a gap.
+Values between samples are interpolated linearly. Where the rate is lowered, the log is first
+interpolated at a multiple of the new rate, and then decimated by a low-pass without delay. Gaps are
+never interpolated.
 """
 
 from __future__ import annotations
@@ -19,9 +20,10 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Clock:
-    """What a log's clock did: intervals in all, their sum and extremes [s], rows left out.
+    """Statistics of a log's clock: the number of intervals, their sums and extremes [s].
 
-    `gaps` split the record, `missing` is their time [s]; the intervals are without them.
+    `repeated` counts the rows left out because their time repeats. `gaps` counts the intervals that
+    split the record and `missing` is their sum [s]; the other numbers are without them.
     """
 
     intervals: int = 0
@@ -34,7 +36,7 @@ class Clock:
     missing: float = 0.0
 
     def after(self, steps: Array) -> Clock:
-        """The clock after more intervals; one of 0 s repeats a row."""
+        """The statistics after more intervals [s]; an interval of 0 s repeats a row."""
         steps, repeated = steps[steps > 0.0], int((steps == 0.0).sum())
         counted = replace(self, repeated=self.repeated + repeated)
         if not len(steps):
@@ -50,16 +52,17 @@ class Clock:
         )
 
     def after_gap(self, length: float) -> Clock:
-        """The clock after an interval [s] that splits the record."""
+        """The statistics after an interval [s] that splits the record."""
         return replace(self, gaps=self.gaps + 1, missing=self.missing + length)
 
     @property
     def mean(self) -> float:
+        """The mean interval [s]; nan without any."""
         return self.total / self.intervals if self.intervals else np.nan
 
     @property
     def jitter(self) -> float:
-        """Standard deviation of the intervals [s]; 0 where it is lost in rounding."""
+        """The standard deviation of the intervals [s]; 0 where it is lost in rounding."""
         if not self.intervals:
             return np.nan
         variance = self.squares / self.intervals - self.mean**2
@@ -67,10 +70,10 @@ class Clock:
 
 
 @dataclass(frozen=True)
-class State:
-    """The samples from which the next rows are made: times and values (columns, samples).
+class ResamplerState:
+    """The samples that the next rows lie between: times [s] and values (columns, samples).
 
-    `row` is the number of the next row, `start` the time of row 0.
+    `row` is the number of the next row, `start` the time [s] of row 0.
     """
 
     t: Array
@@ -81,21 +84,23 @@ class State:
 
 @dataclass(frozen=True)
 class Resampler:
-    """Rows every `period` [s], on straight lines between the samples."""
+    """Makes rows every `period` [s] by linear interpolation between the samples."""
 
     period: float
 
-    def init(self, t: float, x: Array) -> State:
-        """At the first sample: its time [s] and values (columns)."""
-        return State(np.array([t]), x[:, None], t)
+    def init(self, t: float, x: Array) -> ResamplerState:
+        """The state at the first sample: its time [s] and values (columns)."""
+        return ResamplerState(np.array([t]), x[:, None], t)
 
-    def after_gap(self, state: State, t: float, x: Array) -> State:
-        """At the first sample after a gap; rows go on at the times they would have had."""
+    def after_gap(self, state: ResamplerState, t: float, x: Array) -> ResamplerState:
+        """The state at the first sample after a gap; rows keep the times they would have had."""
         row = max(state.row, int(np.ceil((t - state.start) / self.period - 1e-9)))
-        return State(np.array([t]), x[:, None], state.start, row)
+        return ResamplerState(np.array([t]), x[:, None], state.start, row)
 
-    def step(self, state: State, t: Array, x: Array) -> tuple[State, Array, Array]:
-        """Take samples in, later ones than before; the rows that they settle: times and values."""
+    def step(
+        self, state: ResamplerState, t: Array, x: Array
+    ) -> tuple[ResamplerState, Array, Array]:
+        """Take in later samples; return the rows that can be made of them, as times and values."""
         times = np.concatenate((state.t, t))
         values = np.concatenate((state.x, x), axis=1)
         last = int(np.floor((times[-1] - state.start) / self.period + 1e-9))
@@ -119,10 +124,11 @@ WINDOWS = 256  # computed at once
 
 
 @dataclass(frozen=True)
-class Run:
-    """Samples of a segment (columns, samples) from number `at` on, from which the next rows are.
+class DecimatorState:
+    """The samples of a segment (columns, samples) that the next rows need, from number `at` on.
 
-    `row` is the number of the next row. In the beginning nothing precedes the first sample.
+    `row` is the number of the next row. `begun` says whether the samples have been extended before
+    the first one.
     """
 
     x: Array
@@ -133,36 +139,37 @@ class Run:
 
 @dataclass(frozen=True)
 class Decimator:
-    """Every `factor`-th sample by its number, low-passed against aliasing, without delay.
+    """Keeps every `factor`-th sample by its number, low-passed against aliasing without delay.
 
-    A sinc in a Kaiser window. At the ends of a segment it goes on with its samples turned around
-    the last one, as scipy's sosfiltfilt does.
+    The low-pass is a sinc in a Kaiser window. At both ends a segment is extended oddly, as
+    scipy.signal.sosfiltfilt does.
     """
 
     factor: int
 
     @cached_property
     def taps(self) -> Array:
+        """The taps of the low-pass, of unit sum."""
         half = REACH * self.factor
         places = np.arange(-half, half + 1)
         taps = np.sinc(2.0 * CUTOFF / self.factor * places) * np.kaiser(2 * half + 1, BETA)
         normed: Array = taps / taps.sum()
         return normed
 
-    def init(self, number: int, columns: int) -> Run:
-        """Before the sample of this number."""
-        return Run(np.empty((columns, 0)), number, -(-number // self.factor))
+    def init(self, number: int, columns: int) -> DecimatorState:
+        """The state before the sample of this number."""
+        return DecimatorState(np.empty((columns, 0)), number, -(-number // self.factor))
 
-    def step(self, state: Run, x: Array) -> tuple[Run, Numbers, Array]:
-        """Take samples in; the rows that they settle: their numbers and values."""
+    def step(self, state: DecimatorState, x: Array) -> tuple[DecimatorState, Numbers, Array]:
+        """Take in samples; return the rows that can be made of them, as numbers and values."""
         half = REACH * self.factor
         state = replace(state, x=np.concatenate((state.x, x), axis=1))
         if not state.begun and state.x.shape[1] > half:
             state = replace(state, x=_turned(state.x, half, 0), at=state.at - half, begun=True)
         return self._rows(state) if state.begun else (state, np.empty(0, int), x[:, :0])
 
-    def finish(self, state: Run) -> tuple[Numbers, Array]:
-        """The rows that are left at the end of a segment."""
+    def finish(self, state: DecimatorState) -> tuple[Numbers, Array]:
+        """The remaining rows at the end of a segment, as numbers and values."""
         half = REACH * self.factor
         if not state.x.shape[1]:
             return np.empty(0, int), state.x
@@ -171,7 +178,7 @@ class Decimator:
         _, numbers, rows = self._rows(whole)
         return numbers, rows
 
-    def _rows(self, state: Run) -> tuple[Run, Numbers, Array]:
+    def _rows(self, state: DecimatorState) -> tuple[DecimatorState, Numbers, Array]:
         half = REACH * self.factor
         first = state.row * self.factor - half - state.at  # the first sample of the next window
         room = state.x.shape[1] - (2 * half + 1) - first
@@ -191,5 +198,5 @@ class Decimator:
 
 
 def _turned(x: Array, before: int, after: int) -> Array:
-    """With samples before and after that are its own, turned around the first and the last."""
+    """The samples, extended oddly about the first and the last one."""
     return np.pad(x, ((0, 0), (before, after)), mode="reflect", reflect_type="odd")

@@ -32,7 +32,9 @@ def load(name: str) -> Robot:
 
         return arm(name, {"title": name, "urdf": name}, Path())
     path = Path(name) if name.endswith(".toml") else FOLDER / f"{name}.toml"
-    if not path.is_file():
+    if not path.exists():
+        if name.endswith(".toml"):
+            raise UsageFault(f"{name}: no such file")
         raise UsageFault(
             f"unknown robot {name!r}; choose {', '.join(built_in())}, or a .toml or .urdf file"
         )

@@ -1,1 +1,1 @@
-"""Settings of differentiators from a log alone: the likelihood, and a search with a judge."""
+"""Choosing settings of differentiators from a log alone: likelihood, and search with a judge."""

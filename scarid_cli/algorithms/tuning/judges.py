@@ -1,14 +1,14 @@
-"""Judges of a differentiator's settings, from the data alone, without the truth.
+"""Judges of the settings of a differentiator, from the data alone, without the truth.
 
-Likelihood: of the innovations, for the Kalman methods. Smoother: the error against a Kalman
-smoother that has tuned itself to the same positions; it also sees the samples after a row, and is
-several times nearer to the truth than any causal method. Torques: the error of the torques
-predicted for held-out segments, with parameters identified through the method.
+The likelihood judges the Kalman methods by their innovations. The smoother judges by the distance
+to a Kalman smoother that has tuned itself to the same positions: it also sees the samples after a
+row, and is several times nearer to the truth than any causal method. The torques judge by the error
+of the torques predicted for held-out segments, with parameters identified through the method.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -28,22 +28,23 @@ SEGMENTS = 10  # of a record, every second one held out
 
 
 def fit(method: Any, q: Array, h: float) -> Any:
-    """A Kalman method with the noise, the intensity and the acceleration process of the data."""
+    """A Kalman method with the noise, the intensity and the acceleration process of the data.
+
+    q: positions of one joint (rows), or of several that share the settings (joints, rows).
+    """
     return best_model(method, q, h)
 
 
-def has_likelihood(method: Any) -> bool:
-    """Whether the method is one of the Kalman filter's."""
-    return {"noise", "intensity"} <= {field.name for field in fields(method)}
-
-
 def negative_log_likelihood(q: Array, h: float) -> Judge:
-    """Per sample, of the innovations."""
+    """The negative logarithm of the likelihood of the innovations, per sample."""
     return lambda method: -log_likelihood(method, q, h) / len(q)
 
 
 def distance_to_smoother(q: Array, h: float) -> Judge:
-    """Geometric mean of the errors of velocity and acceleration, each over the smoother's size."""
+    """The geometric mean of the rms errors of velocity and acceleration against the smoother.
+
+    Each error is divided by the standard deviation of the smoother's signal.
+    """
     _, *smooth = over(smoother(q, h).matched(), q, h)
     late = min(int(SETTLING / h), len(q) // 5)
     inner = slice(late, -late)
@@ -62,12 +63,16 @@ def distance_to_smoother(q: Array, h: float) -> Judge:
 
 
 def smoother(q: Array, h: float) -> Any:
-    """The Kalman smoother, tuned to these positions."""
+    """The Kalman smoother, tuned to the positions q of one joint."""
     return DIFFERENTIATORS.load("rts")().fitted(q, h)
 
 
 def error_of_torques(robot: Robot, q: Array, tau: Array, h: float) -> Judge:
-    """Of held-out segments of the smoothed motion, relative to the torques' size."""
+    """The error of the torques predicted for held-out segments of the smoothed motion.
+
+    It is the root mean square over the joints of the standard deviation of the error, divided by
+    that of the torque. q and tau: (joints, rows).
+    """
     smooth = motion([smoother(x, h) for x in q], q, tau, h)
     rows = q.shape[1]
     held_out = np.arange(rows) * SEGMENTS // rows % 2 == 1
@@ -92,14 +97,14 @@ def error_of_torques(robot: Robot, q: Array, tau: Array, h: float) -> Judge:
 
 @dataclass(frozen=True)
 class Motion:
-    """Position, velocity, acceleration and torque (joints, rows), and which rows are settled."""
+    """Position, velocity, acceleration, torque (joints, rows), and which rows are settled."""
 
     signals: tuple[Array, Array, Array, Array]
     settled: Any
 
 
 def motion(methods: list[Any], q: Array, tau: Array, h: float) -> Motion:
-    """The matched motion of a whole record, one method per joint."""
+    """The phase-matched motion of a whole record, with one method per joint."""
     parts, start, end = [], 0, 0
     for method, x, y in zip(methods, q, tau, strict=True):
         form = method.matched()
@@ -113,7 +118,7 @@ def motion(methods: list[Any], q: Array, tau: Array, h: float) -> Motion:
 
 
 def identified(robot: Robot, motion: Motion, rows: Any) -> Array | None:
-    """Estimates by least squares from some rows; None if these leave a parameter undetermined."""
+    """The least-squares estimates from some rows; None if they leave a parameter undetermined."""
     *kinematics, tau = (np.ascontiguousarray(signal[:, rows]) for signal in motion.signals)
     ls = Estimator()
     start = ls.init(np.zeros(len(robot.parameters)))

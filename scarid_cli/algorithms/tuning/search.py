@@ -1,4 +1,4 @@
-"""Search the settings of a differentiator for those that a judge likes best."""
+"""Search for the settings of a differentiator that a judge likes best."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ GUESSES = 16  # of a search, before the simplex
 
 @dataclass(frozen=True)
 class Trial:
-    """One setting of a method that was tried, and what its judge said: less is better."""
+    """A method with settings that were tried, and the loss its judge found: less is better."""
 
     method: Any
     loss: float
@@ -29,7 +29,10 @@ Judge = Callable[[Any], float]
 def search(
     method: Any, ranges: dict[str, Range], judge: Judge, h: float, seed: int
 ) -> Iterator[Trial]:
-    """Every setting that is tried: the method as it is, guesses, then Nelder and Mead's simplex."""
+    """All trials: the method as it is, guesses over the ranges, and the simplex of Nelder and Mead.
+
+    h: sampling period [s].
+    """
     from scipy.optimize import minimize
 
     trials: dict[Any, float] = {}
@@ -41,7 +44,7 @@ def search(
             if tried not in trials:
                 trials[tried] = judge(tried)
         except UsageFault:
-            return 1e9  # settings that the rate or the record does not allow
+            return 1e9  # settings that the sampling rate does not allow
         value = trials[tried] + np.sum((x - np.clip(x, 0.0, 1.0)) ** 2)
         return float(value) if np.isfinite(value) else 1e9
 

@@ -1,0 +1,161 @@
+"""Run `scarid identify`."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+from scarid_cli.algorithms.choices.registry import ESTIMATORS
+from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.arrays import Array
+from scarid_cli.cli.job import Job
+from scarid_cli.cli.pairs import require_known, settings
+from scarid_cli.cli.treatment import for_robot, treatment_of
+from scarid_cli.errors import UsageFault
+from scarid_cli.io.table import Table
+from scarid_cli.stages import identify as stage
+from scarid_cli.stages.continuation import restored, saved
+from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.rows import Treatment
+
+
+def run(
+    job: Job,
+    *,
+    file: str,
+    robot: str | None,
+    estimator: str,
+    initial: str | None,
+    variance: str,
+    trace: str | None,
+    resumed: str | None,
+    save: str | None,
+    **given: Any,
+) -> None:
+    """Write the parameters, and report the verdict."""
+    method = ESTIMATORS.load(estimator)
+    values = _settings(method, estimator, given)
+    method(**values)  # refuses settings before anything is read
+    treatment = treatment_of(given)
+    _require_possible(method, estimator, treatment, trace=trace, resumable=save or resumed)
+    side, place = job.side_table(trace), job.side_text(save)
+    table, arm = job.read_for(file, "motion", robot, torques=True)
+    arm, treatment = for_robot(arm, treatment, given)
+    solver = method(**values, **_single(given["forgetting"], arm.names))
+    start = _initial(job, initial, arm)
+    fixed = _fixed(table, arm, estimator, solver, treatment, given["smooth_sign"])
+    places: list[stage.Checkpoint] = []
+    result = stage.identify(
+        job.recorded(table),
+        arm,
+        solver,
+        start,
+        treatment=treatment,
+        variance=variance,
+        trace=side,
+        checkpoint=restored(resumed, fixed) if resumed else None,
+        keep=places.append,
+    )
+    job.write(result)
+    if place:
+        place.write(saved(places[0], fixed))
+    for line in summary_lines(arm.name, estimator, result.meta.extra):
+        job.say(line)
+
+
+def _require_possible(
+    method: Any, name: str, treatment: Treatment, *, trace: str | None, resumable: str | None
+) -> None:
+    """Refuse options that the estimator, or the treatment of the rows, does not allow."""
+    if trace and not method.RECURSIVE:
+        raise UsageFault(f"--trace: {name} has no estimates after every sample")
+    if treatment.align and not method.ALIGNS:
+        raise UsageFault(f"--align does not go with --estimator {name}")
+    if (resumable or trace) and (treatment.holds or method.HOLDS):
+        what = f"--estimator {name}" if method.HOLDS else "--decimate or --align"
+        raise UsageFault(f"--save, --from and --trace go row by row; not with {what}")
+
+
+def _initial(job: Job, initial: str | None, arm: Robot) -> Array:
+    """The initial parameters: the a priori ones, those of a table, or zeros."""
+    if initial == "apriori":
+        return arm.apriori
+    if initial:
+        return identified(job.read(initial, "parameters"), arm).theta
+    return np.zeros(len(arm.parameters))
+
+
+def _fixed(
+    table: Table, arm: Robot, estimator: str, solver: Any, treatment: Treatment, sign: float | None
+) -> dict[str, Any]:
+    """What must stay the same when a saved estimation is continued, as JSON holds it."""
+    known = {name: getattr(solver, name) for name in names_of(solver)}
+    return {
+        "robot": arm.name,
+        "estimator": estimator,
+        "period": table.meta.period,
+        "settings": json.loads(json.dumps(known)),
+        "slow": list(treatment.slow),
+        "smooth_sign": sign,
+    }
+
+
+def _settings(method: Any, name: str, options: dict[str, Any]) -> dict[str, Any]:
+    """The settings that were given, which must be some of the estimator's."""
+    known = names_of(method)
+    given: dict[str, Any] = {}
+    for key, values in settings(options["settings"], known, name):
+        if len(values) > 1:
+            raise UsageFault(f"--set {key}: give one value, not {len(values)}")
+        given[key] = values[0]
+    if options["p0"] is not None:
+        given["p0"] = options["p0"]
+    if options["forgetting"] is not None:
+        given["forgetting"] = _number(options["forgetting"], options["forgetting"].split(",")[0])
+    for key in given:
+        require_known(known, key, name)
+    if "," in (options["forgetting"] or ""):
+        del given["forgetting"]  # of single parameters: these are known with the robot
+    return given
+
+
+def _single(text: str | None, names: list[str]) -> dict[str, tuple[float, ...]]:
+    """`0.999,Fv1=0.99`: one forgetting factor for all, then those of single parameters."""
+    if text is None or "," not in text:
+        return {}
+    first, *single = text.split(",")
+    factors = dict.fromkeys(names, _number(text, first))
+    for part in single:
+        name, _, value = part.partition("=")
+        if name not in factors:
+            raise UsageFault(
+                f"--forgetting {text}: no parameter {name!r}; there are {', '.join(names)}"
+            )
+        factors[name] = _number(text, value)
+    return {"forgetting": tuple(factors.values())}
+
+
+def _number(text: str, part: str) -> float:
+    try:
+        return float(part)
+    except ValueError:
+        raise UsageFault(
+            f"--forgetting {text}: write a number, then NAME=NUMBER for single parameters"
+        ) from None
+
+
+def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[str, str]:
+    """A line of facts, and the verdict."""
+    line = f"{robot}, {estimator}, {extra['samples']} samples"
+    if "delay" in extra:
+        delay, error = 1e3 * extra["delay"], 1e3 * extra["delay_error"]
+        line += f", torques lead by {delay:.3g} ms (+- {error:.2g})"
+    if "dropped" in extra:
+        names = ", ".join(extra["dropped"])
+        line += f", dropped {names} (residual {100 * extra['dropped_cost']:.2g} % greater)"
+    if "durbin_wu_hausman" in extra:
+        line += f", Durbin-Wu-Hausman p {extra['durbin_wu_hausman']['p_value']:.2g}"
+    return line, f"{extra['verdict']}: {'; '.join(extra['reasons'])}"

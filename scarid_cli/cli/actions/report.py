@@ -1,0 +1,66 @@
+"""Run `scarid report`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from scarid_cli.cli.job import Job
+from scarid_cli.errors import UsageFault
+from scarid_cli.reporting import naming, results, text
+from scarid_cli.reporting import published as printed
+from scarid_cli.reporting import repeated as repetitions
+from scarid_cli.reporting.content import sections
+from scarid_cli.reporting.documents import documents
+
+
+def run(
+    job: Job,
+    *,
+    files: tuple[str, ...],
+    html: str | None,
+    markdown: str | None,
+    published: str | None,
+    repeated: bool,
+    figures: str | None,
+    title: str,
+) -> None:
+    """Print the tables, and write the documents."""
+    paths = files or ("-",)
+    _require_distinct(paths, html, markdown)
+    with documents(html, markdown) as (page, plain):
+        tables = [results.reportable(job.read(path, None)) for path in paths]
+        values = printed.read(job.read(published, "published")) if published else None
+        collected = results.collect(tables, repeated=repeated)
+        found = (repetitions.sections if repeated else sections)(collected, values)
+        if page or figures:
+            from scarid_cli.reporting import page as rendering  # matplotlib takes half a second
+
+            drawn = rendering.figures(found)
+            if figures:
+                _save(job, Path(figures), [section.title for section in found], drawn)
+            if page:
+                page.write(rendering.html(title, found, drawn, tables).encode())
+        if plain:
+            plain.write(text.markdown(title, found).encode())
+        if "-" not in (html, markdown):
+            sys.stdout.write(text.terminal(found))
+            sys.stdout.flush()
+        if not html and any(not section.rows for section in found):
+            job.say("some tables have figures only; draw them with --html FILE")
+
+
+def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | None) -> None:
+    twice = next((path for path in paths if paths.count(path) > 1), None)
+    if twice:
+        raise UsageFault(f"{twice} is given twice; each table can be read once")
+    if html and html == markdown:
+        raise UsageFault(f"--html and --markdown both go to {html}; give two files")
+
+
+def _save(job: Job, folder: Path, titles: list[str], drawn: list[list[str]]) -> None:
+    """Write each figure as a file of its own."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, document in naming.figures(titles, drawn):
+        job.text(str(folder / name)).write(document)

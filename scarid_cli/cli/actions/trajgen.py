@@ -1,0 +1,125 @@
+"""Run `scarid trajgen`."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from scarid_cli.algorithms.choices.registry import EXCITATIONS
+from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.trajectories.limits import Limits
+from scarid_cli.algorithms.trajectories.trajectory import Trajectory
+from scarid_cli.algorithms.trajectories.via import through
+from scarid_cli.arrays import Array
+from scarid_cli.cli.job import Job, per_joint, robot_of
+from scarid_cli.cli.pairs import require_known, settings
+from scarid_cli.errors import UsageFault
+from scarid_cli.io.table import Metadata
+from scarid_cli.stages import trajgen as stage
+
+MOST = 1e9  # a limit of this size is none
+
+Given = tuple[float, ...] | None
+
+
+def run(
+    job: Job,
+    *,
+    robot: str | None,
+    seed: int,
+    duration: float,
+    via: str | None,
+    home: Given,
+    rate: float,
+    q_max: Given,
+    q_min: Given,
+    dq_max: Given,
+    ddq_max: Given,
+    **kind: Any,
+) -> None:
+    """Write the trajectory, and report how well it excites the robot."""
+    arm = robot_of(robot)
+    if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
+        raise UsageFault("--rate and --duration must be positive")
+    limits = _limits(arm, q_min, q_max, dq_max, ddq_max)
+    start = _home(limits, home)
+    if via:
+        points, _ = job.read_for(via, "via", arm.name)
+        trajectory: Trajectory = through(stage.via_points(points, arm), limits, start)
+    else:
+        rng = np.random.default_rng(seed)
+        trajectory = _excitation(**kind).trajectory(limits, start, duration, rng)
+    stage.checked(trajectory, limits, rate)
+    if wider := _wider(arm, limits):
+        job.say(f"joint {wider}: --q-min or --q-max go beyond the limits of the description")
+    meta = Metadata(kind="trajectory", robot=arm.name, period=1.0 / rate)
+    job.write(job.recorded(stage.tabulate(trajectory, arm, rate, meta)))
+    job.say(
+        f"{arm.name}, {trajectory.duration:g} s, {trajectory.summary}, "
+        + stage.conditioning(trajectory, arm, rate)
+    )
+
+
+def _excitation(
+    *,
+    excitation: str,
+    sequential: bool,
+    segment: tuple[float, float] | None,
+    given: tuple[str, ...],
+) -> Any:
+    """The excitation that was chosen, with the settings that were given."""
+    name = "sequential" if sequential else excitation
+    method = EXCITATIONS.load(name)
+    known = names_of(method)
+    values = dict(zip(("shortest", "longest"), segment or (), strict=False))
+    for key in values:
+        require_known(known, key, name, "--segment: ")
+    for key, numbers in settings(given, known, name):
+        (values[key],) = per_joint(numbers, 1, f"--set {key}")
+    return method(**values)
+
+
+def _limits(arm: Robot, q_min: Given, q_max: Given, dq_max: Given, ddq_max: Given) -> Limits:
+    """The limits of the robot's description, or those that were given instead."""
+    own = Limits.of(arm.joints)
+
+    def row(option: str, given: Given, otherwise: Array, *, positive: bool = True) -> Array:
+        values = np.array(per_joint(given, len(arm.joints), option)) if given else otherwise
+        if not (np.abs(values) < MOST).all() or (positive and not (values > 0.0).all()):
+            lack = "" if given else f" (the description of {arm.name} gives none)"
+            what = "positive and finite" if positive else "finite"
+            raise UsageFault(f"{option}: the bounds must be {what}{lack}")
+        return values
+
+    symmetric = bool(q_max) and not q_min
+    upper = row("--q-max", q_max, own.upper, positive=symmetric)
+    lower = row("--q-min", q_min, -upper if symmetric else own.lower, positive=False)
+    for joint in np.flatnonzero(lower >= upper):
+        raise UsageFault(
+            f"--q-min: the lower bound of joint {joint + 1}, {lower[joint]:g}, must be below its "
+            f"upper bound, {upper[joint]:g}"
+        )
+    return Limits(lower, upper, row("--dq-max", dq_max, own.dq), row("--ddq-max", ddq_max, own.ddq))
+
+
+def _wider(arm: Robot, limits: Limits) -> str:
+    """The joints (from 1) whose position limits are wider than those of the description."""
+    return ", ".join(
+        str(i)
+        for i, joint in enumerate(arm.joints, start=1)
+        if limits.lower[i - 1] < joint.lower or limits.upper[i - 1] > joint.upper
+    )
+
+
+def _home(limits: Limits, given: Given) -> Array:
+    """The home position (joints), which must lie within the limits."""
+    home = np.array(per_joint(given, len(limits.dq), "--home")) if given else limits.home
+    for (joint,) in limits.outside(home):
+        raise UsageFault(
+            f"--home: joint {joint + 1} at {home[joint]:g} is outside its position limits, "
+            f"{limits.interval(joint)}"
+        )
+    return home

@@ -1,0 +1,35 @@
+"""Run `scarid validate`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from scarid_cli.cli.job import Job
+from scarid_cli.cli.treatment import for_robot, treatment_of
+from scarid_cli.errors import UsageFault
+from scarid_cli.stages import validate as stage
+from scarid_cli.stages.parameters import identified
+
+
+def run(
+    job: Job,
+    *,
+    file: str,
+    parameters: str,
+    robot: str | None,
+    predictions: str | None,
+    **given: Any,
+) -> None:
+    """Write the quality of the predicted torques."""
+    treatment = treatment_of(given)
+    if treatment.holds and predictions:
+        raise UsageFault("--predictions are of every row; not with --decimate")
+    side = job.side_table(predictions)
+    known = job.read(parameters, "parameters")
+    table, arm = job.read_for(file, "motion", robot or known.meta.robot, torques=True)
+    arm, treatment = for_robot(arm, treatment, given)
+    model = identified(known, arm)
+    result = stage.validate(job.recorded(table), model, treatment=treatment, predictions=side)
+    job.write(result)
+    if model.delay:
+        job.say(f"torques are predicted {1e3 * model.delay:.3g} ms early, as identified")

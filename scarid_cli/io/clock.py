@@ -1,0 +1,145 @@
+"""The clock of a sampled table: its nominal period, and whether it keeps to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.arrays import Array, Numbers
+from scarid_cli.errors import BadData, bad_data
+from scarid_cli.io.table import SEGMENT, Instant, segments_of, steps_of
+
+# An interval may differ from the period by this fraction, and the mean interval by that one: a
+# derivative would be wrong by as much.
+JITTER = 0.01
+DRIFT = 0.001
+
+
+def clocked(
+    batches: Iterator[pa.RecordBatch], name: str, *, regular: bool
+) -> tuple[Iterator[pa.RecordBatch], float]:
+    """The batches, checked to be at the rate of their first two samples, and the period [s]."""
+    batches = _begun(batches)
+    first = next(batches, None)
+    at = _first_step(first) if first else None
+    if first is None or at is None:
+        raise bad_data(
+            name,
+            f"{first.num_rows if first else 0} rows",
+            expected="at least 2 samples",
+            remedy="give a longer log",
+        )
+    batches = chain([first], batches)
+    if not regular:
+        return batches, 0.0
+    start, end = first.column("t")[at].as_py(), first.column("t")[at + 1].as_py()
+    if not end > start:
+        raise _not_increasing(name, end, start, at + 2)
+    period = nominal_period(end - start)
+    return _regular(batches, name, period), period
+
+
+def nominal_period(interval: float) -> float:
+    """The period [s] of a clock with this first interval; of a whole rate in Hz if it is close."""
+    if not interval > 0.0:
+        return interval
+    rate = round(1.0 / interval)
+    if rate and abs(1.0 / interval / rate - 1.0) < 1e-4:
+        return 1.0 / rate
+    return float(f"{interval:.9g}")
+
+
+def _begun(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+    """Hold the first batches back until two samples follow each other; drop empty batches."""
+    held: list[pa.RecordBatch] = []
+    for batch in batches:
+        if not batch.num_rows:
+            continue
+        held = [pa.Table.from_batches([*held, batch]).combine_chunks().to_batches()[0]]
+        if _first_step(held[0]) is not None:
+            break
+    yield from held
+    yield from (batch for batch in batches if batch.num_rows)
+
+
+def _first_step(batch: pa.RecordBatch) -> int | None:
+    """The number of the first sample that no gap separates from the next."""
+    together = np.flatnonzero(np.diff(segments_of(batch)) == 0)
+    return int(together[0]) if len(together) else None
+
+
+def _regular(
+    batches: Iterator[pa.RecordBatch], name: str, period: float
+) -> Iterator[pa.RecordBatch]:
+    """Pass batches on; time that does not advance, or not at the nominal rate, is an error.
+
+    At a gap (see segments_of) time may advance by any interval.
+    """
+    row = gaps = 0
+    start = missing = float("nan")
+    last: Instant | None = None
+    for batch in batches:
+        t = batch.column("t").to_numpy()
+        first = last is None
+        if first:
+            start, missing = float(t[0]), 0.0
+        steps, jumps, last = steps_of(batch, last)
+        _check_segments(jumps, name, row + 1)
+        after_gap = (jumps > 0) & (steps > 0.0)
+        inner = np.where(after_gap, period, steps)[first:]
+        _check_steps(inner, t[first:], name, period, row + 1 + first)
+        missing += float(steps[after_gap].sum())
+        gaps += int(after_gap.sum())
+        row += batch.num_rows
+        yield batch
+    mean = (last[0] - start - missing) / (row - 1 - gaps) if last else period
+    if abs(mean - period) > DRIFT * period:
+        raise BadData(
+            f"{name}, column t: found a mean interval of {mean:.9g} s over {row} rows, expected "
+            f"{period:.9g} s like the first; put it on a constant rate with `scarid resample "
+            "--rate`"
+        )
+
+
+def _check_segments(jumps: Numbers, name: str, row: int) -> None:
+    if np.any(jumps < 0):
+        raise bad_data(
+            name,
+            "a smaller number than in the row before",
+            expected="segments to be numbered in order",
+            remedy="sort the log",
+            row=row + int(np.argmax(jumps < 0)),
+            column=SEGMENT,
+        )
+
+
+def _check_steps(steps: Array, t: Array, name: str, period: float, row: int) -> None:
+    with np.errstate(invalid="ignore"):
+        bad = ~(np.abs(steps - period) <= JITTER * period)
+    if not bad.any():
+        return
+    at = int(np.argmax(bad))
+    if steps[at] <= 0.0:
+        raise _not_increasing(name, t[at], t[at] - steps[at], row + at)
+    raise bad_data(
+        name,
+        f"an interval of {steps[at]:.6g} s",
+        expected=f"{period:.6g} s within {JITTER:.0%}",
+        remedy="put it on a constant rate with `scarid resample --rate`",
+        row=row + at,
+        column="t",
+    )
+
+
+def _not_increasing(name: str, time: float, before: float, row: int) -> BadData:
+    return bad_data(
+        name,
+        f"{time} after {before:.9g}",
+        expected="time to increase from row to row",
+        remedy="sort the log and remove repeated rows",
+        row=row,
+        column="t",
+    )

@@ -1,0 +1,102 @@
+"""What a report keeps of a table: one class for each kind of table that it can show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.prediction import Quality
+from scarid_cli.arrays import Array
+from scarid_cli.reporting.naming import Name
+
+
+@dataclass(frozen=True)
+class Result:
+    """Common to all kinds: the name of the table, and its robot if the description was found."""
+
+    name: Name
+    robot: Robot | None
+
+    @property
+    def robot_name(self) -> str | None:
+        return self.robot.name if self.robot else None
+
+
+@dataclass(frozen=True)
+class _PerParameter(Result):
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _PerJoint(Result):
+    """Torques; `units` are theirs, N m or N."""
+
+    joints: tuple[int, ...]
+    units: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Parameters(_PerParameter):
+    """Estimates with their relative standard deviations [%] (eq. 34); nan where unknown.
+
+    `robust` holds relative standard errors [%] that are robust to autocorrelated residuals; it is
+    empty where the table has none. `extra` is what the metadata say of the estimation.
+    """
+
+    estimates: tuple[float, ...]
+    deviations: tuple[float, ...]
+    extra: dict[str, Any]
+    commands: tuple[str, ...] = ()
+    robust: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Trace(_PerParameter):
+    """The running estimates: a curve (2, points) and an RMS error (eq. 35) per parameter."""
+
+    curves: tuple[Array, ...]
+    errors: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Metrics(_PerJoint):
+    """Quality of the predicted torques of each joint; nan where unknown."""
+
+    qualities: tuple[Quality, ...]
+
+
+@dataclass(frozen=True)
+class Prediction(_PerJoint):
+    """Measured and predicted torque of each joint, as curves (2, points)."""
+
+    measured: tuple[Array, ...]
+    predicted: tuple[Array, ...]
+
+
+@dataclass(frozen=True)
+class Measurement(Result):
+    """Torque, position and reference of each joint, as curves (2, points).
+
+    `tracking` is the root-mean-square difference between position and reference [rad or m].
+    """
+
+    torques: tuple[Array, ...]
+    positions: tuple[Array, ...]
+    references: tuple[Array, ...]
+    tracking: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class MotionEstimate(Result):
+    """Estimated and, where the table has them, true velocities and accelerations.
+
+    Curves (2, points), joint by joint: dq1, ddq1, dq2, ... `errors` are root-mean-square errors
+    relative to the standard deviation of the true signal [%].
+    """
+
+    columns: tuple[str, ...]
+    curves: tuple[Array, ...]
+    truths: tuple[Array, ...]
+    errors: tuple[float, ...]

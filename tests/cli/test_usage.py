@@ -1,0 +1,83 @@
+"""A wrong command line: exit 2 and one line that says what to type."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import Result, refused
+
+Run = Callable[..., Result]
+
+USAGE = {
+    "no such file": (["filter", "nowhere.csv"], "nowhere.csv: no such file"),
+    "no such option": (["filter", "--frob"], "No such option '--frob'"),
+    "no such command": (["frobnicate"], "No such command 'frobnicate'"),
+    "one output twice": (["identify", "--trace", "-"], "standard output: two outputs cannot share"),
+    "no such robot": (
+        ["trajgen", "--robot", "r2d2"],
+        "unknown robot 'r2d2'; choose emps, planar2-gravity, scara2",
+    ),
+    "no such method": (["differentiate", "--method", "magic"], "'magic' is not one of"),
+    "no such column": (["filter", "-c", "q7", "LOG"], "no column 'q7'; the table has t, q1"),
+    "no such setting": (["differentiate", "--set", "gamma2=1", "LOG"], "has no setting 'gamma2'"),
+    "no number": (["differentiate", "--set", "noise=x", "LOG"], "'x' is not a number"),
+    "negative gain": (["differentiate", "--set", "noise=-1", "LOG"], "noise must be positive"),
+    "too many values": (["differentiate", "--set", "noise=1,2,3", "LOG"], "3 values for 2 joints"),
+    "even window": (
+        ["differentiate", "--method", "savgol", "--set", "window=80", "LOG"],
+        "window must be odd, not 80",
+    ),
+    "cutoff above half the rate": (
+        ["differentiate", "--method", "zero-phase", "--set", "cutoff=60", "LOG"],
+        "cutoff 60 Hz is not below half the rate, 50 Hz",
+    ),
+    "no such preset": (
+        ["differentiate", "--method", "p2smd", "--preset", "best", "LOG"],
+        "it has table1",
+    ),
+    "time filtered": (["filter", "-c", "*", "LOG"], "the time column t cannot be filtered"),
+    "two cut-offs": (["filter", "--cutoff", "1", "--natural-frequency", "1"], "not both"),
+    "cut-off above Nyquist": (
+        ["filter", "--cutoff", "50", "LOG"],
+        "not below half the rate, 50 Hz",
+    ),
+    "p0 of ls": (["identify", "--estimator", "ls", "--p0", "1"], "ls has no setting 'p0'"),
+    "trace of ls": (["identify", "--estimator", "ls", "--trace", "t.csv"], "no estimates after"),
+    "setting without a value": (["identify", "--set", "p0"], "write NAME=VALUE"),
+    "setting that is no number": (["identify", "--set", "p0=x"], "'x' is not a number"),
+    "two values of a setting": (["identify", "--set", "p0=1,2"], "p0: give one value, not 2"),
+    "skip of three": (["identify", "--skip", "1,2,3"], "at the start and at the end"),
+    "decimation by a half": (["identify", "--decimate", "0.5"], "whole numbers from 2"),
+    "negative slow": (["identify", "--drop-slow", "-1"], "cannot be negative"),
+    "sign over no velocity": (["identify", "--smooth-sign", "0"], "must be positive"),
+    "state of aligned rows": (["identify", "--align", "--save", "s.npz"], "go row by row"),
+    "state of held rows": (
+        ["identify", "--estimator", "irls", "--save", "s.npz"],
+        "go row by row",
+    ),
+    "forgetting above 1": (["identify", "--forgetting", "1.1"], "forgetting must not exceed 1"),
+    "unknown extension": (["convert", "LOG", "-o", "x.xlsx"], "x.xlsx: unknown extension"),
+    "bounds of no size": (
+        ["trajgen", "--q-max", "0"],
+        "--q-max: the bounds must be positive and finite",
+    ),
+    "duration too short": (["trajgen", "--duration", "1"], "too short for 2 segments"),
+    "rates do not fit": (
+        ["simulate", "--control-rate", "300", "REF"],
+        "whole multiple of the traj",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", USAGE)
+def test_a_wrong_command_line_is_told_in_one_line(
+    name: str, scarid: Run, samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words, message = USAGE[name]
+    if "REF" in words:
+        assert scarid("trajgen", "--duration", 2, "-o", "ref.csv").status == 0
+    files = {"LOG": str(samples / "scara2.csv"), "REF": "ref.csv"}
+    refused(scarid(*(files.get(word, word) for word in words)), 2, message)
