@@ -18,7 +18,7 @@ from defaults import PERIOD, RATIO, ROBOT, experiment
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.regression.rows import plain
-from scarid_cli.algorithms.tuning.judges import Motion, motion
+from scarid_cli.algorithms.tuning.judges import SettledMotion, motion
 from scarid_cli.arrays import Array
 
 Experiment = tuple[Array, Array]  # positions [rad] and torques [N m], each (joints, rows)
@@ -43,21 +43,21 @@ def log(seed: int) -> Experiment:
     return np.ascontiguousarray(run.q[:, ::RATIO]), np.ascontiguousarray(run.tau[:, ::RATIO])
 
 
-def seen(method: Any, q: Array, tau: Array, *, match: bool = True) -> Motion:
+def seen(method: Any, q: Array, tau: Array, *, match: bool = True) -> SettledMotion:
     """The motion that the method estimates from a log."""
     fitted = [method.fitted(x, PERIOD) for x in q]
     if match:
         return motion(fitted, q, tau, PERIOD)
     derivatives = (over(m, x, PERIOD) for m, x in zip(fitted, q, strict=True))
     dq, ddq = (np.array(rows) for rows in zip(*derivatives, strict=True))
-    return Motion((q, dq, ddq, tau), np.ones(q.shape[1], dtype=bool))
+    return SettledMotion((q, dq, ddq, tau), np.ones(q.shape[1], dtype=bool))
 
 
-def settled(motion: Motion) -> list[Array]:
+def settled(motion: SettledMotion) -> list[Array]:
     return [np.ascontiguousarray(signal[:, motion.settled]) for signal in motion.signals]
 
 
-def identified(motion: Motion) -> Array:
+def identified(motion: SettledMotion) -> Array:
     """Estimates by recursive least squares."""
     *kinematics, tau = settled(motion)
     rls = ESTIMATORS.load("rls")()
@@ -67,7 +67,7 @@ def identified(motion: Motion) -> Array:
     return estimates
 
 
-def r2(motion: Motion, theta: Array) -> list[float]:
+def r2(motion: SettledMotion, theta: Array) -> list[float]:
     """Coefficient of determination of the predicted torques, for each joint."""
     *kinematics, tau = settled(motion)
     predicted = ROBOT.torques(ROBOT.regressor(*kinematics), theta)

@@ -24,15 +24,15 @@ ROBOT, PUBLISHED, H = reading.load("emps"), 95.1089, 1e-3
 TABLE1 = ("p2smd", "ed-fir", "2smd", "astd")
 
 
-def unmatched(method: Any, record: Record) -> judges.Motion:
+def unmatched(method: Any, record: Record) -> judges.SettledMotion:
     """Derivatives beside the positions and the torques as they were logged."""
     assert record.tau is not None
     dq, ddq = over(method, record.q[0], H)
     signals = (record.q, dq[None, :], ddq[None, :], record.tau)
-    return judges.Motion(signals, np.ones(record.q.shape[1], dtype=bool))
+    return judges.SettledMotion(signals, np.ones(record.q.shape[1], dtype=bool))
 
 
-def quality(motion: judges.Motion) -> tuple[float, float]:
+def quality(motion: judges.SettledMotion) -> tuple[float, float]:
     """Mass [kg], and relative error of the predicted torque [%]."""
     rows = motion.settled
     theta = judges.identified(ROBOT, motion, rows)

@@ -22,7 +22,7 @@ from scarid_cli.cli.options import NUMBERS
 )
 @click.option(
     "--set",
-    "given",
+    "settings",
     multiple=True,
     metavar="NAME=VALUE",
     help="A setting of the excitation; may be repeated.",

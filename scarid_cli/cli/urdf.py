@@ -15,7 +15,8 @@ from scarid_cli.cli.declare import declare
     required=True,
     type=options.INPUT,
     metavar="FILE",
-    help="The parameter table that `scarid identify --robot ROBOT` made.",
+    help="The parameter table of `scarid identify --robot ROBOT`; in Parquet or Arrow it carries "
+    "the covariance of the estimates.",
 )
 @click.option(
     "--output",
@@ -24,22 +25,37 @@ from scarid_cli.cli.declare import declare
     cls=options.Unrecorded,
     default="-",
     metavar="FILE",
-    help="Where the URDF goes.  [default: stdout]",
+    help="Write the URDF to FILE.  [default: stdout]",
 )
 @options.side_output("--base", help="Write the base parameters of the new bodies as a table.")
+@click.option(
+    "--motion",
+    type=options.INPUT,
+    metavar="FILE",
+    help="Report R2 per joint of this motion, before and after. Give the options below as to "
+    "identify.",
+)
+@options.treatment
 @options.common
 def command() -> None:
-    """Put identified parameters into a copy of a URDF, as bodies that can exist.
+    """Write identified parameters into a copy of a URDF as physically consistent link inertias.
 
     \b
-      scarid urdf --parameters parameters.csv arm.urdf -o identified.urdf
-      scarid urdf --parameters p.csv --base near.csv arm.toml -o identified.urdf
-      scarid validate --robot arm.toml --parameters near.csv motion.csv
+      scarid urdf --parameters parameters.parquet arm.urdf -o identified.urdf
+      scarid urdf --parameters p.parquet --motion motion.parquet arm.toml -o identified.urdf
+      scarid urdf --parameters p.parquet --base near.csv arm.toml -o identified.urdf
 
     ROBOT is the URDF, or the TOML file that names it. Identified base parameters may belong to no
-    body that exists: with a negative mass, say. They are moved by as few of their errors as
-    positive masses and positive definite pseudo-inertias need (Wensing, Kim, Slotine 2018), and of
-    all bodies with these base parameters those next to the URDF's own are taken. Viscous and dry
-    friction become damping and friction of the joints; what a URDF has no place for (motor
-    inertias, offsets, couplings) is in a comment. Needs the extra: pip install 'scarid[urdf]'.
+    real robot: a mass may come out negative, for example. This command computes physically
+    consistent link inertias from them: positive masses and positive definite pseudo-inertias
+    (Wensing, Kim, Slotine 2018), at the smallest Mahalanobis distance from the estimates. Of all
+    such bodies it takes those closest to the bodies of the URDF. Parameters that `identify
+    --essential` dropped stay at zero where positive masses allow it.
+
+    The covariance of the estimates comes with a Parquet or Arrow table. CSV has none; the
+    correlations are then neglected, which can ruin the prediction of torques: check with --motion.
+
+    Viscous and Coulomb friction become damping and friction of the joints. What a URDF cannot hold
+    (motor inertias, offsets, couplings) is in a comment. Needs the extra: pip install
+    'scarid[urdf]'.
     """

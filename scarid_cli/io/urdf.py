@@ -1,4 +1,4 @@
-"""A URDF with other inertias and friction, and everything else as it was."""
+"""Write other inertias and friction into a URDF, and leave everything else as it was."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scarid_cli.arrays import Array
 
 @dataclass(frozen=True)
 class Inertial:
-    """Mass [kg], centre of mass [m] and moments about it [kg m2], in the frame of the link."""
+    """Mass [kg], centre of mass [m] and inertia about it [kg m2], in the frame of the link."""
 
     mass: float
     centre: Array
@@ -21,7 +21,7 @@ class Inertial:
 
     @classmethod
     def of(cls, mass: float, moments: Array, inertia: Array) -> Inertial:
-        """From first moments [kg m] and moments of inertia about the link's frame."""
+        """From first moments [kg m] and the inertia [kg m2] about the origin of the link."""
         c = moments / mass
         return cls(mass, c, inertia - mass * (c @ c * np.eye(3) - np.outer(c, c)))
 
@@ -32,7 +32,11 @@ def rewritten(
     friction: Mapping[str, tuple[float, float]],
     remark: str,
 ) -> str:
-    """Links with other inertias, or with none (None); damping and friction of joints; a comment."""
+    """The URDF with new inertias of `links` by name, None to remove one, and a comment (`remark`).
+
+    `friction` has the viscous [N m s/rad or N s/m] and the Coulomb friction [N m or N] by the name
+    of the joint.
+    """
     parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
     robot = ElementTree.fromstring(text, parser=parser)
     robot.insert(0, ElementTree.Comment(f" {remark.replace('--', '- -')} "))
@@ -43,8 +47,8 @@ def rewritten(
             _set_inertial(link, links[name])
     for joint in robot.findall("joint"):
         if joint.get("name") in friction:
-            damping, dry = friction[joint.get("name", "")]
-            _child(joint, "dynamics").attrib.update(damping=_text(damping), friction=_text(dry))
+            viscous, coulomb = friction[joint.get("name", "")]
+            _child(joint, "dynamics").attrib.update(damping=_text(viscous), friction=_text(coulomb))
     return ElementTree.tostring(robot, encoding="unicode", xml_declaration=True) + "\n"
 
 

@@ -43,8 +43,10 @@ def described(table: Table) -> Iterator[str]:
 
 
 def _metadata(key: str, value: Any) -> Iterator[str]:
-    """A value on one line, or the items of a list on a line each."""
-    if isinstance(value, list):
+    """A value on one line, the items of a list on a line each, and a matrix by its size."""
+    if isinstance(value, list) and value and isinstance(value[0], list):
+        yield f"{key:<9} {len(value)} by {len(value[0])} numbers"
+    elif isinstance(value, list):
         yield key
         yield from (f"  {_shown(item)}" for item in value)
     else:

@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.outcome import Outcome
+from scarid_cli.algorithms.statistics.outcome import Outcome, covariance
 from scarid_cli.algorithms.statistics.verdict import Evidence, InUse, combination, verdict
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
@@ -81,10 +81,10 @@ def parameters(
 ) -> Table:
     """The table, with the verdict in its metadata."""
     labels = Labels.of(found, robot)
-    covariance = found.diagnostics.covariance
+    known_errors = found.diagnostics.covariance
     nan = np.full(len(found.kept), np.nan)
-    robust = covariance.errors if covariance else nan
-    half = robust * covariance.quantile if covariance else nan
+    robust = known_errors.errors if known_errors else nan
+    half = robust * known_errors.quantile if known_errors else nan
     estimates = found.found.fit.estimates
     errors = found.found.fit.standard_errors(variance=variance)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -145,12 +145,16 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         "lag_share": found.diagnostics.lag_share,
         **found.found.extra,
     }
+    full_covariance = covariance(found.full, found.errors)
+    if full_covariance is not None:
+        extra["covariance"] = full_covariance.tolist()
     if found.delay:
         extra["delay"], extra["delay_error"] = found.delay
     if found.reduction and found.reduction.dropped:
         extra["dropped"] = [labels.names[i] for i in found.reduction.dropped]
         extra["dropped_cost"] = found.reduction.cost
         extra["dropped_allowed"] = found.reduction.allowed
+        extra["full_estimates"] = found.full.estimates.tolist()
     return extra
 
 

@@ -1,40 +1,39 @@
-"""Bodies that can exist from identified base parameters, and a URDF that has them."""
+"""Physically consistent link inertias from identified base parameters, and a URDF with them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.physical import Physical, inertia_of, nearest
+from scarid_cli.algorithms.robots.physical import Physical, chi_square, inertia_of, nearest
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table, doubles, number
 from scarid_cli.io.urdf import Inertial, rewritten
-from scarid_cli.stages.parameters import identified, known
+from scarid_cli.stages.estimates import Estimates
+from scarid_cli.stages.parameters import Identified, known
+from scarid_cli.stages.prediction import qualities
+from scarid_cli.stages.rows import Treatment
+
+SHOWN = 5  # parameters that a message names
+COLLAPSE = 2.0  # times the residual variance: from here on physical consistency adds more torque
+# error than there was before
+FALL = 0.01  # of R2: less is of no account, however small the residual was
 
 
-def physical(table: Table, robot: Robot) -> Physical:
-    """The nearest to a table of parameters, in its robust errors, else in its standard errors."""
-    batches = list(table.batches)
-    theta = identified(replace(table, batches=iter(batches)), robot).theta
-    return nearest(robot, theta, _errors(table.columns, batches, len(theta)))
-
-
-def _errors(columns: list[str], batches: list[pa.RecordBatch], count: int) -> Array:
-    for name in ("robust_error", "standard_error"):
-        if name in columns:
-            parts = [batch.column(name).to_numpy(zero_copy_only=False) for batch in batches]
-            errors = np.concatenate(parts).astype(np.float64)[:count]
-            if np.isfinite(errors).any():
-                return np.where(errors > 0.0, errors, np.nan)
-    return np.full(count, np.nan)
+def physical(identified: Estimates) -> Physical:
+    """The physically consistent parameters nearest to the identified ones."""
+    return nearest(identified.robot, identified.full, identified.covariance, identified.dropped)
 
 
 def document(text: str, robot: Robot, found: Physical, command: str) -> str:
-    """The URDF with the new bodies; links fixed to one are counted to it and lose their own."""
+    """The URDF with the new inertias and friction.
+
+    Links fixed to a moving link are part of its body and lose their own inertia.
+    """
     assert robot.body
     links: dict[str, Inertial | None] = {}
     for body, (own, fixed) in zip(found.bodies, robot.body.links, strict=True):
@@ -47,36 +46,110 @@ def document(text: str, robot: Robot, found: Physical, command: str) -> str:
             friction[name] = (found.axes[own_names[0]], found.axes[own_names[1]])
             written |= set(own_names)
     rest = ", ".join(f"{k} {x:.6g}" for k, x in found.axes.items() if k not in written)
-    return rewritten(text, links, friction, f"{command}{'; beside: ' if rest else ''}{rest}")
+    remark = f"{command}; not part of the URDF: {rest}" if rest else command
+    return rewritten(text, links, friction, remark)
 
 
-def base_table(table: Table, robot: Robot, found: Physical) -> Table:
+def base_table(table: Table, identified: Estimates, found: Physical) -> Table:
     """The base parameters of the new bodies, as `validate` takes them."""
     schema = pa.schema([pa.field("parameter", pa.string()), pa.field("unit", pa.string()),
                         number("estimate"), number("moved")])  # fmt: skip
+    robot, fixed = identified.robot, identified.fixed
     arrays = [
-        pa.array(robot.names, pa.string()),
-        pa.array([p.unit for p in robot.parameters], pa.string()),
-        doubles(found.base),
-        known(found.moved),
+        pa.array([*robot.names, *(name for name, _, _ in fixed)], pa.string()),
+        pa.array([*(p.unit for p in robot.parameters), *(unit for _, unit, _ in fixed)]),
+        doubles(np.append(found.base, [value for _, _, value in fixed])),
+        known(np.append(_moved(identified, found), np.zeros(len(fixed)))),
     ]
     batch = pa.RecordBatch.from_arrays(arrays, schema=schema)
     meta = replace(table.meta, kind="parameters", robot=robot.name, extra={})
     return Table("urdf", schema, meta, iter([batch]))
 
 
-def told(robot: Robot, found: Physical) -> Iterator[str]:
-    """How far the parameters had to move, and the bodies."""
-    moved = np.nan_to_num(np.abs(found.moved))
-    far = [i for i in np.argsort(-moved) if moved[i] > 1.0]
-    if not far:
-        yield f"such bodies exist: no parameter had to move by more than {moved.max():.2g} errors"
-    else:
-        names = ", ".join(f"{robot.names[i]} by {moved[i]:.2g}" for i in far[:5])
-        more = ", ..." if len(far) > 5 else ""
-        yield (
-            f"{len(far)} of {len(moved)} parameters had to move by more than an error for bodies "
-            f"that can exist: {names}{more}"
+def r2_before_and_after(
+    table: Table, identified: Estimates, found: Physical, treatment: Treatment
+) -> tuple[Array, Array]:
+    """R2 (eq. 36) per joint of a motion, with the identified and the consistent parameters.
+
+    Rows are treated as `validate` does.
+    """
+    robot, delay = identified.robot, identified.delay
+    models = [Identified(robot, theta, delay) for theta in (identified.values, found.base)]
+    found_r2 = ([joint.r2 for joint in own] for own in qualities(table, models, treatment))
+    before, after = map(np.array, found_r2)
+    return before, after
+
+
+def r2_report(before: Array, after: Array) -> Iterator[str]:
+    """R2 per joint before and after, and a warning for the joints that lost much of it."""
+    yield f"R2 of the identified parameters: {_listed(before)}"
+    yield f"R2 of the physically consistent ones: {_listed(after)}"
+    lost = (1.0 - after > COLLAPSE * (1.0 - before)) & (before - after > FALL)
+    if lost.any():
+        falls = ", ".join(
+            f"joint {j + 1} from {before[j]:.3f} to {after[j]:.3f}" for j in np.flatnonzero(lost)
         )
+        yield (
+            f"warning: R2 falls substantially on this motion: {falls}; do not use this URDF for "
+            "such motions. Identify the parameters from a log that excites every joint"
+        )
+
+
+def consistency_report(identified: Estimates, found: Physical) -> Iterator[str]:
+    """How far the parameters had to move, which could not stay at zero, and the masses."""
+    if identified.remark:
+        yield identified.remark
+    else:
+        yield _distance(identified, found)
+    yield _farthest(identified, found)
+    yield from _not_zero(identified, found)
     masses = ", ".join(f"{body[9]:.4g}" for body in found.bodies)
     yield f"masses {masses} kg; only combinations of them are identified"
+
+
+def _distance(identified: Estimates, found: Physical) -> str:
+    text = f"Mahalanobis distance from the estimates {found.distance:.2g} standard deviations"
+    if identified.dropped:
+        return f"{text}, counted from those of all parameters, before any were dropped"
+    count = int(np.count_nonzero(np.isfinite(np.diag(identified.covariance))))
+    explained = np.sqrt(chi_square(count))
+    text = f"{text}; the uncertainty of {count} estimates explains up to {explained:.2g}"
+    if found.distance <= explained:
+        return text
+    return f"{text}: the model or the log has another error, such as friction or delay"
+
+
+def _not_zero(identified: Estimates, found: Physical) -> Iterator[str]:
+    """Dropped parameters that positive masses do not allow to be zero."""
+    parameters = identified.robot.parameters
+    other = [i for i in identified.dropped if found.base[i] != 0.0]
+    if other:
+        names = [f"{parameters[i].name} ({found.base[i]:.2g} {parameters[i].unit})" for i in other]
+        yield (
+            f"{len(other)} of {len(identified.dropped)} dropped parameters cannot be zero with "
+            f"positive masses: {_some(names)}"
+        )
+
+
+def _farthest(identified: Estimates, found: Physical) -> str:
+    moved = np.nan_to_num(np.abs(_moved(identified, found)))
+    far = [i for i in np.argsort(-moved) if moved[i] > 1.0]
+    if not far:
+        return f"no parameter moved by more than {moved.max():.2g} standard errors"
+    names = _some([f"{identified.robot.names[i]} by {moved[i]:.2g}" for i in far])
+    return f"{len(far)} of {len(moved)} parameters moved by more than one standard error: {names}"
+
+
+def _moved(identified: Estimates, found: Physical) -> Array:
+    """By how many of their errors the parameters moved (parameters); nan without an error."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        moved: Array = (found.base - identified.values) / identified.errors
+    return moved
+
+
+def _some(items: Sequence[str]) -> str:
+    return ", ".join(items[:SHOWN]) + (", ..." if len(items) > SHOWN else "")
+
+
+def _listed(values: Array) -> str:
+    return ", ".join(f"{value:.3f}" for value in values)

@@ -7,7 +7,7 @@ import io
 from collections.abc import Callable
 
 import pytest
-from conftest import Result
+from conftest import Result, refused
 
 Shell = Callable[..., Result]
 MOTION = "scarid differentiate $SAMPLES/scara2.csv -o motion.csv"
@@ -158,3 +158,24 @@ def test_too_few_rows_are_told_in_one_line(options: str, told: str, shell: Shell
     assert "leave out fewer rows" in result.err
     assert len(result.err.splitlines()) == 1
     assert "out.csv" not in result.out
+
+
+@pytest.mark.parametrize("estimator", ["ls", "wls", "tls", "irls"])
+def test_initial_parameters_are_refused_by_an_estimator_without_them(
+    estimator: str, shell: Shell
+) -> None:
+    result = shell(f"{MOTION}; scarid identify --estimator {estimator} --initial apriori motion.csv")
+    refused(result, 2, f"--initial: {estimator} has no initial parameters")
+
+
+@pytest.mark.parametrize("options", ["--estimator tls", "--forgetting 0.999,Fv1=0.99"])
+def test_the_delay_goes_with_the_parameters_to_validate(options: str, shell: Shell) -> None:
+    """In Parquet; that CSV cannot keep it is said."""
+    align = f"scarid identify --align {options}"
+    result = shell(
+        f"scarid differentiate $SAMPLES/scara2.csv -o m.parquet && {align} m.parquet -o p.parquet &&"
+        f" scarid validate --parameters p.parquet m.parquet && {align} m.parquet -o p.csv"
+    )
+    assert result.status == 0, result.err
+    assert "torques are predicted" in result.err
+    assert result.err.splitlines()[-1].startswith("scarid identify: CSV does not keep the delay")

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import Result, refused
-from unit.arms import URDF
+from pyarrow.parquet import read_table
+from unit.arms import URDF, seven_axes, sines
 
+from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.arrays import Array
 
 Shell = Callable[..., Result]
 
@@ -28,13 +32,19 @@ def folder(tmp_path: Path) -> Path:
     )
     robot = load(str(tmp_path / "arm.toml"))
     rng = np.random.default_rng(0)
-    q, dq, ddq = rng.uniform(-2.0, 2.0, (3, 2, 300))
-    tau = robot.torques(robot.regressor(q, dq, ddq), robot.apriori)
-    tau += rng.normal(0.0, 0.1, tau.shape)
-    columns = np.column_stack((np.arange(300) * 0.01, *q, *dq, *ddq, *tau))
-    header = "t,q1,q2,dq1,dq2,ddq1,ddq2,tau1,tau2"
-    np.savetxt(tmp_path / "motion.csv", columns, delimiter=",", header=header, comments="")
+    write_motion(tmp_path / "motion.csv", robot, rng.uniform(-2.0, 2.0, (3, 2, 300)), 0.1)
     return tmp_path
+
+
+def write_motion(path: Path, robot: Robot, motion: Array, noise: float | Array) -> None:
+    """A motion (3, joints, samples) at 100 Hz, with the torques of the a priori parameters."""
+    tau = robot.torques(robot.regressor(*motion), robot.apriori)
+    tau += np.random.default_rng(0).normal(0.0, noise, tau.T.shape).T
+    signals = [*motion.reshape(-1, motion.shape[2]), *tau]
+    columns = np.column_stack((np.arange(motion.shape[2]) * 0.01, *signals))
+    joints = range(1, len(tau) + 1)
+    header = ",".join(["t", *(f"{name}{i}" for name in ("q", "dq", "ddq", "tau") for i in joints)])
+    np.savetxt(path, columns, delimiter=",", header=header, comments="")
 
 
 IDENTIFY = "scarid identify -q --robot arm.toml --estimator wls motion.csv -o p.csv"
@@ -48,7 +58,8 @@ def test_an_identified_urdf_is_a_robot_with_the_identified_parameters(
         " scarid validate --robot arm.toml --parameters near.csv motion.csv | cut -d, -f1,2"
     )
     assert result.status == 0, result.err
-    assert "such bodies exist" in result.err
+    assert "no parameter moved by more than" in result.err
+    assert "identify -o parameters.parquet" in result.err
     assert "masses" in result.err
     for row in result.out.splitlines()[1:]:
         assert float(row.split(",")[1]) > 0.99
@@ -68,18 +79,100 @@ def test_the_identified_base_set_is_written_out(folder: Path, shell: Shell) -> N
 
 
 @pytest.mark.parametrize(
-    ("command", "status", "told"),
+    ("command", "status", "message"),
     [
-        ("--parameters p.csv emps", 2, "emps: has no URDF to put parameters into"),
+        ("--parameters p.csv emps", 2, "emps: has no URDF to write parameters into"),
         ("--parameters p.csv arm.urdf", 65, "expected those of arm.urdf"),
         ("--parameters none.csv arm.toml", 2, "none.csv: no such file"),
         ("--parameters p.csv arm.toml -o /nowhere/new.urdf", 74, "/nowhere"),
+        ("--parameters p.csv --skip 5 arm.toml", 2, "need --motion FILE"),
+        ("--parameters p.csv --smooth-sign 0.1 arm.toml", 2, "need --motion FILE"),
     ],
 )
-def test_what_cannot_be_is_told_in_one_line(
-    command: str, status: int, told: str, folder: Path, shell: Shell
+def test_wrong_use_is_refused_in_one_line(
+    command: str, status: int, message: str, folder: Path, shell: Shell
 ) -> None:
-    refused(shell(f"{IDENTIFY} && scarid urdf {command}"), status, told)
+    refused(shell(f"{IDENTIFY} && scarid urdf {command}"), status, message)
+
+
+def test_r2_of_a_motion_is_reported_before_and_after(folder: Path, shell: Shell) -> None:
+    """As `validate` computes it, with the same rows."""
+    rows = "--skip 10,20 --drop-slow 0.1"
+    result = shell(
+        f"{IDENTIFY} && scarid urdf --parameters p.csv --motion motion.csv {rows} --base near.csv"
+        " arm.toml -o new.urdf && for p in p near; do scarid validate --robot arm.toml"
+        f" --parameters $p.csv {rows} motion.csv | tail -n +2 | cut -d, -f2; done"
+    )
+    assert result.status == 0, result.err
+    before, after = np.array(result.out.split(), dtype=float).reshape(2, 2)
+    listed = (", ".join(f"{x:.3f}" for x in values) for values in (before, after))
+    assert f"R2 of the identified parameters: {next(listed)}\n" in result.err
+    assert f"R2 of the physically consistent ones: {next(listed)}\n" in result.err
+    assert "warning" not in result.err
+
+
+def test_the_covariance_saves_the_torques_of_correlated_parameters(
+    tmp_path: Path, shell: Shell
+) -> None:
+    """Seven axes, five slow seconds: CSV has no covariance, R2 collapses, and users are warned."""
+    (tmp_path / "arm.urdf").write_text(seven_axes())
+    (tmp_path / "true.urdf").write_text(seven_axes(centre="0.03 -0.04 0.05"))
+    true = load(str(tmp_path / "true.urdf"))
+    motion = sines(7, 250, 0.3, 1)
+    deviation = 0.1 * true.torques(true.regressor(*motion), true.apriori).std(axis=1)
+    write_motion(tmp_path / "motion.csv", true, motion, deviation)
+    lines = {}
+    for kind in ("csv", "parquet"):
+        result = shell(
+            f"scarid identify -q --robot arm.urdf --estimator wls motion.csv -o p.{kind} &&"
+            f" scarid urdf --parameters p.{kind} --motion motion.csv arm.urdf -o new.urdf"
+        )
+        assert result.status == 0, result.err
+        lines[kind] = result.err
+    assert "warning: R2 falls substantially on this motion" in lines["csv"]
+    assert "no covariance of the estimates" in lines["csv"]
+    assert "warning" not in lines["parquet"]
+    assert "covariance 69 by 69 numbers" in shell("scarid info p.parquet").out
+    parameters = read_table(tmp_path / "p.parquet")
+    covariance = np.array(json.loads(parameters.schema.metadata[b"scarid"])["extra"]["covariance"])
+    robust, classical = (parameters[f"{kind}_error"].to_numpy() for kind in ("robust", "standard"))
+    assert np.median(robust**2 / np.diag(covariance)) == pytest.approx(1.0)
+    assert np.ptp(classical**2 / np.diag(covariance)) < 1e-9
+    assert "Mahalanobis distance" in lines["parquet"]
+
+
+def test_dropped_parameters_of_a_real_robot_stay_at_zero(
+    shell: Shell, tmp_path: Path, real_logs: Path
+) -> None:
+    """Staubli TX40: only sums of inertias, which are positive, cannot be zero."""
+    described = (
+        "title = 'TX40'\nurdf = 'URDF'\n"
+        + 6 * "[[joint]]\n"
+        + ("terms = ['viscous', 'coulomb', 'offset']\n[[coupling]]\njoints = [5, 6]\n")
+    )
+    urdf = real_logs / "staubli_tx40" / "tx40_mdh_modified.urdf"
+    (tmp_path / "tx40.toml").write_text(described.replace("URDF", str(urdf)))
+    log = real_logs / "staubli_tx40" / "tx40_joint_5kHz.parquet"
+    rows = "--skip 20,20 --decimate 10,10 --drop-slow 0.0501,0.0501,0.075,0.0716,0.0559,0.1222"
+    result = shell(
+        f"scarid filter --zero-phase --cutoff 100 -c 'q?' {log} --format arrow |"
+        " scarid differentiate --method central --no-match -o motion.arrows &&"
+        f" scarid identify -q --robot tx40.toml --estimator wls --essential {rows} motion.arrows"
+        " -o p.parquet && scarid urdf --parameters p.parquet --base near.parquet"
+        f" --motion motion.arrows {rows} tx40.toml -o new.urdf"
+    )
+    assert result.status == 0, result.err
+    assert "warning" not in result.err
+    estimated, near = (
+        dict(zip(table["parameter"].to_pylist(), table["estimate"].to_pylist(), strict=True))
+        for table in (read_table(tmp_path / f"{name}.parquet") for name in ("p", "near"))
+    )
+    dropped = [name for name, value in estimated.items() if value == 0.0]
+    moved = {name for name in dropped if near[name] != 0.0}
+    assert len(dropped) > 20
+    assert "Izz5" in moved  # Izz5 + Iyy6
+    assert len(moved) <= 6
+    assert all(abs(near[name]) < 0.005 for name in moved)
 
 
 def test_another_friction_model_needs_no_other_command(folder: Path, shell: Shell) -> None:

@@ -1,11 +1,14 @@
-"""An arm of two links for the tests of robots with a URDF."""
+"""An arm of two links and one of seven for the tests of robots with a URDF."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.arrays import Array
 
 URDF = """<robot name="two">
   <link name="base"/>
@@ -36,3 +39,30 @@ def described_arm(urdf: str, tmp_path: Path, lines: str) -> Robot:
     path = tmp_path / "robot.toml"
     path.write_text(f"title = 'two'\nurdf = '{urdf}'\n{lines}\n")
     return load(str(path))
+
+
+def seven_axes(centre: str = "0.01 0.02 0.1") -> str:
+    """The URDF of an arm whose axes are vertical and horizontal in turn, its links ever lighter."""
+    parts = ['<robot name="seven"><link name="l0"/>']
+    for i in range(1, 8):
+        m = 8 - i
+        parts.append(
+            f'<joint name="j{i}" type="revolute"><parent link="l{i - 1}"/><child link="l{i}"/>'
+            f'<origin xyz="0 0 0.2"/><axis xyz="{"0 0 1" if i % 2 else "0 1 0"}"/>'
+            '<limit lower="-3" upper="3" effort="99" velocity="9"/></joint>'
+            f'<link name="l{i}"><inertial><origin xyz="{centre}"/><mass value="{m}"/>'
+            f'<inertia ixx="{0.01 * m}" ixy="0" ixz="0" iyy="{0.01 * m}" iyz="0"'
+            f' izz="{0.004 * m}"/></inertial></link>'
+        )
+    return "".join([*parts, "</robot>"])
+
+
+def sines(joints: int, samples: int, amplitude: float, seed: int) -> Array:
+    """Position, velocity and acceleration (3, joints, samples): three sines per joint, 50 Hz."""
+    rng = np.random.default_rng(seed)
+    t = 0.02 * np.arange(samples)
+    w = 2.0 * np.pi * rng.uniform(0.1, 0.5, (joints, 3, 1))
+    phase = w * t + rng.uniform(0.0, 2.0 * np.pi, (joints, 3, 1))
+    a = amplitude / 3.0 * rng.uniform(0.2, 1.0, (joints, 3, 1))
+    waves = (a * np.sin(phase), a * w * np.cos(phase), -a * w * w * np.sin(phase))
+    return np.array([wave.sum(axis=1) for wave in waves])

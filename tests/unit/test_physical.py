@@ -1,16 +1,18 @@
-"""Bodies that can exist, nearest to identified parameters, and the URDF that has them."""
+"""Physically consistent inertias nearest to identified parameters, and the URDF with them."""
 
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
-from unit.arms import URDF, described_arm
+from unit.arms import URDF, described_arm, seven_axes, sines
 
+from scarid_cli.algorithms.regression.information import least_squares
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.physical import nearest, pseudo_inertia
+from scarid_cli.algorithms.robots.physical import Physical, nearest, pseudo_inertia
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -27,6 +29,15 @@ def robot(tmp_path: Path) -> Robot:
     return described_arm(str(path), tmp_path, "")
 
 
+def uncorrelated(robot: Robot, theta: Array, errors: Array) -> tuple[Physical, Array]:
+    """The nearest in these errors, nan for a free parameter, and by how many each one moved."""
+    covariance = np.diag(errors**2)
+    free = np.isnan(errors)
+    covariance[free, :] = covariance[:, free] = np.nan
+    found = nearest(robot, theta, covariance)
+    return found, (found.base - theta) / errors
+
+
 def torques_of(urdf: str, q: Array, dq: Array, ddq: Array) -> Array:
     """By Pinocchio's recursive Newton-Euler, without friction."""
     model = pinocchio.buildModelFromXML(urdf)
@@ -35,9 +46,11 @@ def torques_of(urdf: str, q: Array, dq: Array, ddq: Array) -> Array:
     return np.transpose([pinocchio.rnea(model, data, *sample).copy() for sample in samples])
 
 
-def test_parameters_of_bodies_that_exist_stay_and_give_those_bodies_back(robot: Robot) -> None:
-    found = nearest(robot, robot.apriori, np.full(len(robot.parameters), 0.01))
-    assert np.abs(found.moved).max() < 0.01
+def test_consistent_parameters_stay_and_give_the_bodies_of_the_urdf_back(robot: Robot) -> None:
+    errors = np.full(len(robot.parameters), 0.01)
+    found, moved = uncorrelated(robot, robot.apriori, errors)
+    assert np.abs(moved).max() < 0.01
+    assert found.distance == pytest.approx(np.linalg.norm(moved), abs=1e-6)
     np.testing.assert_allclose(found.base, robot.apriori, atol=1e-4)
     assert robot.body
     own = np.reshape(robot.body.standard, (2, 10))
@@ -48,7 +61,7 @@ def test_the_urdf_has_the_torques_of_the_base_parameters(robot: Robot) -> None:
     """Of parameters that were moved, for bodies alone: without friction and motor inertia."""
     rng = np.random.default_rng(0)
     theta = robot.apriori * rng.uniform(0.9, 1.1, len(robot.parameters))
-    found = nearest(robot, theta, 0.1 * np.abs(theta) + 1e-3)
+    found, _ = uncorrelated(robot, theta, 0.1 * np.abs(theta) + 1e-3)
     assert robot.body
     text = document(Path(robot.body.path).read_text(), robot, found, "scarid urdf --test")
     motion = rng.standard_normal((3, 2, 20))
@@ -60,35 +73,34 @@ def test_the_urdf_has_the_torques_of_the_base_parameters(robot: Robot) -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_parameters_of_no_body_are_moved_to_one_that_can_exist(robot: Robot, seed: int) -> None:
-    """A moment of inertia below what its first moment needs: positive definite again."""
+def test_inconsistent_parameters_become_consistent(robot: Robot, seed: int) -> None:
+    """Even a negative moment of inertia and negative friction."""
     rng = np.random.default_rng(seed)
     theta = robot.apriori + rng.normal(0.0, 0.5, len(robot.parameters))
     theta[robot.names.index("Iyy2")] = -0.2
     theta[robot.names.index("fv1")] = -1.0
     errors = np.full(len(theta), 0.1)
-    found = nearest(robot, theta, errors)
+    found, moved = uncorrelated(robot, theta, errors)
     for body in found.bodies:
         assert np.linalg.eigvalsh(pseudo_inertia(body))[0] > 0.0
     assert (
         min(value for name, value in found.axes.items() if name[:2] in ("Ia", "fv", "fs")) > -1e-6
     )
-    np.testing.assert_allclose(found.moved, (found.base - theta) / errors)
-    assert found.moved[robot.names.index("Iyy2")] > 2.0
+    assert moved[robot.names.index("Iyy2")] > 2.0
     np.testing.assert_allclose(found.base[robot.names.index("fv1")], 0.0, atol=1e-4)
 
 
 def test_no_feasible_point_is_nearer(robot: Robot) -> None:
-    """Random bodies that exist, and all on the way to them from the one found, are farther.
+    """Random clouds of point masses, and what lies between them and the nearest, are farther.
 
-    Real bodies are a convex set, so that this is what the nearest is.
+    Physically consistent bodies are a convex set, so this makes the nearest what it is.
     """
     rng = np.random.default_rng(3)
     theta = robot.apriori.copy()
     theta[robot.names.index("Iyy2")] = -0.05
     errors = np.full(len(theta), 0.1)
-    found = nearest(robot, theta, errors)
-    best = float(np.sum(found.moved**2))
+    found, moved = uncorrelated(robot, theta, errors)
+    best = float(np.sum(moved**2))
     names = [f"{s}{i}" for i in (1, 2) for s in
              ("Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz", "mx", "my", "mz", "m")]  # fmt: skip
     assert robot.body
@@ -118,8 +130,8 @@ def test_a_parameter_without_an_error_is_free(robot: Robot) -> None:
     theta[0] = 100.0
     errors = np.full(len(theta), 0.01)
     errors[0] = np.nan
-    found = nearest(robot, theta, errors)
-    assert np.abs(found.moved[1:]).max() < 0.01
+    found, moved = uncorrelated(robot, theta, errors)
+    assert np.abs(moved[1:]).max() < 0.01
     assert found.base[0] < 1.0
 
 
@@ -135,7 +147,7 @@ def test_everything_else_of_the_urdf_stays(robot: Robot) -> None:
     )
     Path(robot.body.path).with_name("tool.urdf").write_text(text)
     arm = load(str(Path(robot.body.path).with_name("tool.urdf")))
-    found = nearest(arm, arm.apriori, np.full(len(arm.parameters), 0.01))
+    found, _ = uncorrelated(arm, arm.apriori, np.full(len(arm.parameters), 0.01))
     written = document(text, arm, found, "scarid urdf")
     for part in (
         "<!-- a note -->",
@@ -152,4 +164,119 @@ def test_everything_else_of_the_urdf_stays(robot: Robot) -> None:
 def test_without_cvxpy_the_extra_is_named(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cvxpy", None)
     with pytest.raises(UsageFault, match=r"pip install 'scarid\[urdf\]'"):
-        nearest(robot, robot.apriori, np.ones(len(robot.parameters)))
+        nearest(robot, robot.apriori, np.eye(len(robot.parameters)))
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A seven-axis robot identified from five slow seconds (W), and a larger motion (cross)."""
+
+    robot: Robot
+    truth: Array
+    W: Array
+    cross: Array
+    weights: Array
+    estimates: Array
+    covariance: Array
+
+    def worst_r2(self, W: Array, theta: Array) -> float:
+        """The lowest R2 of the seven joints, of the true torques."""
+        tau = self.robot.torques(W, self.truth)
+        residual = tau - self.robot.torques(W, theta)
+        return float(np.min(1.0 - residual.var(axis=1) / tau.var(axis=1)))
+
+
+@pytest.fixture(scope="module", params=(1, 3, 5))
+def poor(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Experiment:
+    """Of 69 parameters, many are known in combinations only: the condition number is 1e5.
+
+    The bodies of the URDF have other centres of mass than those of the robot.
+    """
+    folder = tmp_path_factory.mktemp("seven")
+    (folder / "arm.urdf").write_text(seven_axes())
+    (folder / "true.urdf").write_text(seven_axes(centre="0.03 -0.04 0.05"))
+    robot, truth = load(str(folder / "arm.urdf")), load(str(folder / "true.urdf")).apriori
+    W = robot.regressor(*sines(7, 250, 0.3, request.param))
+    tau = robot.torques(W, truth).T
+    deviation = 0.1 * tau.std(axis=0)
+    noise = deviation * np.random.default_rng(request.param).standard_normal(tau.shape)
+    weights = np.ones_like(tau) / deviation
+    fit = least_squares(W, tau + noise, weights)
+    cross = robot.regressor(*sines(7, 450, 0.6, 50 + request.param))
+    covariance = fit.variance * fit.unit_covariance
+    return Experiment(robot, truth, W, cross, weights, fit.estimates, covariance)
+
+
+def test_correlated_estimates_keep_their_torques(poor: Experiment) -> None:
+    """The diagonal alone ruins them: R2 of the motion itself falls from .999 to .46 and .88."""
+    found = nearest(poor.robot, poor.estimates, poor.covariance)
+    assert poor.worst_r2(poor.W, poor.estimates) > 0.99
+    assert poor.worst_r2(poor.W, found.base) > 0.99
+    assert poor.worst_r2(poor.cross, found.base) > 0.97
+    alone = nearest(poor.robot, poor.estimates, np.diag(np.diag(poor.covariance)))
+    assert poor.worst_r2(poor.W, alone.base) < 0.9
+    assert poor.worst_r2(poor.cross, alone.base) < 0.9
+
+
+def test_consistent_parameters_are_no_farther_from_the_true_torques(poor: Experiment) -> None:
+    """The projection on a convex set that has the truth in it: for any noise."""
+    found = nearest(poor.robot, poor.estimates, poor.covariance)
+    before, after = (
+        np.linalg.norm(poor.weights * (poor.W @ (theta - poor.truth)))
+        for theta in (poor.estimates, found.base)
+    )
+    assert after < before
+
+
+def test_correlated_parameters_move_with_the_one_that_must(robot: Robot) -> None:
+    """Negative friction becomes zero; the others follow by the regression of normal variables."""
+    rng = np.random.default_rng(5)
+    count = len(robot.parameters)
+    root = 0.01 * np.eye(count) + 0.004 * rng.standard_normal((count, count))
+    covariance = root @ root.T
+    i = robot.names.index("fv1")
+    theta = robot.apriori.copy()
+    theta[[name[:2] in ("Ia", "fv", "fs") for name in robot.names]] = 1.0
+    theta[i] = -0.05
+    found = nearest(robot, theta, covariance)
+    expected = theta - covariance[:, i] / covariance[i, i] * theta[i]
+    np.testing.assert_allclose(found.base, expected, atol=1e-5)
+    assert found.distance == pytest.approx(0.05 / np.sqrt(covariance[i, i]), rel=1e-3)
+
+
+def test_dropping_parameters_is_least_squares_without_their_columns(robot: Robot) -> None:
+    """If its solution is physically consistent: nothing else moves the estimates."""
+    rng = np.random.default_rng(2)
+    W = robot.regressor(*rng.uniform(-2.0, 2.0, (3, 2, 100)))
+    theta = robot.apriori.copy()
+    theta[[name[:2] in ("Ia", "fv", "fs") for name in robot.names]] = 1.0
+    dropped = [robot.names.index(name) for name in ("off1", "off2", "fs2")]
+    theta[dropped] = 0.0
+    y = robot.torques(W, theta).T + 0.01 * rng.standard_normal((100, 2))
+    fit = least_squares(W, y)
+    kept = np.delete(np.arange(len(theta)), dropped)
+    found = nearest(robot, fit.estimates, fit.variance * fit.unit_covariance, dropped)
+    np.testing.assert_allclose(
+        found.base[kept], least_squares(W[:, :, kept], y).estimates, atol=1e-4
+    )
+    assert np.all(found.base[dropped] == 0.0)
+    assert found.axes["fs2"] == found.axes["off1"] == found.axes["off2"] == 0.0
+
+
+def test_dropped_parameters_stay_at_zero_where_masses_are_positive(robot: Robot) -> None:
+    """Iyy2 is the moment of inertia of link two and its motor: never zero, but small."""
+    theta = robot.apriori.copy()
+    names = ["off1", "fs2", "fv2", "Iyy2"]
+    dropped = [robot.names.index(name) for name in names]
+    covariance = 1e-4 * np.eye(len(theta))
+    theta[dropped] = covariance[dropped, :] = covariance[:, dropped] = 0.0
+    covariance[dropped, dropped] = np.nan
+    found = nearest(robot, theta, covariance, dropped)
+    assert np.all(found.base[dropped[:-1]] == 0.0)
+    assert all(found.axes[name] == 0.0 for name in names[:-1])
+    # The estimates come first: the first moment, 0.1 kg m, needs an inertia of its square by mass.
+    assert 0.0 < found.base[dropped[-1]] < robot.apriori[dropped[-1]]
+    others = np.delete(found.base - theta, dropped)
+    assert np.linalg.norm(others) / 1e-2 < 1.1
+    for body in found.bodies:
+        assert np.linalg.eigvalsh(pseudo_inertia(body))[0] > 0.0

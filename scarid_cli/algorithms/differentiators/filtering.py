@@ -1,4 +1,4 @@
-"""Filtering sliding-mode differentiator of Levant and Livne, which removes noise of small average.
+"""Filtering sliding-mode differentiator of Levant and Livne, for noise whose average is small.
 
 Causal. Levant and Livne, Eur. J. Control (2020), doi 10.1016/j.ejcon.2019.08.006: Euler steps for
 the filter and Taylor steps for the differentiator. The output is taken from the states after each

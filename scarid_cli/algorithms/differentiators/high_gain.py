@@ -6,7 +6,7 @@ Delay: none at constant jerk (4 states). On quintic moves of 0.8 to 2 s the acce
 Matched (exact): position and torque pass the low-pass between position and highest derivative,
 which does not overshoot.
 Rule: choose the bandwidth by the delay. More states mean less delay and more noise.
-bandwidth = 30 [rad/s]: of the poles.
+bandwidth = 30 [rad/s]: distance of all poles from the origin.
 states = 4: number of states, 3 to 5.
 """
 

@@ -11,7 +11,7 @@ delay = 0.1 [s]: the lag.
 noise = 5e-5: standard deviation of the position, at least resolution / 3.5.
 intensity = 10000: spectral density of the white noise, [rad2/s7] for 4 states.
 states = 4: number of states, 3 to 5.
-damping = frequency = 0: of the acceleration process [1/s], [rad/s].
+damping = frequency = 0: damping [1/s] and frequency [rad/s] of the acceleration process.
 gate = 20: number of standard deviations beyond which an innovation is taken for a glitch and left
 out (at most 3 in a row).
 """

@@ -11,7 +11,7 @@ Rule: none; nothing has to be known.
 noise = 0: standard deviation of the position; 0 to find all settings except the gate from the data.
 intensity = 0: spectral density of the white noise, [rad2/s7] for 4 states; 0 likewise.
 states = 4: number of states, 3 to 5.
-damping = frequency = 0: of the acceleration process [1/s], [rad/s].
+damping = frequency = 0: damping [1/s] and frequency [rad/s] of the acceleration process.
 gate = 20: number of standard deviations beyond which an innovation is taken for a glitch and left
 out (at most 3 in a row).
 """

@@ -7,7 +7,7 @@ Matched (exact): position and torque pass the symmetric low-pass of which the ac
 second difference.
 Rule: choose the longest window over which the motion is nearly a polynomial.
 window = 81: length in samples, odd.
-degree = 5: of the polynomial, at least 2 and below the window.
+degree = 5: degree of the polynomial, at least 2 and below the window.
 """
 
 from __future__ import annotations

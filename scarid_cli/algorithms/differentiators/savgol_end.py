@@ -9,7 +9,7 @@ polynomial is a difference, and velocity and acceleration are differences of it.
 Rule: choose the longest window over which the motion is nearly a polynomial. The noise of the
 acceleration falls with the length to the power 2.5.
 window = 45: length in samples.
-degree = 3: of the polynomial, at least 2 and below the window.
+degree = 3: degree of the polynomial, at least 2 and below the window.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ Delay: none.
 Matched (exact): position and torque pass the filter.
 Rule: choose the cutoff at five to ten times the bandwidth of the motion on a clean log;
 `scarid tune` finds it.
-cutoff = 8 [Hz]: of the filter, -3 dB in each direction.
-order = 4: of the filter in each direction.
+cutoff = 8 [Hz]: cutoff frequency, -3 dB in each direction.
+order = 4: order of the filter in each direction.
 """
 
 from __future__ import annotations

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
+from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, with_delay
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
@@ -52,17 +53,19 @@ class Problem:
 class Outcome:
     """What came of an estimation.
 
-    `found` and `diagnostics` are those of the parameters with the numbers `kept`, of `parameters`
-    in all; `reduction` is there if essential parameters were asked for. `delay` is that of the
-    torques [s] with its error, if it was fitted. `excitation` (parameters) is the root-mean-square
-    torque that a unit of each parameter makes.
+    `found` and `diagnostics` are those of the parameters with the numbers `kept`; `reduction` is
+    there if essential parameters were asked for. `full` is the fit of all parameters, before any
+    were dropped, with its `errors`. `delay` is that of the torques [s] with its error, if it was
+    fitted. `excitation` (parameters) is the root-mean-square torque that a unit of each parameter
+    makes.
     """
 
     found: Estimation
     diagnostics: Diagnostics
     kept: list[int]
-    parameters: int
     reduction: Essential | None
+    full: Fit
+    errors: Array
     delay: tuple[float, float] | None
     excitation: Array
     samples: int
@@ -84,7 +87,7 @@ def outcome(
     """
     whole = _problem(estimator, initial, state, subsample, record, align=align)
     problem, diagnostics = whole, whole.diagnostics()
-    reduction = None
+    errors, reduction = diagnostics.errors[: whole.own], None
     if reduce:
         noise = _noise(whole, diagnostics, float(subsample.counted))
         reduction = essential(whole.found.fit, noise, whole.own)
@@ -96,8 +99,9 @@ def outcome(
         found=replace(problem.found, fit=fit.part(slice(own))),
         diagnostics=diagnostics.part(own),
         kept=(reduction.kept if reduction else list(range(own)))[:own],
-        parameters=whole.own,
         reduction=reduction,
+        full=whole.found.fit.part(slice(whole.own)),
+        errors=errors,
         delay=(float(fit.estimates[own]), float(diagnostics.errors[own])) if align else None,
         excitation=_excitation(whole),
         samples=subsample.total,
@@ -140,6 +144,21 @@ def _noise(problem: Problem, diagnostics: Diagnostics, rows: float) -> Noise:
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = diagnostics.errors / problem.found.fit.standard_errors()
     return Noise(rows, float(np.mean(ratio[: problem.own] ** 2)), diagnostics.blocks)
+
+
+def covariance(full: Fit, errors: Array) -> Array | None:
+    """The covariance of all estimates, sized to their errors; None if it is not known.
+
+    The classical one, s^2 (W'W)^-1, times the median ratio of the variances to its own:
+    autocorrelated residuals increase all errors, but which directions the motion does not determine
+    stays the same. The robust covariance itself has a rank below the number of its blocks.
+    """
+    classical = full.variance * full.unit_covariance
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = errors**2 / np.diag(classical)
+    ratios = ratios[np.isfinite(ratios) & (ratios > 0.0)]
+    sized: Array = classical * (np.median(ratios) if len(ratios) else 1.0)
+    return sized if np.isfinite(sized).all() else None
 
 
 def _excitation(problem: Problem) -> Array:

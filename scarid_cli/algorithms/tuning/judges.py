@@ -96,14 +96,14 @@ def error_of_torques(robot: Robot, q: Array, tau: Array, h: float) -> Judge:
 
 
 @dataclass(frozen=True)
-class Motion:
+class SettledMotion:
     """Position, velocity, acceleration, torque (joints, rows), and which rows are settled."""
 
     signals: tuple[Array, Array, Array, Array]
     settled: Any
 
 
-def motion(methods: list[Any], q: Array, tau: Array, h: float) -> Motion:
+def motion(methods: list[Any], q: Array, tau: Array, h: float) -> SettledMotion:
     """The phase-matched motion of a whole record, with one method per joint."""
     parts, start, end = [], 0, 0
     for method, x, y in zip(methods, q, tau, strict=True):
@@ -114,10 +114,10 @@ def motion(methods: list[Any], q: Array, tau: Array, h: float) -> Motion:
         start, end = max(start, after), max(end, before)
     positions, dq, ddq, torques = (np.array(rows) for rows in zip(*parts, strict=True))
     at = np.arange(q.shape[1])
-    return Motion((positions, dq, ddq, torques), (at >= start) & (at < len(at) - end))
+    return SettledMotion((positions, dq, ddq, torques), (at >= start) & (at < len(at) - end))
 
 
-def identified(robot: Robot, motion: Motion, rows: Any) -> Array | None:
+def identified(robot: Robot, motion: SettledMotion, rows: Any) -> Array | None:
     """The least-squares estimates from some rows; None if they leave a parameter undetermined."""
     *kinematics, tau = (np.ascontiguousarray(signal[:, rows]) for signal in motion.signals)
     ls = Estimator()

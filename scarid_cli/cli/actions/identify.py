@@ -41,6 +41,8 @@ def run(
     method(**values)  # refuses settings before anything is read
     treatment = treatment_of(given)
     _require_possible(method, estimator, treatment, trace=trace, resumable=save or resumed)
+    if initial and not method.INITIAL:
+        raise UsageFault(f"--initial: {estimator} has no initial parameters; leave the option out")
     side, place = job.side_table(trace), job.side_text(save)
     table, arm = job.read_for(file, "motion", robot, torques=True)
     arm, treatment = for_robot(arm, treatment, given)
@@ -64,6 +66,8 @@ def run(
         place.write(saved(places[0], fixed))
     for line in summary_lines(arm.name, estimator, result.meta.extra):
         job.say(line)
+    if treatment.align and job.out.format == "csv":
+        job.say("CSV does not keep the delay: write -o FILE.parquet for validate to apply it")
 
 
 def _require_possible(

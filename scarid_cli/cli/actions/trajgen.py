@@ -22,36 +22,22 @@ from scarid_cli.stages import trajgen as stage
 
 MOST = 1e9  # a limit of this size is none
 
-Given = tuple[float, ...] | None
-
 
 def run(
-    job: Job,
-    *,
-    robot: str | None,
-    seed: int,
-    duration: float,
-    via: str | None,
-    home: Given,
-    rate: float,
-    q_max: Given,
-    q_min: Given,
-    dq_max: Given,
-    ddq_max: Given,
-    **kind: Any,
+    job: Job, *, robot: str | None, seed: int, duration: float, rate: float, **given: Any
 ) -> None:
     """Write the trajectory, and report how well it excites the robot."""
     arm = robot_of(robot)
     if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
         raise UsageFault("--rate and --duration must be positive")
-    limits = _limits(arm, q_min, q_max, dq_max, ddq_max)
-    start = _home(limits, home)
-    if via:
-        points, _ = job.read_for(via, "via", arm.name)
-        trajectory: Trajectory = through(stage.via_points(points, arm), limits, start)
+    limits = _limits(arm, given)
+    home = _home(arm, limits, given["home"])
+    if given["via"]:
+        points, _ = job.read_for(given["via"], "via", arm.name)
+        trajectory: Trajectory = through(stage.via_points(points, arm), limits, home)
     else:
         rng = np.random.default_rng(seed)
-        trajectory = _excitation(**kind).trajectory(limits, start, duration, rng)
+        trajectory = _excitation(given).trajectory(limits, home, duration, rng)
     stage.checked(trajectory, limits, rate)
     if wider := _wider(arm, limits):
         job.say(f"joint {wider}: --q-min or --q-max go beyond the limits of the description")
@@ -63,46 +49,43 @@ def run(
     )
 
 
-def _excitation(
-    *,
-    excitation: str,
-    sequential: bool,
-    segment: tuple[float, float] | None,
-    given: tuple[str, ...],
-) -> Any:
+def _excitation(given: dict[str, Any]) -> Any:
     """The excitation that was chosen, with the settings that were given."""
-    name = "sequential" if sequential else excitation
+    name = "sequential" if given["sequential"] else given["excitation"]
     method = EXCITATIONS.load(name)
     known = names_of(method)
-    values = dict(zip(("shortest", "longest"), segment or (), strict=False))
+    values = dict(zip(("shortest", "longest"), given["segment"] or (), strict=False))
     for key in values:
-        require_known(known, key, name, "--segment: ")
-    for key, numbers in settings(given, known, name):
-        (values[key],) = per_joint(numbers, 1, f"--set {key}")
+        require_known(known, key, name)
+    for key, numbers in settings(given["settings"], known, name):
+        if len(numbers) > 1:
+            raise UsageFault(f"--set {key}: give one value, not {len(numbers)}")
+        values[key] = numbers[0]
     return method(**values)
 
 
-def _limits(arm: Robot, q_min: Given, q_max: Given, dq_max: Given, ddq_max: Given) -> Limits:
+def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
     """The limits of the robot's description, or those that were given instead."""
     own = Limits.of(arm.joints)
 
-    def row(option: str, given: Given, otherwise: Array, *, positive: bool = True) -> Array:
-        values = np.array(per_joint(given, len(arm.joints), option)) if given else otherwise
+    def row(option: str, otherwise: Array, *, positive: bool = True) -> Array:
+        numbers = given[option.strip("-").replace("-", "_")]
+        values = np.array(per_joint(numbers, len(arm.joints), option)) if numbers else otherwise
         if not (np.abs(values) < MOST).all() or (positive and not (values > 0.0).all()):
-            lack = "" if given else f" (the description of {arm.name} gives none)"
+            lack = "" if numbers else f" (the description of {arm.name} gives none)"
             what = "positive and finite" if positive else "finite"
             raise UsageFault(f"{option}: the bounds must be {what}{lack}")
         return values
 
-    symmetric = bool(q_max) and not q_min
-    upper = row("--q-max", q_max, own.upper, positive=symmetric)
-    lower = row("--q-min", q_min, -upper if symmetric else own.lower, positive=False)
+    symmetric = bool(given["q_max"]) and not given["q_min"]
+    upper = row("--q-max", own.upper, positive=symmetric)
+    lower = row("--q-min", -upper if symmetric else own.lower, positive=False)
     for joint in np.flatnonzero(lower >= upper):
         raise UsageFault(
             f"--q-min: the lower bound of joint {joint + 1}, {lower[joint]:g}, must be below its "
             f"upper bound, {upper[joint]:g}"
         )
-    return Limits(lower, upper, row("--dq-max", dq_max, own.dq), row("--ddq-max", ddq_max, own.ddq))
+    return Limits(lower, upper, row("--dq-max", own.dq), row("--ddq-max", own.ddq))
 
 
 def _wider(arm: Robot, limits: Limits) -> str:
@@ -114,9 +97,9 @@ def _wider(arm: Robot, limits: Limits) -> str:
     )
 
 
-def _home(limits: Limits, given: Given) -> Array:
+def _home(arm: Robot, limits: Limits, given: tuple[float, ...] | None) -> Array:
     """The home position (joints), which must lie within the limits."""
-    home = np.array(per_joint(given, len(limits.dq), "--home")) if given else limits.home
+    home = np.array(per_joint(given, len(arm.joints), "--home")) if given else limits.home
     for (joint,) in limits.outside(home):
         raise UsageFault(
             f"--home: joint {joint + 1} at {home[joint]:g} is outside its position limits, "

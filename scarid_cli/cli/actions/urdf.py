@@ -3,24 +3,47 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.cli.job import Job, command_line
+from scarid_cli.cli.treatment import for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import urdf as stage
+from scarid_cli.stages.estimates import estimates_with_covariance
+from scarid_cli.stages.rows import Treatment
 
 
-def run(job: Job, *, robot: str, parameters: str, place: str, base: str | None) -> None:
-    """Write the URDF, and report how far the parameters had to move."""
+def run(
+    job: Job,
+    *,
+    robot: str,
+    parameters: str,
+    place: str,
+    base: str | None,
+    motion: str | None,
+    **given: Any,
+) -> None:
+    """Write the URDF, and report how far the parameters had to move, and what that costs."""
+    treatment = treatment_of(given)
+    if not motion and (treatment != Treatment() or given["smooth_sign"]):
+        raise UsageFault("options for the rows of a motion need --motion FILE")
     arm = load(robot)
     if not arm.body:
-        raise UsageFault(f"{robot}: has no URDF to put parameters into")
-    out = job.text(place)
-    side = job.output(base) if base else None
-    known = job.read(parameters, "parameters")
-    found = stage.physical(known, arm)
-    out.write(stage.document(Path(arm.body.path).read_text("utf-8"), arm, found, command_line()))
-    if side:
-        job.write(job.recorded(stage.base_table(known, arm, found)), side)
-    for line in stage.told(arm, found):
+        raise UsageFault(f"{robot}: has no URDF to write parameters into")
+    text = Path(arm.body.path).read_text("utf-8")
+    arm, treatment = for_robot(arm, treatment, given)
+    out, side = job.text(place), job.side_table(base)
+    table = job.read(parameters, "parameters")
+    identified = estimates_with_covariance(table, arm)
+    found = stage.physical(identified)
+    for line in stage.consistency_report(identified, found):
         job.say(line)
+    if motion:
+        log, _ = job.read_for(motion, "motion", robot, torques=True)
+        r2 = stage.r2_before_and_after(log, identified, found, treatment)
+        for line in stage.r2_report(*r2):
+            job.say(line)
+    out.write(stage.document(text, arm, found, command_line()))
+    if side:
+        job.write(job.recorded(stage.base_table(table, identified, found)), side)

@@ -1,0 +1,91 @@
+"""Torques of a motion, predicted by identified parameters, and how well they agree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.algorithms.regression.rows import Rows, delay_column, joined
+from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
+from scarid_cli.arrays import Array
+from scarid_cli.io.table import Table
+from scarid_cli.stages.parameters import Identified
+from scarid_cli.stages.rows import Treatment, treated
+
+Part = tuple[pa.RecordBatch | None, Rows]
+
+
+def predicted(
+    table: Table, models: Sequence[Identified], treatment: Treatment
+) -> Iterator[tuple[pa.RecordBatch | None, Rows, list[Array]]]:
+    """Each part of a motion with the torques (joints, samples) that each model predicts.
+
+    The models are of one robot and one delay, by which the torques are predicted earlier.
+    """
+    delay = models[0].delay
+    parts = treated(table, models[0].robot, treatment)
+    for (batch, rows), around, own in _surrounded(parts) if delay else _alone(parts):
+        torques = [model.robot.torques(around.W, model.theta) for model in models]
+        if delay:
+            torques = [tau + delay * delay_column(around, tau.T).T for tau in torques]
+        yield batch, rows, [np.ascontiguousarray(tau[:, own]) for tau in torques]
+
+
+def _alone(parts: Iterator[Part]) -> Iterator[tuple[Part, Rows, slice]]:
+    for part in parts:
+        yield part, part[1], slice(None)
+
+
+def _surrounded(parts: Iterator[Part]) -> Iterator[tuple[Part, Rows, slice]]:
+    """Each part, its rows with the sample before and the one after it, and where they are in these.
+
+    A part waits for the next one.
+    """
+    before: list[Rows] = []
+    held: Part | None = None
+    for part in chain(parts, [None]):
+        if held:
+            rows = held[1]
+            after = [part[1].part(slice(0, 1))] if part else []
+            around = joined([*before, rows, *after])
+            yield held, around, slice(len(before), len(before) + rows.samples)
+            before = [rows.part(slice(-1, None))]
+        held = part
+
+
+@dataclass
+class Tally:
+    """The sums of measured and predicted torques, joint by joint."""
+
+    joints: int
+    sums: list[Array] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.sums = [empty() for _ in range(self.joints)]
+
+    def add(self, rows: Rows, torques: Array) -> None:
+        """Take in the rows that count, with their predicted torques (joints, samples)."""
+        counts = [np.flatnonzero(scale) for scale in rows.scales.T]
+        self.sums = [
+            accumulate(sums, tau[at], own[at])
+            for sums, tau, own, at in zip(self.sums, rows.y.T, torques, counts, strict=True)
+        ]
+
+    @property
+    def qualities(self) -> list[Quality]:
+        return [Quality.of(sums) for sums in self.sums]
+
+
+def qualities(
+    table: Table, models: Sequence[Identified], treatment: Treatment
+) -> list[list[Quality]]:
+    """How well each model predicts each joint's torques."""
+    tallies = [Tally(len(model.robot.joints)) for model in models]
+    for _, rows, torques in predicted(table, models, treatment):
+        for tally, own in zip(tallies, torques, strict=True):
+            tally.add(rows, own)
+    return [tally.qualities for tally in tallies]
