@@ -66,6 +66,11 @@ def test_unknown_robot_is_refused_with_the_choice(name: str) -> None:
         load(name)
 
 
+def test_a_description_that_is_not_there_is_refused() -> None:
+    with pytest.raises(UsageFault, match=r"^nowhere/robot\.toml: no such file$"):
+        load("nowhere/robot.toml")
+
+
 @pytest.mark.parametrize(
     ("text", "instead", "complaint"),
     [

@@ -37,7 +37,7 @@ def read(path: str) -> Tree:
         import pinocchio
     except ImportError:
         raise UsageFault(f"{path}: a URDF needs Pinocchio: pip install 'scarid[urdf]'") from None
-    if not Path(path).is_file():
+    if not Path(path).exists():
         raise UsageFault(f"{path}: no such file")
     try:
         tree = ElementTree.fromstring(Path(path).read_text("utf-8"))
