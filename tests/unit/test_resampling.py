@@ -137,7 +137,7 @@ def test_a_clock_that_goes_back_is_told(sizes: tuple[int, ...]) -> None:
 def test_rows_that_are_each_there_twice_are_one_log() -> None:
     t = np.repeat(np.arange(50) * 0.01, 2)
     clocks: list[Clock] = []
-    result = collected(resample(table({"t": t, "q1": t}), 100.0, told=clocks.append))
+    result = collected(resample(table({"t": t, "q1": t}), 100.0, report=clocks.append))
     np.testing.assert_allclose(result.column("q1"), np.arange(50) * 0.01)
     assert clocks[0].repeated == 50
 
