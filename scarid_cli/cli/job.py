@@ -85,9 +85,18 @@ class Job:
         return self._shown(checked(table, kind, reads=reads, regular=regular) if kind else table)
 
     def read_for(
-        self, path: str, kind: str, robot: str | None, *, torques: bool = False
+        self,
+        path: str,
+        kind: str,
+        robot: str | None,
+        *,
+        torques: bool = False,
+        reference: bool = False,
     ) -> tuple[Table, Robot]:
-        """Open a table that has every column of this kind for each of the robot's joints."""
+        """Open a table that has every column of this kind for each of the robot's joints.
+
+        The command also reads its `torques`, which must be there, or the `reference`, if it is.
+        """
         table = conforming(self._opened_table(path), kind)
         arm = robot_of(robot, table)
         joints = range(1, len(arm.joints) + 1)
@@ -95,7 +104,8 @@ class Job:
         fields += ["tau{i}"] if torques else []
         columns = [name.replace("{i}", str(i)) for name in fields for i in joints]
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
-        columns += [name for name in table.columns if name.endswith("_ref")]
+        if reference:
+            columns += [name for name in table.columns if name.endswith("_ref")]
         return self._shown(checked(table, kind, reads=lambda _: columns)), arm
 
     def _opened_table(

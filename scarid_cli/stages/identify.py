@@ -76,7 +76,9 @@ def identify(
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
         checkpoint = Checkpoint.begun(state, table.period, holds=holds)
-    for batch, rows in treated(table, robot, treatment, checkpoint.seen):
+    for batch, rows in treated(
+        table, robot, treatment, checkpoint.seen, reference=estimator.REFERENCE
+    ):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))

@@ -42,10 +42,14 @@ class Treatment:
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of a motion that a robot's regression needs; its samples are h [s] apart."""
+    """The columns of a motion that a robot's regression needs; its samples are h [s] apart.
+
+    `reference`: the position and velocity that the robot was to follow as well, if they are there.
+    """
 
     robot: Robot
     h: float
+    reference: bool
 
     @property
     def names(self) -> list[str]:
@@ -57,10 +61,10 @@ class Columns:
         return matrix(batch, self.names).reshape(4, len(self.robot.joints), batch.num_rows)
 
     def references(self, columns: list[str], batch: pa.RecordBatch) -> Array | None:
-        """Position and velocity that the robot was to follow, where the table has them."""
+        """Position and velocity that the robot was to follow."""
         joints = range(1, len(self.robot.joints) + 1)
         names = [f"{signal}{i}_ref" for signal in ("q", "dq") for i in joints]
-        if not set(names) <= set(columns):
+        if not self.reference or not set(names) <= set(columns):
             return None
         return matrix(batch, names).reshape(2, len(self.robot.joints), batch.num_rows)
 
@@ -77,14 +81,14 @@ class Columns:
 
 
 def treated(
-    table: Table, robot: Robot, treatment: Treatment, seen: int = 0
+    table: Table, robot: Robot, treatment: Treatment, seen: int = 0, *, reference: bool = False
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     """The rows of the settled samples, batch by batch; or all at once, then without a batch.
 
-    `seen` is the number of the first sample.
+    `seen` is the number of the first sample; `reference`: the rows need that of the robot.
     """
     counted = 0
-    for batch, rows in _treated(table, robot, treatment, seen):
+    for batch, rows in _treated(table, Columns(robot, table.period, reference), treatment, seen):
         counted += int(np.count_nonzero(rows.scales))
         yield batch, rows
     if not counted:
@@ -97,9 +101,8 @@ def treated(
 
 
 def _treated(
-    table: Table, robot: Robot, treatment: Treatment, seen: int
+    table: Table, columns: Columns, treatment: Treatment, seen: int
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
-    columns = Columns(robot, table.period)
     slow = np.array(treatment.slow) if treatment.slow else None
     late = None if treatment.decimate else slow
     held, gaps = [], Gaps(table.period)

@@ -25,7 +25,8 @@ FORMATS = {"csv": "csv", "parquet": "parquet", "arrow": "arrows", "arrow-file": 
 CHAINS = [
     *[f"scarid differentiate --method {name} LOG" for name in DIFFERENTIATORS.names],
     *[
-        f"scarid differentiate LOG | scarid identify -q --estimator {name} --initial apriori"
+        f"scarid differentiate LOG | scarid identify -q --estimator {name}"
+        + (" --initial apriori" if ESTIMATORS.load(name).INITIAL else "")
         for name in ESTIMATORS.names
     ],
     "scarid filter LOG",

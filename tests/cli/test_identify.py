@@ -178,5 +178,5 @@ def test_the_delay_goes_with_the_parameters_to_validate(options: str, shell: She
         f" && scarid validate --parameters p.parquet m.parquet && {align} m.parquet -o p.csv"
     )
     assert result.status == 0, result.err
-    assert "torques are predicted" in result.err
+    assert "applied the delay that identify fitted" in result.err
     assert result.err.splitlines()[-1].startswith("scarid identify: CSV does not keep the delay")

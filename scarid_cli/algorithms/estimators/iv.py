@@ -35,6 +35,7 @@ SETTLING = 0.5  # s: until a simulation that starts at rest follows its referenc
 class Estimator(HoldingEstimator):
     robot: Robot | None = field(default=None, metadata=GIVEN)
 
+    REFERENCE: ClassVar[bool] = True
     ALIGNS: ClassVar[bool] = False
 
     def for_robot(self, robot: Robot) -> Estimator:

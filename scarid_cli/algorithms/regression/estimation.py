@@ -49,13 +49,14 @@ class BaseEstimator(ABC):
     """What all estimators share, and what each of them declares.
 
     RECURSIVE: there are estimates after every sample. HOLDS: the state is all rows so far.
-    INITIAL: the estimates start from initial parameters. ALIGNS: the delay of the torques can be
-    fitted as one more parameter.
+    INITIAL: the estimates start from initial parameters. REFERENCE: the rows need the reference
+    that the robot followed. ALIGNS: the delay of the torques can be fitted as one more parameter.
     """
 
     RECURSIVE: ClassVar[bool] = False
     HOLDS: ClassVar[bool] = False
     INITIAL: ClassVar[bool] = False
+    REFERENCE: ClassVar[bool] = False
     ALIGNS: ClassVar[bool] = True
 
     def for_robot(self, robot: Robot) -> Self:  # noqa: ARG002 (most need not know it)

@@ -32,4 +32,5 @@ def run(
     result = stage.validate(job.recorded(table), model, treatment=treatment, predictions=side)
     job.write(result)
     if model.delay:
-        job.say(f"torques are predicted {1e3 * model.delay:.3g} ms early, as identified")
+        delay = 1e3 * model.delay
+        job.say(f"applied the delay that identify fitted: torques lead by {delay:.3g} ms")
