@@ -47,7 +47,7 @@ class Estimator(BaseEstimator):
     INITIAL: ClassVar[bool] = True
     ALIGNS: ClassVar[bool] = False
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "spread", "acceleration_noise", "smoothing")
 
     def for_robot(self, robot: Robot) -> Estimator:

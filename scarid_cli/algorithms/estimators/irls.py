@@ -25,7 +25,7 @@ NORMAL = 0.6744897501960817  # median absolute value of a standard normal variab
 class Estimator(HoldingEstimator):
     k: float = 1.345
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "k")
 
     def fit(self, state: list[Rows]) -> Estimation:

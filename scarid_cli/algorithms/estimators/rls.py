@@ -32,7 +32,7 @@ class Estimator(BaseEstimator):
     RECURSIVE: ClassVar[bool] = True
     INITIAL: ClassVar[bool] = True
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "p0")
         for factor in self.factors:
             if not factor > 0.0:

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.settings import Validated
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
@@ -45,7 +46,7 @@ class Estimation:
     extra: dict[str, Any] = field(default_factory=dict)
 
 
-class BaseEstimator(ABC):
+class BaseEstimator(Validated, ABC):
     """What all estimators share, and what each of them declares.
 
     RECURSIVE: there are estimates after every sample. HOLDS: the state is all rows so far.
