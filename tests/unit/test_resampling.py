@@ -129,8 +129,8 @@ def test_other_columns_have_the_value_of_the_row_before() -> None:
 @pytest.mark.parametrize("sizes", [(), (1,), (2,)])
 def test_a_clock_that_goes_back_is_told(sizes: tuple[int, ...]) -> None:
     source = table({"t": np.array([0.0, 0.1, 0.05, 0.2]), "q1": np.zeros(4)}, sizes)
-    told = r"row 3, column t: found time that goes back by 0\.05 s"
-    with pytest.raises(BadData, match=told):
+    message = r"row 3, column t: found time that goes back by 0\.05 s"
+    with pytest.raises(BadData, match=message):
         Kept().batches.extend(resample(source, 10.0, 0.2).batches)
 
 
@@ -143,5 +143,5 @@ def test_rows_that_are_each_there_twice_are_one_log() -> None:
 
 
 def test_a_clock_that_stands_still_is_told() -> None:
-    with pytest.raises(BadData, match="column t: found time that never increases"):
+    with pytest.raises(BadData, match="column t: found a time that never increases"):
         collected(resample(table({"t": np.ones(5), "q1": np.ones(5)}), 100.0))
