@@ -88,7 +88,7 @@ clean:
 P := build/paper
 
 PRINTED := ed-fir 2smd astd p2smd
-OWN     := p2smd-matched kalman 2smd-mended astd-mended
+OWN     := p2smd-matched kalman 2smd-corrected astd-corrected
 ONLINE  := $(PRINTED) $(OWN)
 METHODS := $(ONLINE) kalman-wls
 
@@ -98,8 +98,8 @@ OPTIONS_2smd   := --method 2smd --preset table1 --no-match
 OPTIONS_astd   := --method astd --preset table1 --no-match
 OPTIONS_p2smd  := --method p2smd --preset table1 --no-match
 # The same, with gains that can follow the motion.
-OPTIONS_2smd-mended := --method 2smd --no-match
-OPTIONS_astd-mended := --method astd --no-match
+OPTIONS_2smd-corrected := --method 2smd --no-match
+OPTIONS_astd-corrected := --method astd --no-match
 # Our methods: the log is not filtered before the soft sensor, and torques are matched.
 OPTIONS_p2smd-matched := --method p2smd --preset table1 --match
 OPTIONS_kalman        := --method kalman --match

@@ -40,10 +40,10 @@ def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
             break
     else:
         return
-    yield from _shown(batches, held)
+    yield from _with_progress_line(batches, held)
 
 
-def _shown(batches: Iterator[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
+def _with_progress_line(batches: Iterator[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 

@@ -36,8 +36,8 @@ HEAVY = ["jinja2", "matplotlib", "numpy", "pandas", "pyarrow", "pyarrow.compute"
 def loaded(pipe_in: str, *words: str, cwd: Path) -> set[str]:
     """The heavy modules that a command has imported by its end."""
     script = (
-        f"import atexit, sys; told = lambda: [m for m in {HEAVY} if sys.modules.get(m)];"
-        "atexit.register(lambda: print(told(), file=sys.stderr));"
+        f"import atexit, sys; loaded = lambda: [m for m in {HEAVY} if sys.modules.get(m)];"
+        "atexit.register(lambda: print(loaded(), file=sys.stderr));"
         "from scarid_cli.__main__ import run; run()"
     )
     done = subprocess.run(
@@ -157,7 +157,7 @@ def test_the_version_says_that_the_compiled_kernels_run(scarid: Run) -> None:
     assert scarid("--version").out == f"scarid {__version__} (kernels: compiled)\n"
 
 
-def test_nothing_tells_where_it_was_made() -> None:
+def test_nothing_reveals_where_it_was_made() -> None:
     tracked = subprocess.run(
         ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout.split()

@@ -48,7 +48,9 @@ def test_a_saved_state_is_for_the_same_estimation(shell: Shell) -> None:
     ],
     ids=["missing", "not a state", "cut"],
 )  # fmt: skip
-def test_what_is_no_state_is_told(make: str, status: int, reported: str, shell: Shell) -> None:
+def test_a_file_that_is_not_a_saved_estimation_is_refused(
+    make: str, status: int, reported: str, shell: Shell
+) -> None:
     result = shell(f"{MOTION}; {make}; scarid identify --from state.npz motion.csv")
     assert result.status == status
     assert reported in result.err
@@ -151,7 +153,7 @@ def test_the_metadata_hold_the_verdict_and_its_numbers(shell: Shell) -> None:
         ("validate --parameters $SAMPLES/scara2.parameters.csv --skip 10000", "no rows to fit"),
     ],
 )
-def test_too_few_rows_are_told_in_one_line(options: str, reported: str, shell: Shell) -> None:
+def test_too_few_rows_are_reported_in_one_line(options: str, reported: str, shell: Shell) -> None:
     result = shell(f"{MOTION}; scarid {options} motion.csv -o out.csv; s=$?; ls; exit $s")
     assert result.status == 65
     assert reported in result.err
