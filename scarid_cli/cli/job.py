@@ -178,7 +178,7 @@ def robot_of(name: str | None, *tables: Table) -> Robot:
     from scarid_cli.algorithms.robots import reading
 
     stated = (table.meta.robot for table in tables if table.meta.robot)
-    return reading.load(name or next(stated, reading.DEFAULT))
+    return reading.load(name or next(stated, reading.DEFAULT_ROBOT))
 
 
 def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:

@@ -10,11 +10,11 @@ from typing import Any, TypeVar
 import click
 
 from scarid_cli.errors import OutputFailure, UsageFault
+from scarid_cli.io import FORMATS
 
 F = TypeVar("F", bound=Callable[..., Any])
-Decorator = Callable[[F], F]
 
-FORMATS = ("csv", "parquet", "arrow", "arrow-file")  # of io.writer, which `--help` does not load
+
 # The options of `table_output` and `common`: the job deals with them, not the command.
 SHARED = ("output", "format", "no_history", "quiet", "verbose", "debug")
 

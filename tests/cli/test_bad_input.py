@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from conftest import Result
 
-from scarid_cli.algorithms.robots.reading import FOLDER
+from scarid_cli.algorithms.robots.reading import ROBOTS
 
 Run = Callable[..., Result]
 
@@ -254,7 +254,7 @@ def test_via_points_that_break_the_bounds_are_refused(scarid: Run, tmp_path: Pat
 
 def test_a_robot_without_bounds_needs_them_as_options(scarid: Run, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text((FOLDER / "emps.toml").read_text("utf-8").replace("velocity_limit", "# v"))
+    path.write_text((ROBOTS / "emps.toml").read_text("utf-8").replace("velocity_limit", "# v"))
     result = scarid("trajgen", "--robot", path)
     assert result.status == 2
     assert "--dq-max: the bounds must be positive and finite (the description of" in result.err

@@ -26,7 +26,7 @@ from scarid_cli.algorithms.choices.registry import (
 )
 from scarid_cli.cli import COMMANDS, options
 from scarid_cli.cli import scarid as scarid_group
-from scarid_cli.io import schemas, writer
+from scarid_cli.io import schemas
 from scarid_cli.reporting import schemas as page
 
 Run = Callable[..., Result]
@@ -138,10 +138,6 @@ def test_the_readme_names_every_command() -> None:
 
 def test_the_page_on_tables_is_up_to_date() -> None:
     assert (ROOT / "docs" / "tables.md").read_text("utf-8") == page.page()
-
-
-def test_the_formats_of_the_help_are_those_of_the_writer() -> None:
-    assert options.FORMATS == writer.FORMATS
 
 
 def test_schemas_are_table_schemas() -> None:

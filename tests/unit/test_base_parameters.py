@@ -13,7 +13,7 @@ from unit.arms import URDF, described_arm
 from scarid_cli.algorithms.robots.base import independent
 from scarid_cli.algorithms.robots.coupled import CoupledInertia
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.robots.terms import Samples, StandardTerm
+from scarid_cli.algorithms.robots.terms import JointMotion, StandardTerm
 from scarid_cli.cli.robot import described
 from scarid_cli.errors import UsageFault
 
@@ -205,7 +205,7 @@ def test_a_coupled_motor_is_felt_by_both_joints(urdf: str, tmp_path: Path) -> No
     np.testing.assert_allclose(column["fsm2"], slopes * np.sign(angle_rate))
     own = np.array([k * k * dq[0], dq[1]])  # what the axes' own columns have
     np.testing.assert_allclose(column["fvm2"], slopes * angle_rate - own)
-    both = CoupledInertia(joint=1, other=2, ratio=k).column(Samples(dq, dq, ddq))
+    both = CoupledInertia(joint=1, other=2, ratio=k).column(JointMotion(dq, dq, ddq))
     own = np.array([k * k * ddq[0], ddq[1]])
     np.testing.assert_allclose([both[0], both[1]], slopes * (k * ddq[0] + ddq[1]) - own)
 

@@ -15,7 +15,7 @@ from scarid_cli.arrays import Array
 
 ORDER = 8
 RIPPLE = 0.05  # dB
-CUTOFF = 0.8  # of the new Nyquist frequency
+CUTOFF_OF_NYQUIST = 0.8  # of the new Nyquist frequency
 PADDING = 3 * ORDER
 
 
@@ -25,7 +25,7 @@ def decimated(rows: Rows, factor: int) -> Rows:
     Runs that are too short for the padding of the filter are left out; `at` numbers the new
     samples.
     """
-    sections = cheby1(ORDER, RIPPLE, CUTOFF / factor, output="sos")
+    sections = cheby1(ORDER, RIPPLE, CUTOFF_OF_NYQUIST / factor, output="sos")
     parts = []
     for run in runs(rows.at):
         part = rows.part(run)

@@ -20,7 +20,7 @@ from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Metadata
 from scarid_cli.stages import trajgen as stage
 
-MOST = 1e9  # a limit of this size is none
+LARGEST_LIMIT = 1e9  # a limit of this size is none
 
 
 def run(
@@ -71,7 +71,7 @@ def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
     def row(option: str, otherwise: Array, *, positive: bool = True) -> Array:
         numbers = given[option.strip("-").replace("-", "_")]
         values = np.array(per_joint(numbers, len(arm.joints), option)) if numbers else otherwise
-        if not (np.abs(values) < MOST).all() or (positive and not (values > 0.0).all()):
+        if not (np.abs(values) < LARGEST_LIMIT).all() or (positive and not (values > 0.0).all()):
             lack = "" if numbers else f" (the description of {arm.name} gives none)"
             what = "positive and finite" if positive else "finite"
             raise UsageFault(f"{option}: the bounds must be {what}{lack}")
