@@ -1,7 +1,8 @@
 """Savitzky-Golay: the polynomial that fits the window around each sample best.
 
-Fixed lag of half a window; at both ends of the record the first and the last window serve. Savitzky
-and Golay, Anal. Chem. 36 (1964) 1627; the same as scipy.signal.savgol_filter.
+Fixed lag of half a window; at both ends of the record the polynomial of the first or the last whole
+window is evaluated. Savitzky and Golay, Anal. Chem. 36 (1964) 1627; the same as
+scipy.signal.savgol_filter.
 Delay: none beyond the wait.
 Matched (exact): position and torque pass the symmetric low-pass of which the acceleration is the
 second difference.
