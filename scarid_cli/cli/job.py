@@ -82,7 +82,7 @@ class Job:
         must be regular unless `regular` is false. `through` translates the bytes.
         """
         table = self._opened_table(path, through)
-        return self._shown(checked(table, kind, reads=reads, regular=regular) if kind else table)
+        return self._reported(checked(table, kind, reads=reads, regular=regular) if kind else table)
 
     def read_for(
         self,
@@ -106,7 +106,7 @@ class Job:
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
         if reference:
             columns += [name for name in table.columns if name.endswith("_ref")]
-        return self._shown(checked(table, kind, reads=lambda _: columns)), arm
+        return self._reported(checked(table, kind, reads=lambda _: columns)), arm
 
     def _opened_table(
         self, path: str, through: Callable[[ByteSource], ByteSource] | None = None
@@ -118,7 +118,7 @@ class Job:
         source = self._opened(path)
         return open_table(through(source) if through else source)
 
-    def _shown(self, table: Table) -> Table:
+    def _reported(self, table: Table) -> Table:
         """The table, reported with --verbose and followed by a progress line on a terminal."""
         if self._verbose:
             rate = f"{1.0 / table.period:.6g} Hz, " if table.period else ""
@@ -178,7 +178,7 @@ def robot_of(name: str | None, *tables: Table) -> Robot:
     from scarid_cli.algorithms.robots import reading
 
     stated = (table.meta.robot for table in tables if table.meta.robot)
-    return reading.load(name or next(stated, reading.DEFAULT))
+    return reading.load(name or next(stated, reading.DEFAULT_ROBOT))
 
 
 def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:

@@ -1,4 +1,4 @@
-"""Let a simulated robot follow a trajectory, and log its sensors."""
+"""Simulate a robot that follows a trajectory in closed loop, and log its sensors."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ SIGNALS = ("q", "dq", "ddq")
 def simulate(table: Table, loop: ClosedLoop, log_rate: float, *, truth: bool) -> Table:
     """The log, at the log rate [Hz], of a robot that follows a trajectory in closed loop.
 
-    The robot starts at rest at the first position of the trajectory. The log has the reference
-    beside the measured columns; `truth` adds the true ones.
+    The robot starts at rest at the first position of the trajectory. The log has measured signals
+    and the reference; `truth` adds the true signals.
     """
     period = table.period
     ratio = _whole(loop.control_rate * period, "the trajectory's rate")
@@ -64,8 +64,8 @@ def _rows(
         except DivergedError as error:
             when = start + (tick + error.tick) / loop.control_rate
             raise BadData(
-                f"the closed loop blew up at t = {when:.4g} s; lower the gains or raise the "
-                "control rate"
+                f"the closed loop became unstable at t = {when:.4g} s; lower the gains or raise "
+                "the control rate"
             ) from None
         ticks = np.arange(-tick % keep, log.q.shape[1], keep)
         t = start + (tick + ticks) / loop.control_rate

@@ -1,4 +1,4 @@
-"""Check a trajectory, tabulate it, and judge how well it excites a robot."""
+"""Check a trajectory against limits, tabulate it, and judge how well it excites a robot."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scarid_cli.algorithms.trajectories.via import ViaPath
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Metadata, Table, doubles, number
 
-ROWS = 4096
+BATCH_ROWS = 4096
 
 
 def via_points(table: Table, robot: Robot) -> ViaPath:
@@ -28,7 +28,7 @@ def via_points(table: Table, robot: Robot) -> ViaPath:
 
 
 def checked(trajectory: Trajectory, limits: Limits, rate: float) -> Trajectory:
-    """The trajectory itself, if every row of its table, at the rate [Hz], keeps the limits."""
+    """The trajectory itself, if every row of its table at this rate [Hz] is within the limits."""
     for t, motion in _samples(trajectory, rate):
         limits.require(t, *motion)
     return trajectory
@@ -65,6 +65,6 @@ def conditioning(trajectory: Trajectory, robot: Robot, rate: float) -> str:
 def _samples(trajectory: Trajectory, rate: float) -> Iterator[tuple[Array, tuple[Array, ...]]]:
     """The times [s] of the rows of the table, and the motion at these times, in batches."""
     count = round(trajectory.duration * rate) + 1
-    for start in range(0, count, ROWS):
-        t = np.arange(start, min(start + ROWS, count)) / rate
+    for start in range(0, count, BATCH_ROWS):
+        t = np.arange(start, min(start + BATCH_ROWS, count)) / rate
         yield t, trajectory.sample(t)

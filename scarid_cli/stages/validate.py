@@ -1,4 +1,4 @@
-"""Predict torques with identified parameters, and measure how well."""
+"""Measure how well identified parameters predict the torques of a motion."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def validate(
 ) -> Table:
     """The metrics of the torques that identified parameters predict for a motion, a row per joint.
 
-    The torques are predicted as early as those that the parameters were identified from.
+    The predicted torques lead the motion by the delay that was fitted with the parameters.
     `predictions` receives the measured and predicted torques of every sample (Fig. 7-8).
     """
     robot = model.robot

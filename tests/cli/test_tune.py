@@ -85,7 +85,7 @@ def test_what_is_set_by_hand_comes_last(log: Path, tmp_path: Path, scarid: Run) 
         ),
     ],
 )
-def test_a_wrong_file_of_settings_is_told_in_one_line(
+def test_a_wrong_file_of_settings_is_reported_in_one_line(
     text: str, status: int, message: str, log: Path, tmp_path: Path, scarid: Run
 ) -> None:
     saved = tmp_path / "x.toml"

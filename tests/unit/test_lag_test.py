@@ -27,7 +27,7 @@ def test_the_neighbours_explain_torques_of_another_instant(late: int) -> None:
     assert share(plain(rows.W[20:-20], np.roll(rows.y, late, axis=0)[20:-20], H)) > 0.5
 
 
-def test_rows_without_neighbours_tell_nothing() -> None:
+def test_rows_without_neighbours_give_no_lag_share() -> None:
     """Not 0, which would be the best that can be said of a record."""
     rows = regression(8000)
     assert np.isnan(share(rows.taken(np.arange(0, 8000, 50))))

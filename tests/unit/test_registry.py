@@ -145,7 +145,7 @@ def test_presets_set_what_there_is_to_set(registry: Registry, name: str) -> None
         assert {key: getattr(made, key) for key in values} == values
 
 
-def test_documented_settings_are_told_from_rules_and_prose() -> None:
+def test_documented_settings_are_reported_from_rules_and_prose() -> None:
     """The parser above, on what a docstring may say."""
     text = """A method (paper eq. 1). Rule: eta = 2 L^(1/3), gamma = 1 / (wanted delay): try it.
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.algorithms.robots.terms import Column, Samples, Term
+from scarid_cli.algorithms.robots.terms import Column, JointMotion, Term
 
 
 class PlanarTerm(Term):
@@ -22,7 +22,7 @@ class ZZ1R(PlanarTerm):
 
     NAME = "ZZ1R"
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         return {0: samples.ddq[0]}
 
 
@@ -31,7 +31,7 @@ class ZZ2(PlanarTerm):
 
     NAME = "ZZ2"
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         both = samples.ddq[0] + samples.ddq[1]
         return {0: both, 1: both}
 
@@ -41,7 +41,7 @@ class L1MX2(PlanarTerm):
 
     NAME = "L1MX2"
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         q, dq, ddq = samples.q, samples.dq, samples.ddq
         c, s = np.cos(q[1]), np.sin(q[1])
         return {
@@ -55,7 +55,7 @@ class L1MY2(PlanarTerm):
 
     NAME = "L1MY2"
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         q, dq, ddq = samples.q, samples.dq, samples.ddq
         c, s = np.cos(q[1]), np.sin(q[1])
         return {
@@ -74,7 +74,7 @@ class MX1R(PlanarTerm):
     NAME = "MX1R"
     gravity: float = 0.0
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         return {0: self.gravity * np.sin(samples.q[0])}
 
 
@@ -89,7 +89,7 @@ class MX2(PlanarTerm):
     length: float = 0.0
     gravity: float = 0.0
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         weight = self.gravity * np.sin(samples.q[0] + samples.q[1])
         inertial = L1MX2().column(samples)
         return {joint: self.length * inertial[joint] + weight for joint in (0, 1)}

@@ -12,7 +12,7 @@ from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
-from scarid_cli.cli.pairs import require_known, settings
+from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.treatment import for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
@@ -113,14 +113,10 @@ def _fixed(
     }
 
 
-def _settings(method: Any, name: str, options: dict[str, Any]) -> dict[str, Any]:
+def _settings(method: Any, name: str, options: dict[str, Any]) -> dict[str, float]:
     """The settings that were given, which must be some of the estimator's."""
     known = names_of(method)
-    given: dict[str, Any] = {}
-    for key, values in settings(options["settings"], known, name):
-        if len(values) > 1:
-            raise UsageFault(f"--set {key}: give one value, not {len(values)}")
-        given[key] = values[0]
+    given = single_settings(options["settings"], known, name)
     if options["p0"] is not None:
         given["p0"] = options["p0"]
     if options["forgetting"] is not None:
