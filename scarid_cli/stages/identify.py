@@ -13,7 +13,7 @@ from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiab
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.lag_test import LAG
+from scarid_cli.algorithms.statistics.misalignment import LAG
 from scarid_cli.algorithms.statistics.outcome import Outcome, outcome
 from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
 from scarid_cli.algorithms.statistics.verdict import InUse, combination

@@ -20,7 +20,7 @@ from scarid_cli.algorithms.statistics.jackknife import (
     jackknife,
     jackknife_of_blocks,
 )
-from scarid_cli.algorithms.statistics.lag_test import lag_share
+from scarid_cli.algorithms.statistics.misalignment import lag_share
 from scarid_cli.algorithms.statistics.residuals import JointResidual, residuals
 from scarid_cli.arrays import Array
 

@@ -21,21 +21,23 @@ FLAT = 1e-9  # of the largest eigenvalue: directions below it are not in the lag
 def lag_share(rows: Rows, weights: Array, parameters: int) -> float:
     """The share of the residual that W one lag earlier and later explains, from 0 to 1.
 
-    It is nan if no row has both neighbours. The rows of a joint are weighted by `weights` (joints),
-    the inverse standard deviations of the residuals. Slow rows should have been left out, because
-    Coulomb friction near rest is not a matter of delay. The first `parameters` columns of W belong
-    to the robot; only these are lagged.
+    It is nan unless more rows have both neighbours than there are unknowns. The rows of a joint are
+    weighted by `weights` (joints), the inverse standard deviations of the residuals. Slow rows
+    should have been left out, because Coulomb friction near rest is not a matter of delay. The
+    first `parameters` columns of W belong to the robot; only these are lagged.
     """
     if not weights.any():
         return 0.0  # no joint has a residual to explain
     lag = max(1, round(LAG / rows.h))
     p = rows.W.shape[2]
-    total = np.zeros((p + 2 * parameters + 1,) * 2)
+    unknowns, counted = p + 2 * parameters, 0
+    total = np.zeros((unknowns + 1, unknowns + 1))
     for run in runs(rows.at):
         for part in _pieces(rows.part(run), lag):
             wide = _lagged(part, lag, weights, parameters)
             total += wide.T @ wide
-    if not total[-1, -1] > 0.0:
+            counted += int(np.count_nonzero(wide[:, -1]))
+    if counted <= unknowns:
         return float("nan")
     own = [*range(p), -1]
     plain = _unexplained(total[np.ix_(own, own)])
