@@ -107,8 +107,8 @@ def _biased(diagnostics: Diagnostics) -> list[str]:
         return []
     if np.isnan(diagnostics.lag_share):
         return [
-            "not tested for bias: too few rows have those 25 ms before and after them; use a longer "
-            "log, or leave out fewer rows"
+            "not tested for bias: too few rows have those 25 ms before and after them; use a "
+            "longer log, or leave out fewer rows"
         ]
     return [
         f"biased: the motion 25 ms before and after explains {100 * diagnostics.lag_share:.0f} % "
