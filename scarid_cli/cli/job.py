@@ -99,10 +99,9 @@ class Job:
         """
         table = conforming(self._opened_table(path), kind)
         arm = robot_of(robot, table)
-        joints = range(1, len(arm.joints) + 1)
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
-        columns = [name.replace("{i}", str(i)) for name in fields for i in joints]
+        columns = schemas.of_joints(len(arm.joints), *fields)
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
         if reference:
             columns += [name for name in table.columns if name.endswith("_ref")]
