@@ -41,14 +41,14 @@ class Job:
         self.left_out: list[TooShort] = []
 
     def output(self, path: str, wanted: str | None = None) -> Output:
-        """Where a table will go; open it before anything is read, so that mistakes show at once."""
+        """The output for a table; opened before anything is read, so that mistakes show at once."""
         self._require_unused(path)
         output = Output(path, wanted)
         self.outputs.append(output)
         return output
 
     def text(self, path: str) -> Document:
-        """Where a document beside the tables will go; open it likewise."""
+        """The output for a document beside the tables, which is opened early as well."""
         self._require_unused(path)
         document = Document(path)
         self.outputs.append(document)

@@ -144,7 +144,7 @@ def of_joints(joints: int, *names: str) -> list[str]:
 
 
 def joints_of(columns: list[str], prefix: str) -> int:
-    """How many of the columns `prefix1`, `prefix2`, ... there are before the first missing one."""
+    """The number of joints with a column `prefix1`, `prefix2`, ..., up to the first missing one."""
     count = 0
     while f"{prefix}{count + 1}" in columns:
         count += 1
