@@ -41,14 +41,14 @@ class Job:
         self.left_out: list[TooShort] = []
 
     def output(self, path: str, wanted: str | None = None) -> Output:
-        """Where a table will go; open it before anything is read, so that mistakes show at once."""
+        """The output for a table; opened before anything is read, so that mistakes show at once."""
         self._require_unused(path)
         output = Output(path, wanted)
         self.outputs.append(output)
         return output
 
     def text(self, path: str) -> Document:
-        """Where a document beside the tables will go; open it likewise."""
+        """The output for a document beside the tables, which is opened early as well."""
         self._require_unused(path)
         document = Document(path)
         self.outputs.append(document)
@@ -99,10 +99,9 @@ class Job:
         """
         table = conforming(self._opened_table(path), kind)
         arm = robot_of(robot, table)
-        joints = range(1, len(arm.joints) + 1)
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
-        columns = [name.replace("{i}", str(i)) for name in fields for i in joints]
+        columns = schemas.of_joints(len(arm.joints), *fields)
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
         if reference:
             columns += [name for name in table.columns if name.endswith("_ref")]

@@ -92,9 +92,7 @@ def identify(
     if keep:
         keep(checkpoint)
     meta = replace(table.meta, kind="parameters", robot=robot.name)
-    scores = found.found.scores
-    weighted = scores is not None and scores.whitening is not None
-    in_use = InUse(treatment.slow, treatment.align, weighted, treatment.essential)
+    in_use = InUse(treatment.slow, treatment.align, found.found.weighted, treatment.essential)
     return parameters(found, robot, meta, in_use, variance=variance)
 
 

@@ -11,6 +11,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.logs import JOINT, LogFormat
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault, bad_data
+from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, number, with_columns
 from scarid_cli.stages.adapt import adapted
 
@@ -49,7 +50,7 @@ def at_joints(table: Table, robot: Robot, log: LogFormat) -> Table:
     transforms: dict[tuple[str, ...], Transform] = {}
     for names, transform in _groups(log):
         for name in names:
-            columns = [name.replace("{i}", str(i)) for i in range(1, len(robot.joints) + 1)]
+            columns = of_joints(len(robot.joints), name)
             present = [column in table.columns for column in columns]
             if any(present) and not all(present):
                 raise bad_data(

@@ -133,13 +133,11 @@ def _judged(found: Outcome, robot: Robot, labels: Labels, in_use: InUse) -> dict
 
 def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
     """The remaining metadata of the estimation."""
-    fit, scores = found.found.fit, found.found.scores
+    fit = found.found.fit
     # The residual of weighted rows is near 1 and means nothing; `joints` has that of each joint.
-    weighted = scores is not None and scores.whitening is not None
+    meaningful = fit.variance >= 0.0 and not found.found.weighted
     extra: dict[str, Any] = {
-        "residual_deviation": float(np.sqrt(fit.variance))
-        if fit.variance >= 0.0 and not weighted
-        else None,
+        "residual_deviation": float(np.sqrt(fit.variance)) if meaningful else None,
         "samples": found.samples,
         "excitation": dict(zip(labels.names, found.excitation.tolist(), strict=False)),
         "joints": [asdict(joint) for joint in found.diagnostics.joints],

@@ -13,6 +13,7 @@ from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, without
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
+from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, segments_of, settled_runs
 
 GAP_DURATION = 0.05  # s: longer than the intervals in the subsample of a long record
@@ -52,22 +53,19 @@ class Columns:
     h: float
     reference: bool
 
-    @property
-    def names(self) -> list[str]:
-        joints = range(1, len(self.robot.joints) + 1)
-        return [f"{signal}{i}" for signal in ("q", "dq", "ddq", "tau") for i in joints]
-
     def motion(self, batch: pa.RecordBatch) -> Array:
         """Position, velocity, acceleration and torque (4, joints, samples)."""
-        return matrix(batch, self.names).reshape(4, len(self.robot.joints), batch.num_rows)
+        joints = len(self.robot.joints)
+        names = of_joints(joints, "q{i}", "dq{i}", "ddq{i}", "tau{i}")
+        return matrix(batch, names).reshape(4, joints, batch.num_rows)
 
     def references(self, columns: list[str], batch: pa.RecordBatch) -> Array | None:
         """The reference position and velocity (2, joints, samples), if needed and present."""
-        joints = range(1, len(self.robot.joints) + 1)
-        names = [f"{signal}{i}_ref" for signal in ("q", "dq") for i in joints]
+        joints = len(self.robot.joints)
+        names = of_joints(joints, "q{i}_ref", "dq{i}_ref")
         if not self.reference or not set(names) <= set(columns):
             return None
-        return matrix(batch, names).reshape(2, len(self.robot.joints), batch.num_rows)
+        return matrix(batch, names).reshape(2, joints, batch.num_rows)
 
     def rows(self, columns: list[str], batch: pa.RecordBatch, at: int, slow: Array | None) -> Rows:
         """The rows of a batch whose first sample has the number `at`."""

@@ -12,7 +12,8 @@ from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, LoopSta
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
 from scarid_cli.errors import BadData, UsageFault
-from scarid_cli.io.table import Table, doubles, matrix, number
+from scarid_cli.io.schemas import of_joints
+from scarid_cli.io.table import Table, doubles, matrix, motion_fields, number, numbers
 
 SIGNALS = ("q", "dq", "ddq")
 
@@ -39,16 +40,13 @@ def _whole(ratio: float, what: str) -> int:
 
 
 def _schema(robot: Robot, *, truth: bool) -> pa.Schema:
-    def columns(prefix: str, suffix: str, units: list[str]) -> list[pa.Field]:
-        return [number(f"{prefix}{i}{suffix}", unit) for i, unit in enumerate(units, start=1)]
-
     torque = [joint.torque_unit for joint in robot.joints]
-    motion = [[joint.unit + per_time for joint in robot.joints] for per_time in ("", "/s", "/s2")]
-    fields = [number("t", "s"), *columns("q", "", motion[0]), *columns("tau", "", torque)]
-    for suffix in ("_ref", "_true") if truth else ("_ref",):
-        for name, units in zip(SIGNALS, motion, strict=True):
-            fields += columns(name, suffix, units)
-    return pa.schema(fields + (columns("tau", "_true", torque) if truth else []))
+    units = [joint.unit for joint in robot.joints]
+    fields = [number("t", "s"), *numbers("q{i}", units), *numbers("tau{i}", torque)]
+    fields += motion_fields(units, "_ref")
+    if truth:
+        fields += [*motion_fields(units, "_true"), *numbers("tau{i}_true", torque)]
+    return pa.schema(fields)
 
 
 def _rows(
@@ -78,7 +76,7 @@ def _rows(
 
 def _references(table: Table, joints: int, ratio: int) -> Iterator[tuple[float, Motion]]:
     """The time [s] of the first row, and the reference at the ticks of the loop, in chunks."""
-    columns = [f"{name}{i}_ref" for name in SIGNALS for i in range(1, joints + 1)]
+    columns = of_joints(joints, *(f"{name}{{i}}_ref" for name in SIGNALS))
     period = table.period
     start: float | None = None
     last = np.empty((3 * joints, 0))

@@ -13,7 +13,7 @@ from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.algorithms.trajectories.trajectory import Trajectory
 from scarid_cli.algorithms.trajectories.via import ViaPath
 from scarid_cli.arrays import Array
-from scarid_cli.io.table import Metadata, Table, doubles, number
+from scarid_cli.io.table import Metadata, Table, doubles, motion_fields, number
 
 BATCH_ROWS = 4096
 
@@ -37,10 +37,7 @@ def checked(trajectory: Trajectory, limits: Limits, rate: float) -> Trajectory:
 def tabulate(trajectory: Trajectory, robot: Robot, rate: float, meta: Metadata) -> Table:
     """The reference as a table, one row every 1 / rate [s]."""
     units = [joint.unit for joint in robot.joints]
-    fields = [number("t", "s")]
-    for name, per_time in (("q", ""), ("dq", "/s"), ("ddq", "/s2")):
-        fields += [number(f"{name}{i}_ref", u + per_time) for i, u in enumerate(units, start=1)]
-    schema = pa.schema(fields)
+    schema = pa.schema([number("t", "s"), *motion_fields(units, "_ref")])
     return Table("trajgen", schema, meta, _rows(trajectory, rate, schema))
 
 

@@ -52,8 +52,7 @@ class Record:
 
     @classmethod
     def of(cls, table: Table, joints: int, *, torques: bool) -> Record:
-        numbers = range(1, joints + 1)
-        names = [f"{s}{i}" for s in ("q", "tau")[: 1 + torques] for i in numbers]
+        names = schemas.of_joints(joints, *("q{i}", "tau{i}")[: 1 + torques])
         parts = (
             np.concatenate([matrix(batch, names) for batch in segment.batches], axis=1)
             for segment in segments(table)
@@ -101,8 +100,9 @@ def _for_positions(
         likelihood = judges.negative_log_likelihood(q, h)
         fitted = judges.fit(method, q, h)
         for tried in (method, fitted) if values(method)["noise"] else (fitted,):
-            yield Tried(name, joint, LIKELIHOOD, _judged(tried, likelihood), tried is fitted)
-        yield Tried(name, joint, SMOOTHER, _judged(fitted, judge), best=True)
+            trial = search.Trial(tried, likelihood(tried))
+            yield Tried(name, joint, LIKELIHOOD, trial, tried is fitted)
+        yield Tried(name, joint, SMOOTHER, search.Trial(fitted, judge(fitted)), best=True)
         return
     trials = search.search(method, method.TUNED, judge, h, seed)
     yield from _marked(name, joint, SMOOTHER, trials, progress)
@@ -120,10 +120,6 @@ def _for_torques(
         ranges = {"intensity": Range(1e-12 * method.intensity, 1e2 * method.intensity)}
     trials = search.search(method, ranges, judge, record.h, seed)
     yield from _marked(name, None, TORQUES, trials, progress)
-
-
-def _judged(method: Any, judge: search.Judge) -> search.Trial:
-    return search.Trial(method, judge(method))
 
 
 def _marked(

@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 
 from scarid_cli.algorithms.choices.registry import (
+    ALGORITHMS,
     DIFFERENTIATORS,
     ESTIMATORS,
     EXCITATIONS,
-    FOLDER,
     Registry,
 )
 from scarid_cli.algorithms.choices.settings import names_of
@@ -52,7 +52,7 @@ def module_of(registry: Registry, name: str) -> Any:
 
 @pytest.mark.parametrize("folder", REGISTRIES)
 def test_names_are_those_of_the_modules(folder: str) -> None:
-    stems = {path.stem for path in (FOLDER / folder).glob("*.py")} - {"__init__"}
+    stems = {path.stem for path in (ALGORITHMS / folder).glob("*.py")} - {"__init__"}
     names = REGISTRIES[folder].names
     assert names == sorted(names)
     assert {name.replace("-", "_") for name in names} == {stem.lstrip("_") for stem in stems}

@@ -56,7 +56,7 @@ class Estimator(BaseEstimator):
 
     def init(self, initial: Array) -> FilterState:
         if not np.any(initial):
-            raise UsageFault("ekf needs initial parameters: --initial apriori, or a table")
+            raise UsageFault("ekf needs initial parameters: give --initial apriori, or a table")
         assert self.robot is not None
         n = len(self.robot.joints)
         deviations = self.spread * np.where(initial == 0.0, 0.1, np.abs(initial))
@@ -89,7 +89,10 @@ class Estimator(BaseEstimator):
         assert self.robot is not None
         n = 2 * len(self.robot.joints)
         if not np.isfinite(state.x).all():
-            raise UsageFault("ekf diverged; start nearer (--initial) or smooth friction more")
+            raise UsageFault(
+                "ekf diverged; give better initial parameters (--initial) or a larger smoothing "
+                "of friction (--set smoothing=V)"
+            )
         fit = Fit(
             estimates=state.x[n:],
             unit_covariance=state.covariance[n:, n:],

@@ -40,14 +40,20 @@ class Estimator(HoldingEstimator):
 
     def for_robot(self, robot: Robot) -> Estimator:
         if robot.control is None:
-            raise UsageFault(f"iv: robot {robot.name} has no controller to simulate it with")
+            raise UsageFault(
+                f"iv: robot {robot.name} has no controller to simulate it with; add [control] to "
+                "its description"
+            )
         return replace(self, robot=robot)
 
     def step(
         self, state: list[Rows], rows: Rows, *, trace: bool = False
     ) -> tuple[list[Rows], Array]:
         if rows.reference is None:
-            raise UsageFault("iv needs the reference that the robot followed: columns q1_ref, ...")
+            raise UsageFault(
+                "iv needs the reference that the robot followed; give a log with the columns "
+                "q1_ref, ... and dq1_ref, ..."
+            )
         return super().step(state, rows, trace=trace)
 
     def fit(self, state: list[Rows]) -> Estimation:

@@ -35,7 +35,10 @@ class Estimator(HoldingEstimator):
 
     def for_robot(self, robot: Robot) -> Estimator:
         if not any(isinstance(p.term, Coulomb) for p in robot.parameters):
-            raise UsageFault(f"separable: robot {robot.name} has no joint with Coulomb friction")
+            raise UsageFault(
+                f"separable: robot {robot.name} has no joint with Coulomb friction; use another "
+                "estimator"
+            )
         return replace(self, robot=robot)
 
     def fit(self, state: list[Rows]) -> Estimation:

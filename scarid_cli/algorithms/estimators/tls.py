@@ -3,8 +3,8 @@
 The estimates come from the singular vector of [W y] that belongs to the smallest singular value.
 Each column is divided by its norm first, so all columns are assumed to have the same relative
 error. One pass over the rows is enough, because their triangular factor has the same singular
-vectors. The covariance is the first-order one of Van Huffel and Vandewalle (1991, section 8.5). No
-settings.
+vectors. The first-order covariance is that of Van Huffel and Vandewalle (1991, section 8.5).
+No settings.
 """
 
 from __future__ import annotations

@@ -45,6 +45,11 @@ class Estimation:
     added: tuple[tuple[str, str], ...] = ()
     extra: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def weighted(self) -> bool:
+        """Whether the rows were weighted by their residuals."""
+        return self.scores is not None and self.scores.whitening is not None
+
 
 class BaseEstimator(Validated, ABC):
     """What all estimators share, and what each of them declares.

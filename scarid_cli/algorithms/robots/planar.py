@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.robots.terms import Column, JointMotion, Term
+from scarid_cli.arrays import Array
 
 
 class PlanarTerm(Term):
@@ -36,18 +37,22 @@ class ZZ2(PlanarTerm):
         return {0: both, 1: both}
 
 
+def _first_moment(samples: JointMotion, c: Array, s: Array) -> Column:
+    """The torques of a first moment of link 2 whose axis has the direction (c, s) in link 1."""
+    dq, ddq = samples.dq, samples.ddq
+    return {
+        0: (2.0 * ddq[0] + ddq[1]) * c - dq[1] * (2.0 * dq[0] + dq[1]) * s,
+        1: ddq[0] * c + dq[0] * dq[0] * s,
+    }
+
+
 class L1MX2(PlanarTerm):
     """First moment of link 2 along its x axis, times the length L1 of link 1 [kg m2]."""
 
     NAME = "L1MX2"
 
     def column(self, samples: JointMotion) -> Column:
-        q, dq, ddq = samples.q, samples.dq, samples.ddq
-        c, s = np.cos(q[1]), np.sin(q[1])
-        return {
-            0: (2.0 * ddq[0] + ddq[1]) * c - dq[1] * (2.0 * dq[0] + dq[1]) * s,
-            1: ddq[0] * c + dq[0] * dq[0] * s,
-        }
+        return _first_moment(samples, np.cos(samples.q[1]), np.sin(samples.q[1]))
 
 
 class L1MY2(PlanarTerm):
@@ -56,12 +61,7 @@ class L1MY2(PlanarTerm):
     NAME = "L1MY2"
 
     def column(self, samples: JointMotion) -> Column:
-        q, dq, ddq = samples.q, samples.dq, samples.ddq
-        c, s = np.cos(q[1]), np.sin(q[1])
-        return {
-            0: -(2.0 * ddq[0] + ddq[1]) * s - dq[1] * (2.0 * dq[0] + dq[1]) * c,
-            1: -ddq[0] * s + dq[0] * dq[0] * c,
-        }
+        return _first_moment(samples, -np.sin(samples.q[1]), np.cos(samples.q[1]))
 
 
 @dataclass(frozen=True)

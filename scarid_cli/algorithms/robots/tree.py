@@ -49,7 +49,7 @@ def read(path: str) -> Tree:
     except (RuntimeError, SyntaxError, ValueError) as error:
         raise UsageFault(f"{path}: not a URDF: {' '.join(str(error).split())}") from None
     if not model.nq or model.nq != model.nv:
-        raise UsageFault(f"{path}: only revolute, continuous and prismatic joints are understood")
+        raise UsageFault(f"{path}: only revolute, continuous and prismatic joints are supported")
     frames = {model.frames[model.getFrameId(name)].parentJoint for name in _massless_tips(tree)}
     return Tree(model, drivers, offsets, frozenset(frames))
 

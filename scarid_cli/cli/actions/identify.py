@@ -81,12 +81,14 @@ def _require_possible(
 ) -> None:
     """Refuse options that the estimator, or the treatment of the rows, does not allow."""
     if trace and not method.RECURSIVE:
-        raise UsageFault(f"--trace: {name} has no estimates after every sample")
+        raise UsageFault(f"--trace: {name} has no estimates after every sample; use rls or ekf")
     if treatment.align and not method.ALIGNS:
-        raise UsageFault(f"--align does not go with --estimator {name}")
+        raise UsageFault(f"--align cannot be combined with --estimator {name}")
     if (resumable or trace) and (treatment.holds or method.HOLDS):
         what = f"--estimator {name}" if method.HOLDS else "--decimate or --align"
-        raise UsageFault(f"--save, --from and --trace go row by row; not with {what}")
+        raise UsageFault(
+            f"--save, --from and --trace work row by row and cannot be combined with {what}"
+        )
 
 
 def _initial(job: Job, initial: str | None, arm: Robot) -> Array:
