@@ -39,9 +39,9 @@ def command() -> None:
 
     For the Kalman methods, the noise, the intensity and the acceleration process of each joint are
     found by maximum likelihood. The other methods get the settings whose derivatives come closest
-    to those of a Kalman smoother that is tuned in this way: it is more accurate than any causal
-    method, because it also uses later samples. With --robot, all joints share their settings, which
-    are judged by how well they predict the torques of held-out segments of the log, with parameters
+    to those of a Kalman smoother that is tuned in this way; it serves as the reference because it
+    also uses the samples after each row. With --robot, all joints share their settings, which are
+    judged by how well they predict the torques of held-out segments of the log, with parameters
     identified from the remaining segments.
 
     Writes the table of all settings that were tried. The same seed gives the same settings. Holds

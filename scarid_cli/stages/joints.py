@@ -29,7 +29,7 @@ def as_described(
     log = robot.log
     if log is None:
         raise UsageFault(
-            f"{robot.name}: its description has no table [log] that describes its logs; add one"
+            f"{robot.name}: its description has no [log] to describe its logs; add one"
         )
     described = {new: old for new, old in log.columns.items() if old not in names.values()}
     clocked = "t" in table.columns or "t" in {**described, **names}

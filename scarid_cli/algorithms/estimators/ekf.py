@@ -1,8 +1,8 @@
 """Extended Kalman filter of joint positions, velocities and parameters (the paper's ref. 45).
 
 It is included for comparison. It needs initial parameters (`--initial`) instead of derivatives, and
-takes a hundred times as long as least squares. It reads only positions and torques; accelerations
-are those of the model. Its standard errors come from its own covariance and are not robust.
+it is far slower than least squares. It reads only positions and torques; accelerations are those of
+the model. Its standard errors come from its own covariance and are not robust.
 spread = 0.5: initial standard deviation of a parameter, relative to its initial value (or to 0.1
 if that is 0).
 acceleration_noise = 2: standard deviation per sample of the acceleration that the model lacks
