@@ -17,11 +17,15 @@ ROUNDING = 1e-15
 
 
 class NotIdentifiableError(ValueError):
-    """The data leave a combination of parameters free; `direction` is it, of unit length."""
+    """The data leave a combination of parameters free; `direction` is it, of unit length.
 
-    def __init__(self, direction: Array) -> None:
+    `added` are the names of parameters that come after the robot's own.
+    """
+
+    def __init__(self, direction: Array, added: Sequence[str] = ()) -> None:
         super().__init__("the data do not determine all parameters")
         self.direction = direction
+        self.added = tuple(added)
 
 
 @dataclass(frozen=True)
@@ -146,12 +150,14 @@ def solve(state: Information) -> Fit:
     singular = np.linalg.svd(R, compute_uv=False)
     inverse = np.linalg.inv(R)
     freedom = state.weight - p
+    with np.errstate(divide="ignore"):
+        condition = float(singular[0] / singular[-1])
     return Fit(
         estimates=np.asarray(np.linalg.solve(R, z), dtype=np.float64),
         unit_covariance=inverse @ inverse.T,
         variance=state.residual / freedom if freedom > 0 else float("nan"),
         sample_variance=state.residual / (state.weight - 1.0) if freedom > 0 else float("nan"),
-        condition=float(singular[0] / singular[-1]),
+        condition=condition,
     )
 
 
