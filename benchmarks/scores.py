@@ -73,8 +73,8 @@ class Score:
 def settling(sensor: Sensor, q: Array, motion: TrueMotion) -> float:
     """Time [ms] until the velocity stays within a tenth of its deviation, started at top speed."""
     start = min(int(np.argmax(np.abs(motion.v))), len(q) - 800)
-    begun, _ = sensor(q[start : start + 800])
-    off = np.abs(begun - motion.v[start : start + 800]) > 0.1 * np.std(motion.v)
+    first, _ = sensor(q[start : start + 800])
+    off = np.abs(first - motion.v[start : start + 800]) > 0.1 * np.std(motion.v)
     return 1e3 * H * (int(np.flatnonzero(off)[-1]) + 1 if off.any() else 0)
 
 

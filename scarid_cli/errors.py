@@ -10,7 +10,7 @@ BROKEN_PIPE = 141
 
 
 class ScaridError(Exception):
-    """A failure that is reported in one line: where it is, what was found, what to do."""
+    """A failure that is reported in one line: where it is, what was found, and what to do."""
 
     status = BAD_DATA
 
@@ -46,7 +46,7 @@ def bad_data(
     row: int | None = None,
     column: str | None = None,
 ) -> BadData:
-    """Bad data in one line: the file, row (from 1) and column, and what to do about it."""
+    """Bad data, reported in one line: the file, the row (from 1), the column, and what to do."""
     place = [where]
     if row is not None:
         place.append(f"row {row}")
@@ -56,5 +56,5 @@ def bad_data(
 
 
 def cut_short(where: str) -> BadData:
-    """The command that wrote the table failed or was killed, so the table is incomplete."""
+    """The error for a table that is incomplete, because the command that wrote it failed."""
     return BadData(f"{where}: the table was cut short, because the command that wrote it failed")

@@ -34,12 +34,12 @@ class Result:
     err: str
 
 
-def refused(result: Result, status: int, *told: str) -> None:
+def refused(result: Result, status: int, *reported: str) -> None:
     """A failure as users see it: its status, one line with these words, and no output."""
     assert result.status == status
     assert result.out == ""
     assert result.err.count("\n") == 1
-    for words in told:
+    for words in reported:
         assert words in result.err
 
 

@@ -20,13 +20,7 @@ from scarid_cli.cli.described import describing
     show_default=True,
     help="The estimator; see below.",
 )
-@click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="NAME=VALUE",
-    help="A setting of the estimator; repeatable.",
-)
+@options.settings_of("estimator")
 @click.option(
     "--forgetting",
     metavar="FACTOR[,NAME=FACTOR...]",
@@ -38,7 +32,8 @@ from scarid_cli.cli.described import describing
     "--initial",
     type=options.InputFile("apriori"),
     metavar="FILE",
-    help="Initial parameters of rls or ekf: a parameter table, or `apriori`.  [default: zeros]",
+    help="Initial parameters of rls or ekf: a parameter table, or `apriori` for the a priori "
+    "values of the robot.  [default: zeros]",
 )
 @options.treatment
 @click.option(
@@ -50,15 +45,15 @@ from scarid_cli.cli.described import describing
     "--essential",
     is_flag=True,
     help="Keep only essential parameters: drop the least certain one as long as its relative "
-    "standard deviation is 30 times that of the most certain one.",
+    "standard deviation is 30 times that of the most certain one and noise can explain the loss.",
 )
 @click.option(
     "--variance",
     type=click.Choice(("residual", "unit", "sample")),
     default="residual",
     show_default=True,
-    help="Variance of the residual that standard_error assumes: estimated with r - c degrees of "
-    "freedom, 1 as printed in paper eq. 32-33, or estimated with r - 1.",
+    help="Variance of the residual in the column standard_error: estimated with r - c degrees of "
+    "freedom (residual), 1 as printed in paper eq. 32-33 (unit), or estimated with r - 1 (sample).",
 )
 @options.side_output("--trace", help="Write the estimates after every sample (rls, ekf).")
 @click.option(
@@ -88,6 +83,7 @@ def command() -> None:
     Solves tau = W(q, dq, ddq) theta (paper eq. 25), where W is the robot's regressor. Each estimate
     has two standard errors: one that holds for white residuals, s (diag (W'W)^-1)^1/2 (eq. 32-34),
     and a robust one that also holds for autocorrelated residuals, found by leaving out blocks of
-    half a second. The columns low and high are the 95 % interval of the latter. The last line on
-    standard error is the verdict (good, doubtful or not identifiable) with its reasons.
+    half a second. The columns low and high are the 95 % confidence interval from the robust error.
+    The last line on standard error is the verdict (good, doubtful or not identifiable) with its
+    reasons.
     """

@@ -41,14 +41,14 @@ class Job:
         self.left_out: list[TooShort] = []
 
     def output(self, path: str, wanted: str | None = None) -> Output:
-        """Where a table will go; open it before anything is read, so that mistakes show at once."""
+        """The output for a table; opened before anything is read, so that mistakes show at once."""
         self._require_unused(path)
         output = Output(path, wanted)
         self.outputs.append(output)
         return output
 
     def text(self, path: str) -> Document:
-        """Where a document beside the tables will go; open it likewise."""
+        """The output for a document beside the tables, which is opened early as well."""
         self._require_unused(path)
         document = Document(path)
         self.outputs.append(document)
@@ -82,7 +82,7 @@ class Job:
         must be regular unless `regular` is false. `through` translates the bytes.
         """
         table = self._opened_table(path, through)
-        return self._shown(checked(table, kind, reads=reads, regular=regular) if kind else table)
+        return self._reported(checked(table, kind, reads=reads, regular=regular) if kind else table)
 
     def read_for(
         self,
@@ -99,14 +99,13 @@ class Job:
         """
         table = conforming(self._opened_table(path), kind)
         arm = robot_of(robot, table)
-        joints = range(1, len(arm.joints) + 1)
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
-        columns = [name.replace("{i}", str(i)) for name in fields for i in joints]
+        columns = schemas.of_joints(len(arm.joints), *fields)
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
         if reference:
             columns += [name for name in table.columns if name.endswith("_ref")]
-        return self._shown(checked(table, kind, reads=lambda _: columns)), arm
+        return self._reported(checked(table, kind, reads=lambda _: columns)), arm
 
     def _opened_table(
         self, path: str, through: Callable[[ByteSource], ByteSource] | None = None
@@ -118,7 +117,7 @@ class Job:
         source = self._opened(path)
         return open_table(through(source) if through else source)
 
-    def _shown(self, table: Table) -> Table:
+    def _reported(self, table: Table) -> Table:
         """The table, reported with --verbose and followed by a progress line on a terminal."""
         if self._verbose:
             rate = f"{1.0 / table.period:.6g} Hz, " if table.period else ""
@@ -178,7 +177,7 @@ def robot_of(name: str | None, *tables: Table) -> Robot:
     from scarid_cli.algorithms.robots import reading
 
     stated = (table.meta.robot for table in tables if table.meta.robot)
-    return reading.load(name or next(stated, reading.DEFAULT))
+    return reading.load(name or next(stated, reading.DEFAULT_ROBOT))
 
 
 def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:

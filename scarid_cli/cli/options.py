@@ -10,11 +10,11 @@ from typing import Any, TypeVar
 import click
 
 from scarid_cli.errors import OutputFailure, UsageFault
+from scarid_cli.io import FORMATS
 
 F = TypeVar("F", bound=Callable[..., Any])
-Decorator = Callable[[F], F]
 
-FORMATS = ("csv", "parquet", "arrow", "arrow-file")  # of io.writer, which `--help` does not load
+
 # The options of `table_output` and `common`: the job deals with them, not the command.
 SHARED = ("output", "format", "no_history", "quiet", "verbose", "debug")
 
@@ -107,6 +107,12 @@ def side_output(*names: str, help: str, metavar: str = "FILE") -> Callable[[F], 
     return click.option(*names, cls=Unrecorded, metavar=metavar, help=help)
 
 
+def settings_of(algorithm: str) -> Callable[[F], F]:
+    """The settings of an algorithm that is the same for all joints."""
+    text = f"A setting of the {algorithm}; repeatable."
+    return click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help=text)
+
+
 def table_output(function: F) -> F:
     """Where the table goes and in what format."""
     return _all(
@@ -147,24 +153,24 @@ robot: Callable[[F], F] = click.option(
 
 
 def treatment(function: F) -> F:
-    """What is done to the rows of the regression, by identify and validate alike."""
+    """How the rows of the regression are treated, by identify, validate and urdf alike."""
     return _all(
         click.option(
             "--skip", type=NUMBERS, metavar="ROWS[,ROWS]",
-            help="Leave out this many rows at the start, and at the end.",
+            help="Leave out this many rows at the start and, if there are two numbers, at the end.",
         ),
         click.option(
             "--decimate", type=NUMBERS, metavar="N[,N...]",
             help="Pass the columns of W and the torques through the same low-pass and keep every "
-            "N-th row, once for each N. Holds the whole log in memory.",
+            "N-th row; repeat this for each N. Holds the whole log in memory.",
         ),
         click.option(
             "--drop-slow", type=NUMBERS, metavar="V[,V...]",
             help="Leave out the rows of a joint that is slower than V [rad/s or m/s], one value "
-            "for all joints or one per joint: near rest, Coulomb friction is not sign(dq).",
+            "for all joints or one per joint, because near rest Coulomb friction is not sign(dq).",
         ),
         click.option(
             "--smooth-sign", type=float, metavar="V",
-            help="Model Coulomb friction by tanh(dq / V) in place of sign(dq) [rad/s or m/s].",
+            help="Model Coulomb friction by tanh(dq / V) instead of sign(dq) [rad/s or m/s].",
         ),
     )(function)  # fmt: skip

@@ -33,6 +33,15 @@ def settings(
         yield name, numbers(value, f"--set {text}")
 
 
+def single_settings(texts: Iterable[str], known: list[str], owner: str) -> dict[str, float]:
+    """From every `--set NAME=VALUE`: the value of each known setting."""
+    given = dict(settings(texts, known, owner))
+    for name, values in given.items():
+        if len(values) > 1:
+            raise UsageFault(f"--set {name}: give one value, not {len(values)}")
+    return {name: values[0] for name, values in given.items()}
+
+
 def renamings(texts: Iterable[str]) -> dict[str, str]:
     """From every `--map NEW=OLD[,NEW=OLD...]`: the old name of each new column."""
     names: dict[str, str] = {}

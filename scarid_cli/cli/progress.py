@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import pyarrow as pa
 
-PATIENCE = 1.0  # seconds before anything is shown
+SHOWN_AFTER = 1.0  # seconds before anything is shown
 
 
 @contextlib.contextmanager
@@ -36,14 +36,14 @@ def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
     for batch in batches:
         yield batch
         held += batch.num_rows
-        if time.monotonic() - start > PATIENCE:
+        if time.monotonic() - start > SHOWN_AFTER:
             break
     else:
         return
-    yield from _shown(batches, held)
+    yield from _with_progress_line(batches, held)
 
 
-def _shown(batches: Iterator[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
+def _with_progress_line(batches: Iterator[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 

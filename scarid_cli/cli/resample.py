@@ -27,13 +27,13 @@ def command() -> None:
       scarid resample --rate 500 log.csv | scarid differentiate
       scarid resample --rate 100 log.parquet -o slow.parquet
 
-    Numbers are interpolated linearly. Where the new rate is lower than that of the log, they also
-    pass a low-pass without delay (a sinc in a Kaiser window, which attenuates by 60 dB from half
-    the new rate on); a row then waits for eight new periods. Other columns keep the value of the
-    previous row. Rows that repeat the time of the previous row are dropped. Mean rate, jitter,
-    longest interval, repeated rows and gaps are reported on standard error. Rows stream through,
-    in bounded memory.
+    Columns of numbers are interpolated linearly. If the new rate is lower than that of the log,
+    they also pass a low-pass without delay: a sinc in a Kaiser window, which attenuates by 60 dB
+    above half the new rate and looks eight new periods ahead. Other columns keep the value of the
+    previous row. Rows that repeat the time of the previous row are dropped. The mean rate, the
+    jitter, the longest interval, repeated rows and gaps are reported on standard error. Rows stream
+    through in bounded memory.
 
-    Gaps are never interpolated. After a gap the column segment is one higher: filter and
+    Gaps are never interpolated. After each gap the column `segment` increases by one: filter and
     differentiate restart there, and identify leaves out the settling rows.
     """

@@ -30,7 +30,7 @@ def command() -> None:
 @click.argument("robot", metavar="ROBOT", type=options.ROBOT)
 @options.common
 def check(robot: str, **_rest: Any) -> None:
-    """Show how a robot description was understood.
+    """Show how scarid interprets a robot description.
 
     \b
       scarid robot check planar2-gravity

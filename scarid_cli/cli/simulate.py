@@ -43,7 +43,8 @@ from scarid_cli.cli.options import NUMBERS
     type=NUMBERS,
     default="0",
     show_default=True,
-    help="Standard deviation of the position before the encoder quantises it [rad or m].",
+    help="Standard deviation of the noise of the position, before the encoder quantises it "
+    "[rad or m].",
 )
 @click.option(
     "--torque-noise",

@@ -20,13 +20,7 @@ from scarid_cli.cli.options import NUMBERS
     show_default=True,
     help="The kind of motion; see below.",
 )
-@click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="NAME=VALUE",
-    help="A setting of the excitation; may be repeated.",
-)
+@options.settings_of("excitation")
 @click.option(
     "--seed",
     type=click.IntRange(min=0),
@@ -42,7 +36,7 @@ from scarid_cli.cli.options import NUMBERS
     type=float,
     nargs=2,
     metavar="SHORTEST LONGEST",
-    help="Range of the time from one via point to the next [s]; short for --set shortest=SHORTEST "
+    help="Shortest and longest time between via points [s]; short for --set shortest=SHORTEST "
     "--set longest=LONGEST.  [default: 0.8 2.0]",
 )
 @click.option(
@@ -88,6 +82,6 @@ def command() -> None:
     The motion starts and ends at rest at the home position and stays within the limits on position,
     velocity and acceleration, which are those of the robot's description unless an option gives
     others. A motion that would leave its limits is refused before anything is written. The
-    condition number of the observation matrix W that the motion gives the robot is reported on
-    standard error; a motion with a condition number below about 100 excites the robot well.
+    condition number of the robot's observation matrix W along the motion is reported on standard
+    error; if it is below about 100, the motion excites the robot well.
     """

@@ -20,7 +20,7 @@ def treatment_of(given: dict[str, Any]) -> Treatment:
             "--skip: give one number of rows, at the start, or two: at the start and at the end"
         )
     if any(factor % 1 or factor < 2 for factor in factors):
-        raise UsageFault("--decimate: factors must be whole numbers from 2")
+        raise UsageFault("--decimate: factors must be whole numbers of at least 2")
     if any(not v >= 0.0 for v in slow):
         raise UsageFault("--drop-slow: velocities cannot be negative")
     if smooth is not None and not smooth > 0.0:

@@ -16,18 +16,18 @@ from scarid_cli.cli.declare import declare
     type=click.Choice(["all", *DIFFERENTIATORS.names]),
     default="kalman",
     show_default=True,
-    help="The differentiator to tune; all tunes every causal one.",
+    help="The differentiator to tune; `all` tunes every causal one.",
 )
 @click.option(
     "--robot",
     type=options.ROBOT,
     metavar="NAME|FILE",
-    help="Judge settings by the torques predicted for this robot (see identify --robot).",
+    help="Judge settings by the predicted torques of this robot (see identify --robot).",
 )
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the search."
 )
-@options.side_output("--save", help="Write the settings for differentiate --settings.")
+@options.side_output("--save", help="Write the best settings, for differentiate --settings.")
 @options.table_output
 @options.common
 def command() -> None:
@@ -39,12 +39,13 @@ def command() -> None:
       scarid tune --method all log.csv | sort -t, -k5 -g | column -s, -t
       scarid tune --method p2smd --robot scara2 log.csv --save p2smd.toml
 
-    The Kalman methods are given the noise, the intensity and the acceleration process under which
-    the positions are most likely, for each joint separately. The settings of other methods are
-    those whose derivatives are nearest to a Kalman smoother that tuned itself in this way: unlike
-    them, it has seen what follows each sample. With --robot all joints share one setting, and
-    settings are judged by the torques predicted for held-out segments, with parameters identified
-    from the others. Holds the whole log in memory; of a log with gaps, the longest segment is used.
+    For the Kalman methods, the noise, the intensity and the acceleration process of each joint are
+    found by maximum likelihood. The other methods get the settings whose derivatives come closest
+    to those of a Kalman smoother that is tuned in this way: it is more accurate than any causal
+    method, because it also uses later samples. With --robot, all joints share their settings, which
+    are judged by how well they predict the torques of held-out segments of the log, with parameters
+    identified from the remaining segments.
 
-    Writes the table of all settings that were tried. The same seed gives the same settings.
+    Writes the table of all settings that were tried. The same seed gives the same settings. Holds
+    the whole log in memory; if the log has gaps, only its longest segment is used.
     """

@@ -25,15 +25,15 @@ from scarid_cli.cli.declare import declare
     cls=options.Unrecorded,
     default="-",
     metavar="FILE",
-    help="Write the URDF to FILE.  [default: stdout]",
+    help="Write the URDF to FILE.  [default: standard output]",
 )
 @options.side_output("--base", help="Write the base parameters of the new bodies as a table.")
 @click.option(
     "--motion",
     type=options.INPUT,
     metavar="FILE",
-    help="Report R2 per joint of this motion, before and after. Give the options below as to "
-    "identify.",
+    help="Report R2 per joint on this motion, of the identified and of the consistent parameters. "
+    "Give the options below as they were given to identify.",
 )
 @options.treatment
 @options.common
@@ -56,6 +56,6 @@ def command() -> None:
     correlations are then neglected, which can ruin the prediction of torques: check with --motion.
 
     Viscous and Coulomb friction become damping and friction of the joints. What a URDF cannot hold
-    (motor inertias, offsets, couplings) is in a comment. Needs the extra: pip install
-    'scarid[urdf]'.
+    (motor inertias, offsets, couplings) is written into a comment. This command needs an extra:
+    pip install 'scarid[urdf]'.
     """

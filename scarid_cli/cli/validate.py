@@ -32,5 +32,5 @@ def command() -> None:
     Writes for each joint R2 (paper eq. 36), the root-mean-square error (eq. 35), the relative error
     100 |tau - tau_hat| / |tau| in percent, and the number of samples. On the motion that the
     parameters were identified from, this is direct validation; on another motion, it is cross
-    validation. Treat the rows as identify did, with the same options.
+    validation. Give the options that select and treat rows as they were given to identify.
     """

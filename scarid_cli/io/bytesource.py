@@ -9,7 +9,7 @@ from typing import BinaryIO
 from scarid_cli.errors import OutputFailure, UsageFault
 
 STDIN = "<stdin>"
-BLOCK = 1 << 20
+CHUNK = 1 << 20
 
 
 class ByteSource:
@@ -50,7 +50,7 @@ class ByteSource:
             self._ahead += data
         return self._ahead[:size]
 
-    def read_some(self, size: int = BLOCK) -> bytes:
+    def read_some(self, size: int = CHUNK) -> bytes:
         """What has arrived: at least one byte, or none at the end."""
         if self._ahead:
             data, self._ahead = self._ahead[:size], self._ahead[size:]
@@ -64,7 +64,7 @@ class ByteSource:
         parts: list[bytes] = []
         left = size
         while left:
-            data = self.read_some(left if size >= 0 else BLOCK)
+            data = self.read_some(left if size >= 0 else CHUNK)
             if not data:
                 break
             parts.append(data)
@@ -107,7 +107,7 @@ class ByteSource:
 
         digest = hashlib.sha256()
         offset = 0
-        while data := os.pread(self.fd, BLOCK, offset):
+        while data := os.pread(self.fd, CHUNK, offset):
             digest.update(data)
             offset += len(data)
         return digest.hexdigest()

@@ -22,7 +22,7 @@ def clocked(
     batches: Iterator[pa.RecordBatch], name: str, *, regular: bool
 ) -> tuple[Iterator[pa.RecordBatch], float]:
     """The batches, checked to be at the rate of their first two samples, and the period [s]."""
-    batches = _begun(batches)
+    batches = _from_two_samples(batches)
     first = next(batches, None)
     at = _first_step(first) if first else None
     if first is None or at is None:
@@ -52,7 +52,7 @@ def nominal_period(interval: float) -> float:
     return float(f"{interval:.9g}")
 
 
-def _begun(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+def _from_two_samples(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
     """Hold the first batches back until two samples follow each other; drop empty batches."""
     held: list[pa.RecordBatch] = []
     for batch in batches:

@@ -20,7 +20,7 @@ ROW_MARKS = ("t", SEGMENT, "settled")  # columns that every command reads
 
 
 def open_table(source: ByteSource) -> Table:
-    """Read a table; its first bytes tell the format."""
+    """Read a table, in the format that its first bytes indicate."""
     start = source.peek(8)
     if not start.startswith((b"PAR1", b"ARROW1", b"\xff\xff\xff\xff")):
         from scarid_cli.io.csvio import read_csv

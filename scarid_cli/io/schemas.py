@@ -138,8 +138,13 @@ def numbered(columns: list[str], *prefixes: str) -> list[str]:
     return [c for c in columns for p in prefixes if c.startswith(p) and c[len(p) :].isdigit()]
 
 
+def of_joints(joints: int, *names: str) -> list[str]:
+    """The columns of all joints with these names, in which {i} is the number of the joint."""
+    return [name.replace("{i}", str(i)) for name in names for i in range(1, joints + 1)]
+
+
 def joints_of(columns: list[str], prefix: str) -> int:
-    """How many of the columns `prefix1`, `prefix2`, ... there are before the first missing one."""
+    """The number of joints with a column `prefix1`, `prefix2`, ..., up to the first missing one."""
     count = 0
     while f"{prefix}{count + 1}" in columns:
         count += 1

@@ -78,6 +78,18 @@ def number(name: str, unit: str | None = None) -> pa.Field:
     return pa.field(name, pa.float64(), metadata={UNIT_KEY: unit.encode()} if unit else None)
 
 
+def numbers(name: str, units: list[str]) -> list[pa.Field]:
+    """The columns of all joints with this name, in which {i} is the number of the joint."""
+    return [number(name.replace("{i}", str(i)), unit) for i, unit in enumerate(units, start=1)]
+
+
+def motion_fields(units: list[str], suffix: str) -> list[pa.Field]:
+    """The columns of position, velocity and acceleration, given the unit of each position."""
+    derivatives = (("q", ""), ("dq", "/s"), ("ddq", "/s2"))
+    columns = (numbers(f"{q}{{i}}{suffix}", [u + per for u in units]) for q, per in derivatives)
+    return [field for fields in columns for field in fields]
+
+
 def matrix(batch: pa.RecordBatch, columns: list[str]) -> Array:
     """Columns of a batch as one array, a contiguous row per column (len(columns), rows)."""
     out = np.empty((len(columns), batch.num_rows))

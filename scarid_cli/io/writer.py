@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from scarid_cli.errors import OutputFailure, UsageFault
+from scarid_cli.io import FORMATS
 from scarid_cli.io.table import Table
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-FORMATS = ("csv", "parquet", "arrow", "arrow-file")
+
 EXTENSIONS = {
     ".csv": "csv",
     ".parquet": "parquet",

@@ -1,11 +1,12 @@
 """Recursive least squares in information form, by Givens rotations without square roots.
 
 Gentleman 1973 ("Least squares computations by Givens transformations without square roots"), as in
-algorithm AS 274. The unit triangle R, the weights d of its rows and the vector z contain all that
-the rows so far tell about theta: the sum of squares is the sum of d (R theta - z)^2 plus the
-residual. No normal equations are formed, so no digits are lost, and the covariance (R' d R)^-1 is
-symmetric positive definite by construction. With initial weights of zero this is plain least
-squares; with the initial information P0^-1 and a forgetting factor it is recursive least squares.
+algorithm AS 274. The unit triangle R, the weights d of its rows and the vector z contain all the
+information of the rows so far about theta: the sum of squares is the sum of d (R theta - z)^2 plus
+the residual. No normal equations are formed, so no digits are lost, and the covariance
+(R' d R)^-1 is symmetric positive definite by construction. With initial weights of zero this is
+plain least squares; with the initial information P0^-1 and a forgetting factor it is recursive
+least squares.
 """
 
 from math import sqrt

@@ -24,8 +24,8 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8
 DASHES = ("-", "-.", ":", (0, (1, 4)))  # of the first, second, ... turn through the palette
 INK = "#222222"
 BEYOND = 10.0  # times the doubtful value: the axis of bars ends there at the latest
-GAP = 5.0  # times the mean step is a gap: the points of a reduced curve lie up to 4 apart
-WIDTH = 6.7  # inches, the width of the text on an A4 page
+GAP_STEPS = 5.0  # times the mean step is a gap: the points of a reduced curve lie up to 4 apart
+FIGURE_WIDTH = 6.7  # inches, the width of the text on an A4 page
 
 STYLE = {
     "axes.axisbelow": True,
@@ -95,7 +95,7 @@ def colour_of(index: int | None) -> str:
 
 
 def _bars(plot: Bars) -> Figure:
-    figure = Figure(figsize=(WIDTH, 0.7 + 0.3 * len(plot.names)), layout="constrained")
+    figure = Figure(figsize=(FIGURE_WIDTH, 0.7 + 0.3 * len(plot.names)), layout="constrained")
     axes = figure.subplots()
     places = range(len(plot.names))
     values = [value if isfinite(value) else 0.0 for value in plot.values]
@@ -131,7 +131,7 @@ def _panels(plot: Panels) -> Figure:
     columns = min(plot.columns, len(plot.panels))
     rows = ceil(len(plot.panels) / columns)
     height = 0.5 + (1.5 if columns > 1 else 1.7) * rows
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    figure = Figure(figsize=(FIGURE_WIDTH, height), layout="constrained")
     grid = figure.subplots(rows, columns, sharex=True, squeeze=False).flatten().tolist()
     for axes, panel in zip(grid, plot.panels, strict=False):
         count = len(panel.series)
@@ -154,7 +154,7 @@ def broken(points: Array) -> Array:
     """The curve with nan in the gaps of the record, so that no line is drawn across them."""
     steps = np.diff(points[0])
     mean = steps.sum() / max(len(steps), 1)
-    return np.insert(points, np.flatnonzero(steps > GAP * mean) + 1, np.nan, axis=1)
+    return np.insert(points, np.flatnonzero(steps > GAP_STEPS * mean) + 1, np.nan, axis=1)
 
 
 def _style(series: Series) -> dict[str, Any]:

@@ -18,8 +18,8 @@ from scarid_cli.reporting.parts import Section, header_lines, split
 
 A = TypeVar("A")
 B = TypeVar("B")
-WIDTH = 108  # characters of a table that fit an A4 page
-GAP = 2
+PAGE_WIDTH = 108  # characters of a table that fit an A4 page
+
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
@@ -48,7 +48,7 @@ def html(
         sections=[
             {
                 "section": section,
-                "parts": split(section, WIDTH, GAP, wrapped=True) if section.rows else [],
+                "parts": split(section, PAGE_WIDTH, wrapped=True) if section.rows else [],
                 "figures": [
                     (plot.caption, _own(element(document), f"f{i}-{j}-"))
                     for j, (plot, document) in _numbered(section.plots, documents)

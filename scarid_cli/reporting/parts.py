@@ -10,6 +10,7 @@ from typing import Any
 from scarid_cli.arrays import Array
 
 NONE = "-"
+GAP = 2  # characters between the columns of a table
 PANELS = 8  # of a figure at most, so that it fits a page
 
 
@@ -96,14 +97,14 @@ def pages(panels: Sequence[Panel]) -> list[tuple[Panel, ...]]:
     return [tuple(panels[i : i + PANELS]) for i in range(0, len(panels), PANELS)]
 
 
-def split(section: Section, width: int, gap: int, *, wrapped: bool = False) -> list[Section]:
-    """The section in parts of at most this many characters; each repeats the key columns.
+def split(section: Section, width: int, *, wrapped: bool = False) -> list[Section]:
+    """The section in parts of at most `width` characters, each of which repeats the key columns.
 
-    Columns are `gap` characters apart, and a group of columns is never divided. `wrapped` headers
-    are broken into the lines of `header_lines`.
+    A group of columns is never divided. `wrapped` headers are broken into the lines of
+    `header_lines`.
     """
     columns = list(zip(section.headers, *section.rows, strict=True))
-    widths = [_width(column, wrapped=wrapped) + gap for column in columns]
+    widths = [_width(column, wrapped=wrapped) + GAP for column in columns]
     left = width - sum(widths[: section.keys])
     parts: list[list[int]] = [[]]
     used = 0

@@ -52,7 +52,7 @@ def _repetitions(results: Sequence[Result], kind: type[R]) -> Repetitions[R]:
 
 
 def _count(groups: Repetitions[R]) -> int:
-    """Of the method that was repeated most often."""
+    """The number of repetitions of the method that was repeated most often."""
     return max((len(group) for methods in groups.values() for group in methods.values()), default=0)
 
 

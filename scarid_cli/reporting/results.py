@@ -79,7 +79,7 @@ def _parameters(source: Source) -> Parameters:
 
 
 def _relative(errors: Sequence[float], estimates: Sequence[float]) -> tuple[float, ...]:
-    """In percent of the estimates; empty if none is known."""
+    """The relative errors in percent of the estimates; empty if none is known."""
     found = [
         100.0 * e / abs(x) if x else float("nan") for e, x in zip(errors, estimates, strict=True)
     ]

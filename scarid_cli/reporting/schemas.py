@@ -28,7 +28,7 @@ detected from its columns.
 The kinds are declared in `schemas/`, in the format of the Frictionless Table Schema. Commands check
 what they read against these files, and `make docs` renders them as this page.
 """
-TYPES = {arrow: name for name, arrow in schemas.TYPES.items()}
+TYPE_NAMES = {arrow: name for name, arrow in schemas.TYPES.items()}
 # What writes a table of each kind, and what reads it, in the order of a pipe.
 USES = {
     "via": ("you", "`trajgen --via`"),
@@ -62,7 +62,7 @@ def section(schema: schemas.TableSchema) -> str:
     rows = [
         (
             f"`{field.name}`",
-            TYPES[field.type],
+            TYPE_NAMES[field.type],
             " or ".join(field.units) or "-",
             "yes" if field.required else "no",
             field.description,

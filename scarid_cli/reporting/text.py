@@ -10,10 +10,10 @@ from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 
-from scarid_cli.reporting.parts import Section, split
+from scarid_cli.reporting.parts import GAP, Section, split
 
-WIDTH = 100  # characters of running text where there is no terminal
-GAP = 2  # characters between the columns of a table
+TEXT_WIDTH = 100  # characters of running text where there is no terminal
+
 # One line, under the headers; rich writes it in ASCII where the terminal needs that.
 RULE = Box("\n".join(["    "] * 2 + [" ── "] + ["    "] * 5) + "\n")
 
@@ -21,14 +21,14 @@ RULE = Box("\n".join(["    "] * 2 + [" ── "] + ["    "] * 5) + "\n")
 def terminal(sections: Sequence[Section]) -> str:
     """Tables for standard output; on a terminal, those that are too wide are shown in parts."""
     console = Console(markup=False, emoji=False, highlight=False)
-    width = console.width if console.is_terminal else WIDTH
+    width = console.width if console.is_terminal else TEXT_WIDTH
     with console.capture() as capture:
         for section in _with_rows(sections):
             console.width = width
             console.print(section.title, style="bold")
             if section.note:
                 console.print(section.note, style="dim")
-            for part in split(section, width, GAP) if console.is_terminal else [section]:
+            for part in split(section, width) if console.is_terminal else [section]:
                 # A part that is still too wide is wrapped by the terminal: no number is cut.
                 console.width = width if part.prose else max(width, sum(_widths(part)))
                 console.print(_table(part))
@@ -68,7 +68,7 @@ def markdown(title: str, sections: Sequence[Section]) -> str:
     for section in _with_rows(sections):
         parts.append(f"## {_escaped(section.title)}\n")
         if section.note:
-            parts.append(f"{textwrap.fill(_escaped(section.note), WIDTH)}\n")
+            parts.append(f"{textwrap.fill(_escaped(section.note), TEXT_WIDTH)}\n")
         parts.append(_markdown_table(section))
     return "\n".join(parts)
 

@@ -1,4 +1,4 @@
-"""Give a recorded log the names, units and clock that the commands expect."""
+"""Give a recorded log the column names, units and clock that the commands expect."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pyarrow as pa
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table, doubles, matrix, number
 
-# The unit of a log: the factor to multiply by, and the unit that results.
+# For each unit that a log may have: the factor to multiply by, and the resulting unit.
 UNITS = {
     "deg": (pi / 180.0, "rad"),
     "deg/s": (pi / 180.0, "rad/s"),
@@ -39,8 +39,8 @@ def adapted(
 ) -> Table:
     """The table with renamed and converted columns, and with a clock.
 
-    `names` has the old name of each new column, `units` has patterns of new names with the unit
-    that the log has. A `rate` [Hz] adds a time column to a table without one.
+    `names` maps each new column name to the old one; `units` pairs patterns of new names with the
+    unit of these columns in the log. A `rate` [Hz] adds a time column to a table without one.
     """
     fields = _renamed(table, names)
     new = [field.name for field in fields]
@@ -91,7 +91,7 @@ def _scales(names: list[str], units: list[tuple[str, str]]) -> dict[str, tuple[f
 
 
 def _scale(text: str) -> tuple[float, str] | None:
-    """The factor and the unit of `deg`, say, or of an encoder count: `0.001534 rad`."""
+    """The factor and the resulting unit of a text such as `deg`, or `0.001534 rad` per count."""
     first, _, rest = text.partition(" ")
     try:
         factor, unit = float(first), rest

@@ -1,4 +1,4 @@
-"""Run processes over columns of a table; a row leaves as soon as all its columns are there."""
+"""Run processes over columns of a table; each row is output as soon as its columns are complete."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Task:
 
 @dataclass
 class Running:
-    """A task, its state, and the parts of its outputs that wait for other tasks."""
+    """A task with its state, and the parts of its outputs that still wait for other tasks."""
 
     task: Task
     state: Any = None
@@ -77,11 +77,11 @@ class Plan:
     edges: Edges = field(default_factory=Edges)
 
     def lag(self, period: float) -> float:
-        """By how many rows the slowest output is late; inf if it waits for the whole record."""
+        """The lag of the slowest output in rows; inf if it needs the whole record."""
         return max((task.process.lag(period) for task in self.tasks), default=0)
 
     def check(self, period: float) -> None:
-        """Refuse settings before anything is written."""
+        """Refuse impossible settings before anything is written."""
         for task in self.tasks:
             task.process.init(0.0, period)
 
@@ -126,7 +126,7 @@ def _segments(
 
 
 class Counted:
-    """Batches, and the number of rows that they had so far."""
+    """An iterator over batches that counts their rows."""
 
     def __init__(self, batches: Iterator[pa.RecordBatch]) -> None:
         self._batches = batches
@@ -142,7 +142,7 @@ class Counted:
 
 
 def _rows(table: Table, plan: Plan, schema: pa.Schema, first: int) -> Iterator[pa.RecordBatch]:
-    """The rows of a record whose first row has this number in the table."""
+    """The rows of a record whose first row is row `first` of the table."""
     period = table.period
     running = [Running(task) for task in plan.tasks]
     waiting = Waiting(table.name, schema, plan.edges, before=first)
@@ -165,9 +165,10 @@ def _rows(table: Table, plan: Plan, schema: pa.Schema, first: int) -> Iterator[p
 
 @dataclass
 class Waiting:
-    """The rows of a record that wait for some of their columns; `first` numbers the first one.
+    """The rows of a record that wait for some of their columns.
 
-    `before` is the number of rows of the table before this record.
+    `first` is the number of the first of these `rows` in the record, and `before` the number of
+    rows of the table before this record.
     """
 
     name: str
@@ -183,7 +184,7 @@ class Waiting:
         self.rows += batch.num_rows
 
     def joined(self, running: list[Running], total: float) -> Iterator[pa.RecordBatch]:
-        """The rows whose columns are all there, of a record that has `total` rows."""
+        """The rows whose columns are complete; the record has `total` rows."""
         rows = min((run.rows for run in running), default=self.rows)
         values: dict[str, Array] = {}
         for run in running if rows else ():

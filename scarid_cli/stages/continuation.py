@@ -1,4 +1,4 @@
-"""Save where an estimation is, and go on from there with another log."""
+"""Save the checkpoint of an estimation, and restore it to continue with another log."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ KNOWN = {
 
 
 def saved(checkpoint: Checkpoint, settings: dict[str, Any]) -> bytes:
-    """An .npz file: the arrays, and a JSON document of how they belong together."""
+    """The content of an .npz file with the checkpoint and the settings of the estimation.
+
+    It holds the arrays of the checkpoint, and a JSON document that describes its structure.
+    """
     arrays: dict[str, Any] = {}
     tree = json.dumps({"settings": settings, "checkpoint": _packed(checkpoint, arrays)})
     out = io.BytesIO()
@@ -33,7 +36,7 @@ def saved(checkpoint: Checkpoint, settings: dict[str, Any]) -> bytes:
 
 
 def restored(path: str, settings: dict[str, Any]) -> Checkpoint:
-    """Where the estimation was, which must have been one with the same settings."""
+    """The checkpoint in a file, which must be that of an estimation with the same settings."""
     try:
         with np.load(path, allow_pickle=False) as archive:
             document = json.loads(str(archive["tree"]))
@@ -43,19 +46,20 @@ def restored(path: str, settings: dict[str, Any]) -> Checkpoint:
         raise UsageFault(f"{path}: no such file; make one with `scarid identify --save`") from None
     except (BadZipFile, EOFError, KeyError, OSError, TypeError, ValueError):
         raise BadData(
-            f"{path}: found no state, expected a file as `scarid identify --save` makes it"
+            f"{path}: this is not a saved estimation; make one with `scarid identify --save`"
         ) from None
     for key, value in settings.items():
         if before.get(key) != value:
             raise UsageFault(
-                f"{path}: saved with {key} {before.get(key)}, not {value}; go on with the same"
+                f"{path}: the estimation was saved with {key} {before.get(key)}, not {value}; "
+                "continue it with the same"
             )
     assert isinstance(checkpoint, Checkpoint)
     return checkpoint
 
 
 def _packed(value: Any, arrays: dict[str, Any]) -> Any:
-    """The value as JSON, its arrays by number."""
+    """The value as JSON, in which arrays are replaced by their names in `arrays`."""
     if isinstance(value, np.ndarray):
         name = f"a{len(arrays)}"
         arrays[name] = value
@@ -71,6 +75,7 @@ def _packed(value: Any, arrays: dict[str, Any]) -> Any:
 
 
 def _unpacked(tree: Any, archive: Any) -> Any:
+    """The value that `_packed` turned into this JSON."""
     if "array" in tree:
         return archive[tree["array"]]
     if "kind" in tree:

@@ -19,10 +19,10 @@ from scarid_cli.stages.columns import Edges, Plan, Task, processed
 def differentiate(
     table: Table, methods: list[Method], left_out: list[TooShort] | None = None
 ) -> Table:
-    """A motion: the table with columns dq and ddq, given one method per joint in their order.
+    """A motion: the table with columns dq and ddq, given one method for each joint.
 
-    Each segment between gaps is treated by itself, and then `settled` is 0 in its settling rows.
-    `left_out` receives why a segment was left out.
+    In a table with gaps, each segment is differentiated by itself, and the column `settled` is 0
+    in its settling rows. `left_out` receives the reason for each segment that was left out.
     """
     return _motion(table, methods, _plain, left_out, marked=SEGMENT in table.columns)
 
@@ -30,7 +30,7 @@ def differentiate(
 def matched(table: Table, methods: list[Method], left_out: list[TooShort] | None = None) -> Table:
     """A motion whose positions and torques belong to the same instant as the derivatives.
 
-    The column `settled` is 0 in the settling rows at the ends of the record, or of a segment.
+    The column `settled` is 0 in the settling rows at both ends of the record or segment.
     """
     return _motion(table, methods, _matching, left_out, marked=True)
 
@@ -49,7 +49,7 @@ def _motion(
     """The table as a motion, with the lag of its rows [s] in the metadata."""
     period = table.period
     schema = _schema(table, len(methods), [pa.field("settled", pa.int64())] if marked else [])
-    if any(method.TUNES_ITSELF for method in methods):  # these need to see the record first
+    if any(method.TUNES_ITSELF for method in methods):  # these need the whole record first
         rows = inf
 
         def planned(segment: Table) -> tuple[Table, Plan]:
@@ -95,7 +95,7 @@ def _matching(table: Table, methods: list[Method]) -> Plan:
 def _edges(forms: list[MatchedForm], period: float) -> Edges:
     settling = [(0, 0)]
     for form in forms:
-        form.init(0.0, period)  # refuses settings
+        form.init(0.0, period)  # refuses impossible settings
         if form.torque_filter:
             settling.append(settling_rows(form.torque_filter, period))
     before, after = (max(sides) for sides in zip(*settling, strict=True))
@@ -103,7 +103,7 @@ def _edges(forms: list[MatchedForm], period: float) -> Edges:
 
 
 def _fitted(table: Table, methods: list[Method]) -> tuple[Table, list[Method]]:
-    """The methods, those that tune themselves tuned on the whole record."""
+    """The table and the methods; those that tune themselves are tuned on the whole record."""
     batches = list(table.batches)
     columns = [f"q{i}" for i in range(1, len(methods) + 1)]
     positions = np.concatenate([matrix(batch, columns) for batch in batches], axis=1)

@@ -1,4 +1,4 @@
-"""The estimates of a parameter table with their covariance, as `urdf` needs them."""
+"""The estimates in a parameter table and their covariance, as `scarid urdf` needs them."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ REMEDY = "write the table with `identify -o parameters.parquet`"
 
 @dataclass(frozen=True)
 class Estimates:
-    """Identified parameters and what is known of their errors.
+    """Identified parameters and their errors.
 
-    `robot` is the robot as it was identified, with `values` (parameters) in its units, and `delay`
-    [s] that of its torques; `errors`
-    (parameters) are robust where known, nan where there are none. `dropped` are the indices of the
-    values that `identify --essential` set to zero; `full` are the estimates before that, and
-    `covariance` (parameters, parameters) is theirs, with nan in the rows and columns of parameters
-    without errors. `fixed` are the table's further rows, in which the torques are not linear: name,
-    unit, value. `remark` says why the covariance is diagonal; it is empty where it is not.
+    `robot` is the robot as it was identified. `values` (parameters) are in its units, and `delay`
+    [s] is the time by which the torques led the motion. `errors` (parameters) are robust standard
+    errors where known, nan where there are none. `dropped` are the indices of the values that
+    `identify --essential` set to zero. `full` are the estimates before that and `covariance`
+    (parameters, parameters) is theirs, with nan in the rows and columns of parameters without
+    errors. `fixed` has the name, unit and value of the table's further rows, in which the torques
+    are not linear. `remark` explains why the covariance is diagonal; it is empty if it is not.
     """
 
     robot: Robot
@@ -41,7 +41,7 @@ class Estimates:
 
 
 def estimates_with_covariance(table: Table, robot: Robot) -> Estimates:
-    """Read a parameter table of this robot, and the covariance from its metadata."""
+    """Read a parameter table of this robot, with the covariance in its metadata."""
     batches = list(table.batches)
     content = identified(replace(table, batches=iter(batches)), robot)
     values = content.theta
@@ -57,7 +57,7 @@ def estimates_with_covariance(table: Table, robot: Robot) -> Estimates:
         values=values,
         errors=errors[:count],
         full=full,
-        covariance=_given_the_rest(covariance, count),
+        covariance=_conditional(covariance, count),
         dropped=_dropped(table, names[:count], values, errors[:count]),
         fixed=fixed[count:],
         remark=remark,
@@ -65,7 +65,7 @@ def estimates_with_covariance(table: Table, robot: Robot) -> Estimates:
 
 
 def _errors(whole: pa.Table) -> Array:
-    """The robust errors, or else the standard errors; nan where a parameter has none."""
+    """The robust standard errors, or else the classical ones; nan where a parameter has none."""
     for name in ("robust_error", "standard_error"):
         if name in whole.column_names:
             errors = whole.column(name).to_numpy().astype(np.float64)
@@ -75,7 +75,7 @@ def _errors(whole: pa.Table) -> Array:
 
 
 def _covariance(table: Table, errors: Array) -> tuple[Array, str]:
-    """The covariance of all rows, and why it is diagonal if it is."""
+    """The covariance of all rows, and the remark if it is diagonal."""
     diagonal = _diagonal(errors)
     if not np.isfinite(errors).any():
         return (
@@ -101,7 +101,7 @@ def _covariance(table: Table, errors: Array) -> tuple[Array, str]:
 
 
 def _full_estimates(table: Table, values: Array, rows: int) -> Array:
-    """The estimates before parameters were dropped; the same if none were."""
+    """The estimates before parameters were dropped, if any were."""
     stored = table.meta.extra.get("full_estimates")
     if stored is None:
         return values
@@ -109,7 +109,7 @@ def _full_estimates(table: Table, values: Array, rows: int) -> Array:
 
 
 def _diagonal(errors: Array) -> Array:
-    """The covariance of uncorrelated estimates; of equal weights if there are no errors."""
+    """The covariance of uncorrelated estimates; all variances are 1 if there are no errors."""
     known = np.isfinite(errors)
     variances = errors**2 if known.any() else np.ones(len(errors))
     covariance = np.diag(variances)
@@ -119,7 +119,7 @@ def _diagonal(errors: Array) -> Array:
 
 
 def _array(table: Table, key: str, stored: object, shape: tuple[int, ...]) -> Array:
-    """Nested lists of the metadata as an array, with nan for null."""
+    """Nested lists in the metadata as an array; null becomes nan."""
     try:
         array = np.array(stored, dtype=np.float64)
     except (TypeError, ValueError):
@@ -139,9 +139,9 @@ def _misshapen(table: Table, key: str, shape: tuple[int, ...]) -> BadData:
 
 
 def _positive(covariance: Array) -> bool:
-    """Whether no combination of parameters has a negative variance, but for rounding.
+    """Whether no combination of parameters has a negative variance, up to rounding errors.
 
-    By the eigenvalues of the correlation matrix, so that units do not matter.
+    The eigenvalues are those of the correlation matrix, so the result does not depend on units.
     """
     variances = np.diag(covariance)
     if not len(variances) or not np.all(variances > 0.0) or not np.isfinite(covariance).all():
@@ -151,8 +151,8 @@ def _positive(covariance: Array) -> bool:
     return bool(values[0] > -len(values) * np.finfo(float).eps * values[-1])
 
 
-def _given_the_rest(covariance: Array, count: int) -> Array:
-    """The covariance of the first parameters when the others keep their values."""
+def _conditional(covariance: Array, count: int) -> Array:
+    """The covariance of the first parameters, given the values of the others."""
     known = np.isfinite(np.diag(covariance))
     a, b = np.flatnonzero(known[:count]), count + np.flatnonzero(known[count:])
     across = covariance[np.ix_(a, b)]
@@ -163,7 +163,11 @@ def _given_the_rest(covariance: Array, count: int) -> Array:
 
 
 def _dropped(table: Table, names: list[str], values: Array, errors: Array) -> tuple[int, ...]:
-    """By the metadata; in CSV, what is exactly zero and has no errors though others have."""
+    """The indices of dropped parameters, from the metadata.
+
+    A CSV has no metadata: there, parameters count as dropped that are exactly zero and have no
+    error although others have one.
+    """
     if "dropped" in table.meta.extra:
         stated = set(table.meta.extra["dropped"])
         return tuple(i for i, name in enumerate(names) if name in stated)

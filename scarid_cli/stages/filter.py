@@ -1,4 +1,4 @@
-"""Low-pass filter columns of a table: row by row, or forwards and backwards over the record."""
+"""Low-pass filter columns of a table, either row by row or over the whole record."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from scarid_cli.stages.columns import Plan, Task, processed
 def filtered(
     table: Table, filters: dict[str, Process], left_out: list[TooShort] | None = None
 ) -> Table:
-    """The table with some columns filtered, each by its own process, in each segment by itself.
+    """The table with some columns filtered; `filters` has the process of each.
 
-    `left_out` receives why a segment was left out.
+    Each segment between gaps is filtered by itself. `left_out` receives the reason for each segment
+    that was left out.
     """
     plan = Plan([Task(name, lowpass, (name,)) for name, lowpass in filters.items()])
     plan.check(table.period)

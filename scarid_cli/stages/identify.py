@@ -1,4 +1,4 @@
-"""Estimate a robot's parameters from a motion, and judge whether they can be relied on."""
+"""Estimate a robot's parameters from a motion, and judge their reliability."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiab
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.lag_test import LAG
+from scarid_cli.algorithms.statistics.misalignment import LAG
 from scarid_cli.algorithms.statistics.outcome import Outcome, outcome
 from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
 from scarid_cli.algorithms.statistics.verdict import InUse, combination
@@ -24,15 +24,15 @@ from scarid_cli.stages import Sink
 from scarid_cli.stages.parameters import parameters
 from scarid_cli.stages.rows import Treatment, treated
 
-LAGS = 5  # rows that the subsample of a long record has at least in the lag of the lag test
+ROWS_PER_LAG = 5  # at least, in the subsample of a long record, within the lag of the lag test
 
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """Where an estimation is: it can be saved, and go on with another log.
+    """The state of an estimation, which can be saved and continued with another log.
 
-    `subsample` and `blocks` are for the statistics, the latter unless the former holds all rows.
-    `seen` are the samples so far, left out ones included.
+    `state` is that of the estimator. The statistics need `subsample` and, unless this holds all
+    rows, `blocks`. `seen` is the number of samples so far, including those that were left out.
     """
 
     state: Any
@@ -41,11 +41,14 @@ class Checkpoint:
     seen: int = 0
 
     @classmethod
-    def begun(cls, state: Any, h: float, *, holds: bool) -> Checkpoint:
-        """Before the first sample; samples are h [s] apart."""
+    def at_start(cls, state: Any, h: float, *, holds: bool) -> Checkpoint:
+        """The checkpoint before the first sample of a record sampled every h [s].
+
+        `holds`: the estimation keeps all rows in memory.
+        """
         if holds:
             return cls(state, Subsample(samples=ALL), None)
-        thinnest = int(LAG / LAGS / h + 1e-9) if h > 0.0 else 1
+        thinnest = int(LAG / ROWS_PER_LAG / h + 1e-9) if h > 0.0 else 1
         return cls(state, Subsample(thinnest=max(1, thinnest)), Blocks.every(h))
 
 
@@ -61,10 +64,11 @@ def identify(
     checkpoint: Checkpoint | None = None,
     keep: Callable[[Checkpoint], None] | None = None,
 ) -> Table:
-    """The parameters, once every row of the motion has been taken in.
+    """The table of parameters, estimated from all rows of a motion.
 
-    `trace` receives the estimates after every sample (Fig. 6). `checkpoint` is where an earlier
-    estimation left off, `keep` receives where this one does.
+    `initial` are the initial parameters, or zeros. `trace` receives the estimates after every
+    sample (Fig. 6). `checkpoint` is the checkpoint of an earlier estimation that is continued, and
+    `keep` receives that of this one.
     """
     treatment = treatment or Treatment()
     estimator = estimator.for_robot(robot)
@@ -75,7 +79,7 @@ def identify(
     if checkpoint is None:
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
-        checkpoint = Checkpoint.begun(state, table.period, holds=holds)
+        checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
     for batch, rows in treated(
         table, robot, treatment, checkpoint.seen, reference=estimator.REFERENCE
     ):
@@ -88,9 +92,7 @@ def identify(
     if keep:
         keep(checkpoint)
     meta = replace(table.meta, kind="parameters", robot=robot.name)
-    scores = found.found.scores
-    weighted = scores is not None and scores.whitening is not None
-    in_use = InUse(treatment.slow, treatment.align, weighted, treatment.essential)
+    in_use = InUse(treatment.slow, treatment.align, found.found.weighted, treatment.essential)
     return parameters(found, robot, meta, in_use, variance=variance)
 
 
@@ -98,7 +100,7 @@ def _check_enough(table: Table, robot: Robot, counted: int) -> None:
     if counted <= len(robot.names):
         raise bad_data(
             table.name,
-            f"{counted} rows that count",
+            f"{counted} rows to fit",
             expected=f"more than the {len(robot.names)} parameters of {robot.name}",
             remedy="take a longer log, or leave out fewer rows",
         )

@@ -15,7 +15,7 @@ from scarid_cli.io.table import SEGMENT, Instant, Table, steps_of
 
 
 def described(table: Table) -> Iterator[str]:
-    """A table's kind, robot, rows, sampling, metadata, columns and history, in lines of text."""
+    """The lines that describe a table: kind, robot, rows, sampling, metadata, columns, history."""
     meta = table.meta
     schema = schemas.load(meta.kind) if meta.kind else schemas.detect(table.columns)
     origin = f"version {meta.version}" if meta.kind else "inferred from its columns"
@@ -43,25 +43,28 @@ def described(table: Table) -> Iterator[str]:
 
 
 def _metadata(key: str, value: Any) -> Iterator[str]:
-    """A value on one line, the items of a list on a line each, and a matrix by its size."""
+    """A value on one line, a list with one line for each item, a matrix by its size only."""
     if isinstance(value, list) and value and isinstance(value[0], list):
         yield f"{key:<9} {len(value)} by {len(value[0])} numbers"
     elif isinstance(value, list):
         yield key
-        yield from (f"  {_shown(item)}" for item in value)
+        yield from (f"  {_text(item)}" for item in value)
     else:
-        yield f"{key:<9} {_shown(value)}"
+        yield f"{key:<9} {_text(value)}"
 
 
-def _shown(value: Any) -> str:
+def _text(value: Any) -> str:
     if isinstance(value, dict):
-        return ", ".join(f"{name} {_shown(item)}" for name, item in value.items())
+        return ", ".join(f"{name} {_text(item)}" for name, item in value.items())
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 @dataclass
 class Sampling:
-    """The first and the last time, the first interval and the time in gaps, all in [s]."""
+    """The sampling of a table: the first and last time, the first interval, and the gaps [s].
+
+    `gaps` is their number, and `missing` the time that they take in all.
+    """
 
     start: float
     end: float

@@ -1,4 +1,4 @@
-"""Convert logs as a robot's description says: columns, units, motors that drive its joints."""
+"""Convert logs by the rules in a robot's description: columns, units, and motors of its joints."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.logs import JOINT, LogFormat
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault, bad_data
+from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, number, with_columns
 from scarid_cli.stages.adapt import adapted
 
@@ -24,11 +25,11 @@ def as_described(
     units: list[tuple[str, str]],
     rate: float | None,
 ) -> Table:
-    """The table, adapted as the robot's description says; arguments override the description."""
+    """The table, converted by the robot's description; the arguments override the description."""
     log = robot.log
     if log is None:
         raise UsageFault(
-            f"{robot.name}: its description has no [log] that says what logs hold; add one"
+            f"{robot.name}: its description has no table [log] that describes its logs; add one"
         )
     described = {new: old for new, old in log.columns.items() if old not in names.values()}
     clocked = "t" in table.columns or "t" in {**described, **names}
@@ -42,20 +43,20 @@ def as_described(
 
 
 def at_joints(table: Table, robot: Robot, log: LogFormat) -> Table:
-    """Angles, torques or currents of motors become positions [rad or m] and torques of joints.
+    """Convert angles, torques or currents of motors to positions [rad or m] and torques of joints.
 
-    Signals that the log already has of the joints stay as they are.
+    Signals that the log already gives for the joints stay as they are.
     """
     transforms: dict[tuple[str, ...], Transform] = {}
     for names, transform in _groups(log):
         for name in names:
-            columns = [name.replace("{i}", str(i)) for i in range(1, len(robot.joints) + 1)]
+            columns = of_joints(len(robot.joints), name)
             present = [column in table.columns for column in columns]
             if any(present) and not all(present):
                 raise bad_data(
                     table.name,
                     f"the columns {', '.join(table.columns)}",
-                    expected=f"one of each motor of {robot.name}",
+                    expected=f"one for each motor of {robot.name}",
                     remedy="name the columns of all motors: a joint may depend on several of them",
                     column=columns[present.index(False)],
                 )

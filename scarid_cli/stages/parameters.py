@@ -1,4 +1,4 @@
-"""The table of identified parameters: made of an estimation's outcome, and read again."""
+"""The table of identified parameters: written from the outcome of an estimation, and read back."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ from scarid_cli.io.table import Metadata, Table, doubles
 
 @dataclass(frozen=True)
 class Identified:
-    """What a parameter table says: the robot as it was identified, and its parameters.
+    """The content of a parameter table: the robot as it was identified, and its parameters.
 
-    `theta` (parameters); `delay` [s] by which the torques led the motion, 0 if it was not fitted.
+    `theta` (parameters) are the estimates; `delay` [s] is the time by which the torques led the
+    motion, 0 if it was not fitted.
     """
 
     robot: Robot
@@ -33,7 +34,7 @@ class Identified:
 def identified(table: Table, robot: Robot) -> Identified:
     """The content of a parameter table, whose parameters must be those of this robot.
 
-    Coulomb friction may have got a part that fades with speed (`separable`).
+    Parameters of Stribeck friction, which the estimator `separable` adds, are allowed as well.
     """
     batches = list(table.batches)
     names = [name for batch in batches for name in batch.column("parameter").to_pylist()]
@@ -47,7 +48,7 @@ def identified(table: Table, robot: Robot) -> Identified:
             table.name,
             f"the parameters {', '.join(names)}",
             expected=f"those of {robot.name}: {', '.join(robot.names)}",
-            remedy="choose the robot they were identified for with --robot",
+            remedy="give the robot that they were identified for with --robot",
             column="parameter",
         )
     theta = values[: len(values) - len(velocities)]
@@ -57,7 +58,7 @@ def identified(table: Table, robot: Robot) -> Identified:
 
 @dataclass(frozen=True)
 class Labels:
-    """Names and units of all parameters of an outcome, and the places of those that were kept."""
+    """Names and units of all parameters of an outcome, and the indices of those that were kept."""
 
     names: list[str]
     units: list[str]
@@ -70,7 +71,7 @@ class Labels:
         return cls(names, units, found.kept)
 
     def placed(self, values: Array, otherwise: float) -> Array:
-        """Values of the kept parameters among those of all."""
+        """Values of the kept parameters, extended to all parameters by the value `otherwise`."""
         row = np.full(len(self.names), otherwise)
         row[self.kept] = values
         return row
@@ -79,7 +80,7 @@ class Labels:
 def parameters(
     found: Outcome, robot: Robot, meta: Metadata, in_use: InUse, *, variance: str
 ) -> Table:
-    """The table, with the verdict in its metadata."""
+    """The parameter table, with the verdict in its metadata."""
     labels = Labels.of(found, robot)
     known_errors = found.diagnostics.covariance
     nan = np.full(len(found.kept), np.nan)
@@ -108,7 +109,7 @@ def parameters(
 
 
 def _judged(found: Outcome, robot: Robot, labels: Labels, in_use: InUse) -> dict[str, Any]:
-    """The verdict, and what it is made of."""
+    """The metadata of the verdict, with the condition numbers that it is based on."""
     fit = found.found.fit
     names = [labels.names[i] for i in labels.kept]
     scaled, direction = weakest(fit.unit_covariance)
@@ -131,14 +132,12 @@ def _judged(found: Outcome, robot: Robot, labels: Labels, in_use: InUse) -> dict
 
 
 def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
-    """What else the metadata say of the estimation."""
-    fit, scores = found.found.fit, found.found.scores
-    # Of weighted rows it is near 1 and says nothing; `joints` has theirs.
-    weighted = scores is not None and scores.whitening is not None
+    """The remaining metadata of the estimation."""
+    fit = found.found.fit
+    # The residual of weighted rows is near 1 and means nothing; `joints` has that of each joint.
+    meaningful = fit.variance >= 0.0 and not found.found.weighted
     extra: dict[str, Any] = {
-        "residual_deviation": float(np.sqrt(fit.variance))
-        if fit.variance >= 0.0 and not weighted
-        else None,
+        "residual_deviation": float(np.sqrt(fit.variance)) if meaningful else None,
         "samples": found.samples,
         "excitation": dict(zip(labels.names, found.excitation.tolist(), strict=False)),
         "joints": [asdict(joint) for joint in found.diagnostics.joints],
@@ -159,5 +158,5 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
 
 
 def known(values: Array) -> pa.Array:
-    """A column whose values that do not exist (nan, inf) are empty cells."""
+    """A column in which values that are not finite become empty cells."""
     return pa.array([x if np.isfinite(x) else None for x in values.tolist()], pa.float64())

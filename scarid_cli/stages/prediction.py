@@ -1,4 +1,4 @@
-"""Torques of a motion, predicted by identified parameters, and how well they agree."""
+"""Predict the torques of a motion with identified parameters, and measure how well they agree."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ Part = tuple[pa.RecordBatch | None, Rows]
 def predicted(
     table: Table, models: Sequence[Identified], treatment: Treatment
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows, list[Array]]]:
-    """Each part of a motion with the torques (joints, samples) that each model predicts.
+    """Each part of a motion, with the torques (joints, samples) that each model predicts.
 
-    The models are of one robot and one delay, by which the torques are predicted earlier.
+    All models have the same robot and the same delay, by which the predicted torques lead.
     """
     delay = models[0].delay
     parts = treated(table, models[0].robot, treatment)
@@ -41,9 +41,9 @@ def _alone(parts: Iterator[Part]) -> Iterator[tuple[Part, Rows, slice]]:
 
 
 def _surrounded(parts: Iterator[Part]) -> Iterator[tuple[Part, Rows, slice]]:
-    """Each part, its rows with the sample before and the one after it, and where they are in these.
+    """Each part, its rows with one more sample before and after, and the slice of its own rows.
 
-    A part waits for the next one.
+    A part is returned only after the next one has been read.
     """
     before: list[Rows] = []
     held: Part | None = None
@@ -68,7 +68,7 @@ class Tally:
         self.sums = [empty() for _ in range(self.joints)]
 
     def add(self, rows: Rows, torques: Array) -> None:
-        """Take in the rows that count, with their predicted torques (joints, samples)."""
+        """Add the rows whose scale is not zero, with their predicted torques (joints, samples)."""
         counts = [np.flatnonzero(scale) for scale in rows.scales.T]
         self.sums = [
             accumulate(sums, tau[at], own[at])

@@ -30,9 +30,9 @@ from scarid_cli.io.table import (
     with_columns,
 )
 
-SLOWER = 0.05  # fraction of the log's period by which a longer new period counts as a lower rate
-FIRST = 32  # intervals whose median is taken for the log's period
-MAX_GAP = 5.0  # periods of the log; a longer interval is a gap, unless a new period is as long
+SLOWER = 0.05  # fraction of the log's period by which the new period must be longer to low-pass
+FIRST = 32  # intervals, whose median is taken as the period of the log
+MAX_GAP = 5.0  # periods of the log; a longer interval is a gap, unless the new period is as long
 
 
 def resample(
@@ -41,7 +41,7 @@ def resample(
     max_gap: float | None = None,
     report: Callable[[Clock], None] = lambda _: None,
 ) -> Table:
-    """The table at a constant rate [Hz]; `report` is given the old clock after the last row.
+    """The table at a constant rate [Hz]; `report` is called with the old clock after the last row.
 
     Numbers are interpolated linearly, and low-passed if the new period is longer than that of the
     log; other columns keep the value of the previous row. An interval longer than `max_gap` [s]
@@ -54,7 +54,7 @@ def resample(
     return replace(table, schema=schema, meta=meta, batches=batches)
 
 
-def _begun(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
+def _with_period(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
     """The median of the first intervals [s], and all batches."""
     held: list[pa.RecordBatch] = []
     steps = np.empty(0)
@@ -68,8 +68,8 @@ def _begun(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
     if not len(steps):
         raise bad_data(
             table.name,
-            "time that never increases",
-            expected="time to increase",
+            "a time that never increases",
+            expected="an increasing time",
             remedy="give a log with a clock",
             column="t",
         )
@@ -83,7 +83,7 @@ def _rows(
     max_gap: float | None,
     report: Callable[[Clock], None],
 ) -> Iterator[pa.RecordBatch]:
-    own, batches = _begun(table)
+    own, batches = _with_period(table)
     splitting = Splitting(table.name, max_gap or max(MAX_GAP * own, period))
     factor = max(1, int(np.ceil(period / own - SLOWER)))
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]
@@ -104,7 +104,7 @@ def _rows(
 
 
 class Splitting:
-    """Cuts batches into pieces without repeated rows, at gaps longer than `limit` [s]."""
+    """Splits batches at gaps longer than `limit` [s], and drops repeated rows."""
 
     def __init__(self, name: str, limit: float) -> None:
         self._name = name
@@ -115,7 +115,7 @@ class Splitting:
         self.clock = Clock()
 
     def pieces(self, batch: pa.RecordBatch) -> Iterator[tuple[bool, pa.RecordBatch]]:
-        """The pieces of a batch, each with whether a segment begins with it."""
+        """The pieces of a batch, and for each of them whether it begins a new segment."""
         steps, jumps, last = steps_of(batch, self._last)
         self._check(steps)
         begins = (steps > self._limit) | (jumps != 0)
@@ -153,9 +153,10 @@ class Splitting:
 
 @dataclass
 class Interpolation:
-    """Interpolates the new rows of a segment; `held` are its last samples with all columns.
+    """Interpolates the new rows of a segment.
 
-    `first` is the number of the first of the rows that it returned last.
+    `held` are the last samples of the segment with all columns; `first` is the number of the first
+    row of those that were returned last.
     """
 
     resampler: Resampler
@@ -189,7 +190,7 @@ class Interpolation:
         left = np.maximum(np.searchsorted(times, at + 1e-12, side="right") - 1, 0)
         mark = integers(np.full(len(at), segment))
         new = {"t": at, SEGMENT: mark, **dict(zip(self.numbers, found, strict=True))}
-        return _made(together, self.schema, new, left)
+        return _batch(together, self.schema, new, left)
 
     def _at(self, t: float, x: Array) -> ResamplerState:
         if self.state is None:
@@ -199,7 +200,7 @@ class Interpolation:
 
 @dataclass
 class Decimation:
-    """Low-passes rows and keeps every `factor`-th; `held` are rows that wait, with all columns."""
+    """Low-passes rows and keeps every `factor`-th; `held` are the waiting rows with all columns."""
 
     decimator: Decimator
     schema: pa.Schema
@@ -211,7 +212,7 @@ class Decimation:
     start: float = 0.0  # time of row 0
 
     def rows(self, batch: pa.RecordBatch, first: int, start: float) -> pa.RecordBatch | None:
-        """The rows that are complete with this batch, if any.
+        """The rows that this batch completes, if any.
 
         `first` is the number of the batch's first row, `start` the time of row 0 [s].
         """
@@ -241,16 +242,16 @@ class Decimation:
         t = self.start + numbers * self.period
         mark = integers(segments_of(self.held)[places])
         new = {"t": t, SEGMENT: mark, **dict(zip(self.numbers, found, strict=True))}
-        made = _made(self.held, self.schema, new, places)
+        made = _batch(self.held, self.schema, new, places)
         done = int(places[-1]) + 1
         self.held, self.at = self.held.slice(done), self.at + done
         return made
 
 
-def _made(
+def _batch(
     source: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any], places: Numbers
 ) -> pa.RecordBatch:
-    """A batch of new columns, and of the other columns at these rows of the source."""
+    """A batch of the new columns, with the other columns taken from these rows of the source."""
     others = {
         name: source.column(name).take(pa.array(places)) for name in schema.names if name not in new
     }

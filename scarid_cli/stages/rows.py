@@ -1,4 +1,4 @@
-"""From a motion to the rows of a regression, and what is done to them on the way."""
+"""The rows of the regression from a motion, after the treatment that the user asked for."""
 
 from __future__ import annotations
 
@@ -13,19 +13,21 @@ from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, without
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
+from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, segments_of, settled_runs
 
-GAP = 0.05  # s: more than the statistics of a long record leave between its samples
+GAP_DURATION = 0.05  # s: longer than the intervals in the subsample of a long record
 
 
 @dataclass(frozen=True)
 class Treatment:
-    """What is done to the rows before they are fitted.
+    """How the rows of a motion are treated before the fit.
 
-    `skip` rows at the start and at the end of the table are left out; W and the torques are
-    decimated by each factor in turn; rows of a joint slower than `slow` (joints) [rad/s or m/s] are
-    left out. The other two are the estimation's own: `align` fits the time by which the torques
-    lead the motion as well; `essential` drops what is not known.
+    `skip` rows at the start and at the end of the table are left out. W and the torques are
+    decimated by each factor of `decimate` in turn. Rows of a joint that is slower than `slow`
+    (joints) [rad/s or m/s] are left out. Two more options concern the fit: `align` also fits the
+    time by which the torques lead the motion, and `essential` drops parameters that are not
+    essential.
     """
 
     skip: tuple[int, int] = (0, 0)
@@ -36,40 +38,37 @@ class Treatment:
 
     @property
     def holds(self) -> bool:
-        """Whether it needs all rows at once."""
+        """Whether the treatment needs all rows at once."""
         return bool(self.decimate) or self.align
 
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of a motion that a robot's regression needs; its samples are h [s] apart.
+    """The columns that the regression of a robot needs from a motion sampled every h [s].
 
-    `reference`: the position and velocity that the robot was to follow as well, if they are there.
+    With `reference`, these include the reference position and velocity if the table has them.
     """
 
     robot: Robot
     h: float
     reference: bool
 
-    @property
-    def names(self) -> list[str]:
-        joints = range(1, len(self.robot.joints) + 1)
-        return [f"{signal}{i}" for signal in ("q", "dq", "ddq", "tau") for i in joints]
-
     def motion(self, batch: pa.RecordBatch) -> Array:
         """Position, velocity, acceleration and torque (4, joints, samples)."""
-        return matrix(batch, self.names).reshape(4, len(self.robot.joints), batch.num_rows)
+        joints = len(self.robot.joints)
+        names = of_joints(joints, "q{i}", "dq{i}", "ddq{i}", "tau{i}")
+        return matrix(batch, names).reshape(4, joints, batch.num_rows)
 
     def references(self, columns: list[str], batch: pa.RecordBatch) -> Array | None:
-        """Position and velocity that the robot was to follow."""
-        joints = range(1, len(self.robot.joints) + 1)
-        names = [f"{signal}{i}_ref" for signal in ("q", "dq") for i in joints]
+        """The reference position and velocity (2, joints, samples), if needed and present."""
+        joints = len(self.robot.joints)
+        names = of_joints(joints, "q{i}_ref", "dq{i}_ref")
         if not self.reference or not set(names) <= set(columns):
             return None
-        return matrix(batch, names).reshape(2, len(self.robot.joints), batch.num_rows)
+        return matrix(batch, names).reshape(2, joints, batch.num_rows)
 
     def rows(self, columns: list[str], batch: pa.RecordBatch, at: int, slow: Array | None) -> Rows:
-        """The rows of a batch whose first sample has this number."""
+        """The rows of a batch whose first sample has the number `at`."""
         return rows_of(
             self.robot,
             self.motion(batch),
@@ -83,9 +82,10 @@ class Columns:
 def treated(
     table: Table, robot: Robot, treatment: Treatment, seen: int = 0, *, reference: bool = False
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
-    """The rows of the settled samples, batch by batch; or all at once, then without a batch.
+    """The rows of the settled samples, each part with the batch that it comes from.
 
-    `seen` is the number of the first sample; `reference`: the rows need that of the robot.
+    A treatment that needs all rows at once gives a single part, without a batch. `seen` is the
+    number of the first sample. With `reference`, the rows include the reference of the robot.
     """
     counted = 0
     for batch, rows in _treated(table, Columns(robot, table.period, reference), treatment, seen):
@@ -94,8 +94,8 @@ def treated(
     if not counted:
         raise bad_data(
             table.name,
-            "no rows that count",
-            expected="some that are settled and left in",
+            "no rows to fit",
+            expected="some rows that are settled and not left out",
             remedy="take a longer log, or leave out fewer rows",
         )
 
@@ -118,14 +118,14 @@ def _treated(
 
 
 class Gaps:
-    """By how much the numbers of samples jump at the gaps of a record: as if each took GAP."""
+    """The jumps of the sample numbers at the gaps of a record, as if each took GAP_DURATION."""
 
     def __init__(self, period: float) -> None:
         self._first: int | None = None
-        self._jump = max(1, round(GAP / period)) if period > 0.0 else 1
+        self._jump = max(1, round(GAP_DURATION / period)) if period > 0.0 else 1
 
     def before(self, batch: pa.RecordBatch) -> int:
-        """All jumps before this part of a segment."""
+        """The sum of all jumps before this batch, which lies within one segment."""
         segment = int(segments_of(batch)[0])
         if self._first is None:
             self._first = segment
@@ -133,7 +133,7 @@ class Gaps:
 
 
 def _without_last(rows: int, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-    """Without the last rows of a table: these are held back until others follow."""
+    """The batches without the last rows of the table: rows are held back until enough follow."""
     held: deque[pa.RecordBatch] = deque()
     count = 0
     for batch in batches:
@@ -151,7 +151,7 @@ def _without_last(rows: int, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.R
 def _after(
     start: int, parts: Iterator[tuple[int, pa.RecordBatch]]
 ) -> Iterator[tuple[int, pa.RecordBatch]]:
-    """Without the first rows of a table, each part with the number of its first row."""
+    """The parts without the first rows of the table, each with the number of its first row."""
     for first, batch in parts:
         skipped = max(0, start - first)
         if skipped < batch.num_rows:

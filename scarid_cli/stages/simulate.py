@@ -1,4 +1,4 @@
-"""Let a simulated robot follow a trajectory, and log its sensors."""
+"""Simulate a robot that follows a trajectory in closed loop, and log its sensors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, LoopSta
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
 from scarid_cli.errors import BadData, UsageFault
-from scarid_cli.io.table import Table, doubles, matrix, number
+from scarid_cli.io.schemas import of_joints
+from scarid_cli.io.table import Table, doubles, matrix, motion_fields, number, numbers
 
 SIGNALS = ("q", "dq", "ddq")
 
@@ -20,8 +21,8 @@ SIGNALS = ("q", "dq", "ddq")
 def simulate(table: Table, loop: ClosedLoop, log_rate: float, *, truth: bool) -> Table:
     """The log, at the log rate [Hz], of a robot that follows a trajectory in closed loop.
 
-    The robot starts at rest at the first position of the trajectory. The log has the reference
-    beside the measured columns; `truth` adds the true ones.
+    The robot starts at rest at the first position of the trajectory. The log has measured signals
+    and the reference; `truth` adds the true signals.
     """
     period = table.period
     ratio = _whole(loop.control_rate * period, "the trajectory's rate")
@@ -39,16 +40,13 @@ def _whole(ratio: float, what: str) -> int:
 
 
 def _schema(robot: Robot, *, truth: bool) -> pa.Schema:
-    def columns(prefix: str, suffix: str, units: list[str]) -> list[pa.Field]:
-        return [number(f"{prefix}{i}{suffix}", unit) for i, unit in enumerate(units, start=1)]
-
     torque = [joint.torque_unit for joint in robot.joints]
-    motion = [[joint.unit + per_time for joint in robot.joints] for per_time in ("", "/s", "/s2")]
-    fields = [number("t", "s"), *columns("q", "", motion[0]), *columns("tau", "", torque)]
-    for suffix in ("_ref", "_true") if truth else ("_ref",):
-        for name, units in zip(SIGNALS, motion, strict=True):
-            fields += columns(name, suffix, units)
-    return pa.schema(fields + (columns("tau", "_true", torque) if truth else []))
+    units = [joint.unit for joint in robot.joints]
+    fields = [number("t", "s"), *numbers("q{i}", units), *numbers("tau{i}", torque)]
+    fields += motion_fields(units, "_ref")
+    if truth:
+        fields += [*motion_fields(units, "_true"), *numbers("tau{i}_true", torque)]
+    return pa.schema(fields)
 
 
 def _rows(
@@ -64,8 +62,8 @@ def _rows(
         except DivergedError as error:
             when = start + (tick + error.tick) / loop.control_rate
             raise BadData(
-                f"the closed loop blew up at t = {when:.4g} s; lower the gains or raise the "
-                "control rate"
+                f"the closed loop became unstable at t = {when:.4g} s; lower the gains or raise "
+                "the control rate"
             ) from None
         ticks = np.arange(-tick % keep, log.q.shape[1], keep)
         t = start + (tick + ticks) / loop.control_rate
@@ -78,7 +76,7 @@ def _rows(
 
 def _references(table: Table, joints: int, ratio: int) -> Iterator[tuple[float, Motion]]:
     """The time [s] of the first row, and the reference at the ticks of the loop, in chunks."""
-    columns = [f"{name}{i}_ref" for name in SIGNALS for i in range(1, joints + 1)]
+    columns = of_joints(joints, *(f"{name}{{i}}_ref" for name in SIGNALS))
     period = table.period
     start: float | None = None
     last = np.empty((3 * joints, 0))

@@ -1,4 +1,4 @@
-"""Check a trajectory, tabulate it, and judge how well it excites a robot."""
+"""Check a trajectory against limits, tabulate it, and judge how well it excites a robot."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from scarid_cli.algorithms.trajectories.trajectory import Trajectory
 from scarid_cli.algorithms.trajectories.via import ViaPath
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
-from scarid_cli.io.table import Metadata, Table, doubles, number
+from scarid_cli.io.table import Metadata, Table, doubles, motion_fields, number
 
-ROWS = 4096
+BATCH_ROWS = 4096
 
 
 def via_points(table: Table, robot: Robot) -> ViaPath:
@@ -36,7 +36,7 @@ def via_points(table: Table, robot: Robot) -> ViaPath:
 
 
 def checked(trajectory: Trajectory, limits: Limits, rate: float) -> Trajectory:
-    """The trajectory itself, if every row of its table, at the rate [Hz], keeps the limits."""
+    """The trajectory itself, if every row of its table at this rate [Hz] is within the limits."""
     for t, motion in _samples(trajectory, rate):
         limits.require(t, *motion)
     return trajectory
@@ -45,10 +45,7 @@ def checked(trajectory: Trajectory, limits: Limits, rate: float) -> Trajectory:
 def tabulate(trajectory: Trajectory, robot: Robot, rate: float, meta: Metadata) -> Table:
     """The reference as a table, one row every 1 / rate [s]."""
     units = [joint.unit for joint in robot.joints]
-    fields = [number("t", "s")]
-    for name, per_time in (("q", ""), ("dq", "/s"), ("ddq", "/s2")):
-        fields += [number(f"{name}{i}_ref", u + per_time) for i, u in enumerate(units, start=1)]
-    schema = pa.schema(fields)
+    schema = pa.schema([number("t", "s"), *motion_fields(units, "_ref")])
     return Table("trajgen", schema, meta, _rows(trajectory, rate, schema))
 
 
@@ -73,6 +70,6 @@ def conditioning(trajectory: Trajectory, robot: Robot, rate: float) -> str:
 def _samples(trajectory: Trajectory, rate: float) -> Iterator[tuple[Array, tuple[Array, ...]]]:
     """The times [s] of the rows of the table, and the motion at these times, in batches."""
     count = round(trajectory.duration * rate) + 1
-    for start in range(0, count, ROWS):
-        t = np.arange(start, min(start + ROWS, count)) / rate
+    for start in range(0, count, BATCH_ROWS):
+        t = np.arange(start, min(start + BATCH_ROWS, count)) / rate
         yield t, trajectory.sample(t)

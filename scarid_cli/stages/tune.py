@@ -1,8 +1,8 @@
-"""Find settings of differentiators in a log, without the truth."""
+"""Find the settings of differentiators from a log, without knowing the true derivatives."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from math import isfinite
 from typing import Any
@@ -25,7 +25,7 @@ LIKELIHOOD, SMOOTHER, TORQUES = "likelihood", "smoother", "torques"
 
 @dataclass(frozen=True)
 class Tried:
-    """One row of the table of trials; no joint where it is one setting for all."""
+    """One row of the table of trials; `joint` is None if all joints share the settings."""
 
     name: str
     joint: int | None
@@ -40,9 +40,9 @@ class Tried:
 
 @dataclass(frozen=True)
 class Record:
-    """Positions and torques of a whole log (joints, rows), sampled every h [s].
+    """Positions and torques (joints, rows) of a log, sampled every h [s].
 
-    Of a log with gaps, it is the longest segment.
+    If the log has gaps, the record is its longest segment.
     """
 
     q: Array
@@ -52,8 +52,7 @@ class Record:
 
     @classmethod
     def of(cls, table: Table, joints: int, *, torques: bool) -> Record:
-        numbers = range(1, joints + 1)
-        names = [f"{s}{i}" for s in ("q", "tau")[: 1 + torques] for i in numbers]
+        names = schemas.of_joints(joints, *("q{i}", "tau{i}")[: 1 + torques])
         parts = (
             np.concatenate([matrix(batch, names) for batch in segment.batches], axis=1)
             for segment in segments(table)
@@ -72,7 +71,7 @@ def online() -> list[str]:
 def tune(
     record: Record, names: list[str], robot: Robot | None, seed: int, progress: Callable[[], object]
 ) -> list[Tried]:
-    """All trials, method by method; of each method and joint the one that is `best` is chosen."""
+    """All trials of these methods; the chosen one of each method and joint is marked `best`."""
     rows: list[Tried] = []
     try:
         for name in names:
@@ -101,14 +100,12 @@ def _for_positions(
         likelihood = judges.negative_log_likelihood(q, h)
         fitted = judges.fit(method, q, h)
         for tried in (method, fitted) if values(method)["noise"] else (fitted,):
-            yield Tried(name, joint, LIKELIHOOD, _judged(tried, likelihood), tried is fitted)
-        yield Tried(name, joint, SMOOTHER, _judged(fitted, judge), best=True)
+            trial = search.Trial(tried, likelihood(tried))
+            yield Tried(name, joint, LIKELIHOOD, trial, tried is fitted)
+        yield Tried(name, joint, SMOOTHER, search.Trial(fitted, judge(fitted)), best=True)
         return
-    trials = []
-    for trial in search.search(method, method.TUNED, judge, h, seed):
-        trials.append(trial)
-        progress()
-    yield from _marked(name, joint, SMOOTHER, trials)
+    trials = search.search(method, method.TUNED, judge, h, seed)
+    yield from _marked(name, joint, SMOOTHER, trials, progress)
 
 
 def _for_torques(
@@ -121,25 +118,27 @@ def _for_torques(
         # The most likely intensity also follows vibrations; a lower one may identify better.
         method = judges.fit(method, record.q, record.h)
         ranges = {"intensity": Range(1e-12 * method.intensity, 1e2 * method.intensity)}
-    trials = []
-    for trial in search.search(method, ranges, judge, record.h, seed):
-        trials.append(trial)
-        progress()
-    yield from _marked(name, None, TORQUES, trials)
-
-
-def _judged(method: Any, judge: search.Judge) -> search.Trial:
-    return search.Trial(method, judge(method))
+    trials = search.search(method, ranges, judge, record.h, seed)
+    yield from _marked(name, None, TORQUES, trials, progress)
 
 
 def _marked(
-    name: str, joint: int | None, judge: str, trials: list[search.Trial]
+    name: str,
+    joint: int | None,
+    judge: str,
+    search_of_settings: Iterable[search.Trial],
+    progress: Callable[[], object],
 ) -> Iterator[Tried]:
+    """The trials of a search, with the best one marked; `progress` is called after each."""
+    trials = []
+    for trial in search_of_settings:
+        trials.append(trial)
+        progress()
     best = min(trials, key=lambda trial: trial.loss if isfinite(trial.loss) else np.inf)
     if not isfinite(best.loss):
         raise BadData(
-            f"{name}: no settings gave a result by the judge of {judge}; expected a log that moves "
-            "every joint, and excites every parameter if a robot is given"
+            f"{name}: no settings could be judged by the {judge}; give a log that moves every "
+            "joint and, with --robot, excites every parameter"
         )
     for trial in trials:
         yield Tried(name, joint, judge, trial, trial is best)
@@ -165,7 +164,7 @@ def chosen(rows: list[Tried], joints: int) -> tuple[str, dict[str, Settings]]:
 
 
 def trials(table: Table, rows: list[Tried]) -> Table:
-    """The table of what was tried."""
+    """The table of all trials."""
     schema = schemas.load("trials").arrow()
     losses = [row.trial.loss if isfinite(row.trial.loss) else None for row in rows]
     batch = pa.RecordBatch.from_arrays(

@@ -18,10 +18,10 @@ from scarid_cli.stages.parameters import Identified, known
 from scarid_cli.stages.prediction import qualities
 from scarid_cli.stages.rows import Treatment
 
-SHOWN = 5  # parameters that a message names
-COLLAPSE = 2.0  # times the residual variance: from here on physical consistency adds more torque
-# error than there was before
-FALL = 0.01  # of R2: less is of no account, however small the residual was
+SHOWN = 5  # parameters that a message names at most
+COLLAPSE = 2.0  # ratio of residual variances above which a warning is given: physical consistency
+# then adds more torque error than there was before
+FALL = 0.01  # of R2: a smaller decrease is negligible, however small the residual was
 
 
 def physical(identified: Estimates) -> Physical:
@@ -51,7 +51,7 @@ def document(text: str, robot: Robot, found: Physical, command: str) -> str:
 
 
 def base_table(table: Table, identified: Estimates, found: Physical) -> Table:
-    """The base parameters of the new bodies, as `validate` takes them."""
+    """The base parameters of the new bodies, as a parameter table that `validate` reads."""
     schema = pa.schema([pa.field("parameter", pa.string()), pa.field("unit", pa.string()),
                         number("estimate"), number("moved")])  # fmt: skip
     robot, fixed = identified.robot, identified.fixed
@@ -71,7 +71,7 @@ def r2_before_and_after(
 ) -> tuple[Array, Array]:
     """R2 (eq. 36) per joint of a motion, with the identified and the consistent parameters.
 
-    Rows are treated as `validate` does.
+    Rows are treated as in `validate`.
     """
     robot, delay = identified.robot, identified.delay
     models = [Identified(robot, theta, delay) for theta in (identified.values, found.base)]
@@ -81,7 +81,7 @@ def r2_before_and_after(
 
 
 def r2_report(before: Array, after: Array) -> Iterator[str]:
-    """R2 per joint before and after, and a warning for the joints that lost much of it."""
+    """R2 per joint before and after, and a warning for joints whose R2 falls substantially."""
     yield f"R2 of the identified parameters: {_listed(before)}"
     yield f"R2 of the physically consistent ones: {_listed(after)}"
     lost = (1.0 - after > COLLAPSE * (1.0 - before)) & (before - after > FALL)
@@ -96,7 +96,7 @@ def r2_report(before: Array, after: Array) -> Iterator[str]:
 
 
 def consistency_report(identified: Estimates, found: Physical) -> Iterator[str]:
-    """How far the parameters had to move, which could not stay at zero, and the masses."""
+    """How far the parameters moved, which of them could not stay at zero, and the masses."""
     if identified.remark:
         yield identified.remark
     else:
@@ -120,14 +120,14 @@ def _distance(identified: Estimates, found: Physical) -> str:
 
 
 def _not_zero(identified: Estimates, found: Physical) -> Iterator[str]:
-    """Dropped parameters that positive masses do not allow to be zero."""
+    """Dropped parameters that cannot be zero with positive masses."""
     parameters = identified.robot.parameters
     other = [i for i in identified.dropped if found.base[i] != 0.0]
     if other:
         names = [f"{parameters[i].name} ({found.base[i]:.2g} {parameters[i].unit})" for i in other]
         yield (
             f"{len(other)} of {len(identified.dropped)} dropped parameters cannot be zero with "
-            f"positive masses: {_some(names)}"
+            f"positive masses: {_first_few(names)}"
         )
 
 
@@ -136,18 +136,18 @@ def _farthest(identified: Estimates, found: Physical) -> str:
     far = [i for i in np.argsort(-moved) if moved[i] > 1.0]
     if not far:
         return f"no parameter moved by more than {moved.max():.2g} standard errors"
-    names = _some([f"{identified.robot.names[i]} by {moved[i]:.2g}" for i in far])
+    names = _first_few([f"{identified.robot.names[i]} by {moved[i]:.2g}" for i in far])
     return f"{len(far)} of {len(moved)} parameters moved by more than one standard error: {names}"
 
 
 def _moved(identified: Estimates, found: Physical) -> Array:
-    """By how many of their errors the parameters moved (parameters); nan without an error."""
+    """By how many standard errors the parameters moved (parameters); nan without an error."""
     with np.errstate(invalid="ignore", divide="ignore"):
         moved: Array = (found.base - identified.values) / identified.errors
     return moved
 
 
-def _some(items: Sequence[str]) -> str:
+def _first_few(items: Sequence[str]) -> str:
     return ", ".join(items[:SHOWN]) + (", ..." if len(items) > SHOWN else "")
 
 

@@ -1,4 +1,4 @@
-"""Predict torques with identified parameters, and measure how well."""
+"""Measure how well identified parameters predict the torques of a motion."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pyarrow as pa
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, number, segment_field, with_columns
+from scarid_cli.io.table import Table, number, numbers, segment_field, with_columns
 from scarid_cli.stages import Sink
 from scarid_cli.stages.parameters import Identified, known
 from scarid_cli.stages.prediction import Tally, predicted
@@ -26,7 +26,7 @@ def validate(
 ) -> Table:
     """The metrics of the torques that identified parameters predict for a motion, a row per joint.
 
-    The torques are predicted as early as those that the parameters were identified from.
+    The predicted torques lead the motion by the delay that was fitted with the parameters.
     `predictions` receives the measured and predicted torques of every sample (Fig. 7-8).
     """
     robot = model.robot
@@ -44,13 +44,9 @@ def validate(
 
 
 def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
-    fields = [number("t", "s")]
-    for suffix in ("", "_pred"):
-        fields += [
-            number(f"tau{i}{suffix}", joint.torque_unit)
-            for i, joint in enumerate(robot.joints, start=1)
-        ]
-    return pa.schema([*fields, *segment_field(table)])
+    units = [joint.torque_unit for joint in robot.joints]
+    torques = (*numbers("tau{i}", units), *numbers("tau{i}_pred", units))
+    return pa.schema([number("t", "s"), *torques, *segment_field(table)])
 
 
 def _metrics(table: Table, robot: Robot, qualities: list[Quality], delay: float) -> Table:

@@ -24,5 +24,5 @@ def test_a_pipe_prints_what_it_should(
     folder = HERE / case
     result = shell((folder / "cmd").read_text("utf-8"))
     assert_alike(result.out, (folder / "expout").read_text("utf-8"))
-    told = result.err.replace(str(samples), "SAMPLES")
-    assert_alike(told, (folder / "experr").read_text("utf-8"))
+    reported = result.err.replace(str(samples), "SAMPLES")
+    assert_alike(reported, (folder / "experr").read_text("utf-8"))

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from conftest import Result
 
-from scarid_cli.algorithms.robots.reading import FOLDER
+from scarid_cli.algorithms.robots.reading import ROBOTS
 
 Run = Callable[..., Result]
 
@@ -57,7 +57,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_a_bad_log_is_told_in_one_line(name: str, scarid: Run, tmp_path: Path) -> None:
+def test_a_bad_log_is_reported_in_one_line(name: str, scarid: Run, tmp_path: Path) -> None:
     lines, message = CASES[name]
     log = tmp_path / "log.csv"
     log.write_text("".join(f"{line}\n" for line in lines))
@@ -136,7 +136,7 @@ def test_values_are_checked_in_the_columns_that_a_command_reads(
         assert result.out.splitlines()[5].startswith("0.04,4,nan,")
 
 
-def test_a_wrong_unit_is_told(scarid: Run, tmp_path: Path) -> None:
+def test_a_wrong_unit_is_reported(scarid: Run, tmp_path: Path) -> None:
     log = tmp_path / "log.parquet"
     degrees = pa.field("q1", pa.float64(), metadata={"unit": "deg"})
     write_parquet(log, [pa.field("t", pa.float64()), degrees])
@@ -145,7 +145,7 @@ def test_a_wrong_unit_is_told(scarid: Run, tmp_path: Path) -> None:
     assert f"{log}, column q1: found unit deg, expected rad or m; convert" in result.err
 
 
-def test_text_in_a_typed_column_is_told(scarid: Run, tmp_path: Path) -> None:
+def test_text_in_a_typed_column_is_reported(scarid: Run, tmp_path: Path) -> None:
     log = tmp_path / "log.parquet"
     write_parquet(log, [pa.field("t", pa.float64()), pa.field("q1", pa.float64())])
     table = pq.read_table(log)
@@ -164,7 +164,7 @@ def test_a_motion_without_derivatives_points_to_differentiate(scarid: Run, sampl
 
 
 @pytest.mark.parametrize("command", ["identify", "validate"])
-def test_a_motion_without_torques_is_told(
+def test_a_motion_without_torques_is_reported(
     command: str, scarid: Run, samples: Path, tmp_path: Path
 ) -> None:
     log = tmp_path / "log.csv"
@@ -176,7 +176,7 @@ def test_a_motion_without_torques_is_told(
     assert result.err.count("\n") == 1
 
 
-def test_a_robot_with_more_joints_than_the_log_is_told(scarid: Run, tmp_path: Path) -> None:
+def test_a_robot_with_more_joints_than_the_log_is_reported(scarid: Run, tmp_path: Path) -> None:
     log = tmp_path / "log.csv"
     log.write_text("t,q1,dq1,ddq1,tau1\n0,1,2,3,4\n0.1,1,2,3,4\n")
     result = scarid("identify", "--robot", "scara2", log)
@@ -185,7 +185,9 @@ def test_a_robot_with_more_joints_than_the_log_is_told(scarid: Run, tmp_path: Pa
     assert "for robot scara2 (another: --robot)" in result.err
 
 
-def test_parameters_of_another_robot_are_told(scarid: Run, samples: Path, tmp_path: Path) -> None:
+def test_parameters_of_another_robot_are_reported(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
     log = tmp_path / "log.csv"
     log.write_text("t,q1,dq1,ddq1,tau1\n0,1,2,3,4\n0.1,1,2,3,4\n")
     parameters = samples / "scara2.parameters.csv"
@@ -196,7 +198,7 @@ def test_parameters_of_another_robot_are_told(scarid: Run, samples: Path, tmp_pa
 
 @pytest.mark.parametrize("extension", ["parquet", "arrow", "arrows"])
 @pytest.mark.parametrize("part", [0.3, 0.9, 0.99])
-def test_a_cut_binary_file_is_told(
+def test_a_cut_binary_file_is_reported(
     extension: str, part: float, scarid: Run, samples: Path, tmp_path: Path
 ) -> None:
     whole = tmp_path / f"log.{extension}"
@@ -211,7 +213,7 @@ def test_a_cut_binary_file_is_told(
 
 
 @pytest.mark.parametrize("data", [b"a\rb\0c\n" * 9, b"x" * 200_000], ids=["binary", "one line"])
-def test_what_is_no_table_is_told(data: bytes, scarid: Run, tmp_path: Path) -> None:
+def test_what_is_no_table_is_reported(data: bytes, scarid: Run, tmp_path: Path) -> None:
     log = tmp_path / "log"
     log.write_bytes(data)
     result = scarid("info", log)
@@ -252,7 +254,7 @@ def test_via_points_that_break_the_bounds_are_refused(scarid: Run, tmp_path: Pat
 
 def test_a_robot_without_bounds_needs_them_as_options(scarid: Run, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text((FOLDER / "emps.toml").read_text("utf-8").replace("velocity_limit", "# v"))
+    path.write_text((ROBOTS / "emps.toml").read_text("utf-8").replace("velocity_limit", "# v"))
     result = scarid("trajgen", "--robot", path)
     assert result.status == 2
     assert "--dq-max: the bounds must be positive and finite (the description of" in result.err
@@ -265,5 +267,5 @@ def test_a_loop_that_blows_up_is_an_error_and_not_a_table(scarid: Run, tmp_path:
     output = tmp_path / "log.csv"
     result = scarid("simulate", "--kp", "-800,-25", "--kd", "-100,-2.5", reference, "-o", output)
     assert result.status == 65
-    assert "blew up at t = " in result.err
+    assert "became unstable at t = " in result.err
     assert not output.exists()

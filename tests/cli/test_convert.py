@@ -57,7 +57,7 @@ def test_arrays_become_columns(extension: str, shell: Shell, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("command", "status", "told"),
+    ("command", "status", "message"),
     [
         ("--map q1 LOG", 2, "--map q1: write NAME=VALUE"),
         ("--map q3=nothing LOG", 2, "no column 'nothing'"),
@@ -77,14 +77,14 @@ def test_arrays_become_columns(extension: str, shell: Shell, tmp_path: Path) -> 
         ("uneven.npz", 65, "expected arrays of one length"),
     ],
 )
-def test_what_cannot_be_is_told(
-    command: str, status: int, told: str, shell: Shell, tmp_path: Path
+def test_what_cannot_be_is_reported(
+    command: str, status: int, message: str, shell: Shell, tmp_path: Path
 ) -> None:
     for name in ("bad.npz", "bad.mat"):
         (tmp_path / name).write_text("this is neither")
     np.savez(tmp_path / "uneven.npz", t=np.arange(3.0), q=np.arange(4.0))
     result = shell(f"scarid convert {command.replace('LOG', '$SAMPLES/scara2.csv')}")
-    refused(result, status, told)
+    refused(result, status, message)
 
 
 ROBOT = """
@@ -142,15 +142,15 @@ def test_a_log_of_motors_becomes_one_of_joints(shell: Shell, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("command", "status", "told"),
+    ("command", "status", "message"),
     [
         ("--robot emps log.csv", 2, "its description has no [log]"),
         ("--robot robot.toml log.csv", 2, "no column 'enc2' to rename; it has enc1"),
         ("--robot robot.toml --map q2=other log.csv", 65, "name the columns of all motors"),
     ],
 )
-def test_a_log_that_does_not_fit_its_robot_is_told(
-    command: str, status: int, told: str, shell: Shell, tmp_path: Path
+def test_a_log_that_does_not_fit_its_robot_is_reported(
+    command: str, status: int, message: str, shell: Shell, tmp_path: Path
 ) -> None:
     robot = (
         ROBOT
@@ -159,11 +159,11 @@ def test_a_log_that_does_not_fit_its_robot_is_told(
     )
     (tmp_path / "robot.toml").write_text(robot)
     (tmp_path / "log.csv").write_text("enc1,amp1,other\n1,2,3\n4,5,6\n")
-    refused(shell(f"scarid convert {command}"), status, told)
+    refused(shell(f"scarid convert {command}"), status, message)
 
 
 @pytest.mark.parametrize("extension", ["npz", "mat"])
-def test_the_history_tells_the_digest_of_an_archive(
+def test_the_history_has_the_digest_of_an_archive(
     extension: str, shell: Shell, tmp_path: Path
 ) -> None:
     path = tmp_path / f"log.{extension}"

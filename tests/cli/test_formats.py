@@ -175,7 +175,7 @@ def test_no_history_leaves_it_out(scarid: Run, samples: Path, tmp_path: Path) ->
     assert Metadata.from_json(pq.read_schema(out).metadata[METADATA_KEY]).history == ()
 
 
-def test_the_extension_and_the_environment_tell_the_format(shell: Run, tmp_path: Path) -> None:
+def test_the_extension_and_the_environment_choose_the_format(shell: Run, tmp_path: Path) -> None:
     starts = {"a.parquet": b"PAR1", "b.arrow": b"ARROW1", "c.arrows": b"\xff\xff\xff\xff"}
     for name, start in starts.items():
         assert shell(f"scarid convert $SAMPLES/scara2.csv -o {name}").status == 0

@@ -26,7 +26,7 @@ from scarid_cli.algorithms.choices.registry import (
 )
 from scarid_cli.cli import COMMANDS, options
 from scarid_cli.cli import scarid as scarid_group
-from scarid_cli.io import schemas, writer
+from scarid_cli.io import schemas
 from scarid_cli.reporting import schemas as page
 
 Run = Callable[..., Result]
@@ -36,8 +36,8 @@ HEAVY = ["jinja2", "matplotlib", "numpy", "pandas", "pyarrow", "pyarrow.compute"
 def loaded(pipe_in: str, *words: str, cwd: Path) -> set[str]:
     """The heavy modules that a command has imported by its end."""
     script = (
-        f"import atexit, sys; told = lambda: [m for m in {HEAVY} if sys.modules.get(m)];"
-        "atexit.register(lambda: print(told(), file=sys.stderr));"
+        f"import atexit, sys; loaded = lambda: [m for m in {HEAVY} if sys.modules.get(m)];"
+        "atexit.register(lambda: print(loaded(), file=sys.stderr));"
         "from scarid_cli.__main__ import run; run()"
     )
     done = subprocess.run(
@@ -140,10 +140,6 @@ def test_the_page_on_tables_is_up_to_date() -> None:
     assert (ROOT / "docs" / "tables.md").read_text("utf-8") == page.page()
 
 
-def test_the_formats_of_the_help_are_those_of_the_writer() -> None:
-    assert options.FORMATS == writer.FORMATS
-
-
 def test_schemas_are_table_schemas() -> None:
     """What the Frictionless standard asks of a field: a name and one of its types."""
     for kind in (*schemas.KINDS, "via"):
@@ -157,7 +153,7 @@ def test_the_version_says_that_the_compiled_kernels_run(scarid: Run) -> None:
     assert scarid("--version").out == f"scarid {__version__} (kernels: compiled)\n"
 
 
-def test_nothing_tells_where_it_was_made() -> None:
+def test_nothing_reveals_where_it_was_made() -> None:
     tracked = subprocess.run(
         ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout.split()

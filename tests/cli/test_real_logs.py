@@ -76,7 +76,9 @@ def test_emps_with_asymmetric_friction_gives_its_published_figures(
     assert f"{float(lines[-1].split(',')[4]):.4f}" == "3.1117"
 
 
-def test_the_verdict_tells_a_real_log_that_is_not_matched(shell: Shell, real_logs: Path) -> None:
+def test_the_verdict_recognises_a_real_log_that_is_not_matched(
+    shell: Shell, real_logs: Path
+) -> None:
     pipe = (
         f"scarid differentiate MATCH {real_logs}/emps/emps_train.csv | scarid identify --robot emps"
     )
@@ -194,7 +196,7 @@ def test_six_axes_are_identified_online(six_axes: Path, shell: Shell) -> None:
 
 
 def test_six_axes_as_bodies_that_can_exist(six_axes: Path, shell: Shell) -> None:
-    """The URDF with them tells the torques as well as the base parameters do."""
+    """The URDF with them predicts the torques as well as the base parameters do."""
     pytest.importorskip("cvxpy")
     result = shell(
         f"scarid differentiate --set noise=1e-5 --set intensity=1e6"
@@ -218,7 +220,7 @@ def pendulum(run: str, real_logs: Path) -> str:
     )
 
 
-def test_a_vertical_arm_is_identified_from_three_logs_and_tells_the_fourth(
+def test_a_vertical_arm_is_identified_from_three_logs_and_predicts_the_fourth(
     shell: Shell, real_logs: Path
 ) -> None:
     """Measured before with other tools: R2 .869 and .967 on the test run, at 5 Hz."""

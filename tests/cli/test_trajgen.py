@@ -94,7 +94,7 @@ def test_limits_wider_than_the_description_s_are_reported(scarid: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (
             ("--home", "0"),
@@ -113,13 +113,13 @@ def test_limits_wider_than_the_description_s_are_reported(scarid: Run) -> None:
     ],
 )
 def test_what_cannot_be_generated_is_refused(
-    words: tuple[str, ...], told: str, elbow: Path, scarid: Run
+    words: tuple[str, ...], message: str, elbow: Path, scarid: Run
 ) -> None:
-    refused(scarid("trajgen", "--robot", elbow, *words), 2, told)
+    refused(scarid("trajgen", "--robot", elbow, *words), 2, message)
 
 
 @pytest.mark.parametrize(
-    ("points", "home", "told"),
+    ("points", "home", "message"),
     [
         ("0,0,-1;2,0.5,-2;4,0,-1", "0,-1", ""),
         ("0,0,-1;2,0.5,-2;4,0,-1", "0,-2", "must start at the home position: joint 2 is at -1"),
@@ -128,13 +128,13 @@ def test_what_cannot_be_generated_is_refused(
     ],
 )
 def test_via_points_start_and_end_at_home(
-    points: str, home: str, told: str, elbow: Path, scarid: Run, tmp_path: Path
+    points: str, home: str, message: str, elbow: Path, scarid: Run, tmp_path: Path
 ) -> None:
     via = tmp_path / "via.csv"
     via.write_text("t,q1,q2\n" + points.replace(";", "\n") + "\n")
     result = scarid("trajgen", "--robot", elbow, "--via", via, "--home", home)
-    if told:
-        refused(result, 2, told)
+    if message:
+        refused(result, 2, message)
     else:
         assert result.status == 0
         assert columns(result.out)["q2_ref"][0] == -1.0

@@ -85,7 +85,7 @@ def test_what_is_set_by_hand_comes_last(log: Path, tmp_path: Path, scarid: Run) 
         ),
     ],
 )
-def test_a_wrong_file_of_settings_is_told_in_one_line(
+def test_a_wrong_file_of_settings_is_reported_in_one_line(
     text: str, status: int, message: str, log: Path, tmp_path: Path, scarid: Run
 ) -> None:
     saved = tmp_path / "x.toml"
@@ -113,7 +113,7 @@ def test_a_log_that_does_not_move_leaves_no_files(tmp_path: Path, scarid: Run) -
     words = ["--method", "high-gain", "--robot", "scara2", "--save", saved, "-o", out]
     result = scarid("tune", *words, log)
     assert result.status == 65
-    assert "no settings gave a result" in result.err
+    assert "no settings could be judged" in result.err
     assert result.err.count("\n") == 1
     assert not saved.exists()
     assert not out.exists()

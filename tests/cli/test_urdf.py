@@ -194,7 +194,7 @@ def test_another_friction_model_needs_no_other_command(folder: Path, shell: Shel
     assert all(float(x) < 0.5 * float(y) for x, y in zip(errors, greater, strict=True))
     description.write_text(described)
     stale = shell("scarid validate --robot arm.toml --parameters p.csv motion.csv")
-    refused(stale, 65, "choose the robot they were identified for")
+    refused(stale, 65, "give the robot that they were identified for")
 
 
 def test_a_motion_that_is_none_is_refused_before_anything_is_reported(

@@ -50,13 +50,13 @@ USAGE = {
     "setting that is no number": (["identify", "--set", "p0=x"], "'x' is not a number"),
     "two values of a setting": (["identify", "--set", "p0=1,2"], "p0: give one value, not 2"),
     "skip of three": (["identify", "--skip", "1,2,3"], "at the start and at the end"),
-    "decimation by a half": (["identify", "--decimate", "0.5"], "whole numbers from 2"),
+    "decimation by a half": (["identify", "--decimate", "0.5"], "whole numbers of at least 2"),
     "negative slow": (["identify", "--drop-slow", "-1"], "cannot be negative"),
     "sign over no velocity": (["identify", "--smooth-sign", "0"], "must be positive"),
-    "state of aligned rows": (["identify", "--align", "--save", "s.npz"], "go row by row"),
+    "state of aligned rows": (["identify", "--align", "--save", "s.npz"], "work row by row"),
     "state of held rows": (
         ["identify", "--estimator", "irls", "--save", "s.npz"],
-        "go row by row",
+        "work row by row",
     ),
     "forgetting above 1": (["identify", "--forgetting", "1.1"], "forgetting must not exceed 1"),
     "unknown extension": (["convert", "LOG", "-o", "x.xlsx"], "x.xlsx: unknown extension"),
@@ -76,7 +76,7 @@ USAGE = {
 
 
 @pytest.mark.parametrize("name", USAGE)
-def test_a_wrong_command_line_is_told_in_one_line(
+def test_a_wrong_command_line_is_reported_in_one_line(
     name: str, scarid: Run, samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -74,8 +74,8 @@ class Block:
         messages = [line for line in shown if MESSAGE.match(line)]
         table = [line for line in shown if not MESSAGE.match(line)]
         said = iter(err.splitlines())
-        told = all(any(alike(line, message) for line in said) for message in messages)
-        return told and matches(out.splitlines(), table)
+        reported = all(any(alike(line, message) for line in said) for message in messages)
+        return reported and matches(out.splitlines(), table)
 
 
 def blocks(page: str) -> list[Block]:

@@ -122,7 +122,7 @@ def test_barely_excited_rows_with_a_delay_get_a_verdict() -> None:
 
 
 def test_validation_applies_the_delay_that_was_fitted() -> None:
-    """On the rows it was identified from, R2 is the one that identify tells."""
+    """On the rows it was identified from, R2 is the one that identify reports."""
     parameters = found(motion(late=2), "wls", align=True)
     expected = [joint["r2"] for joint in parameters.meta.extra["joints"]]
     model = identified(parameters, SCARA)

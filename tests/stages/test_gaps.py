@@ -118,7 +118,7 @@ def test_estimates_of_a_gapped_log_are_those_of_its_rows(name: str, treatment: T
     np.testing.assert_allclose(result.column("estimate"), SCARA.apriori, rtol=1e-6, atol=1e-6)
 
 
-def test_predictions_and_traces_tell_their_segment() -> None:
+def test_predictions_and_traces_keep_their_segment() -> None:
     predictions, trace = Kept(), Kept()
     collected(validate(gapped(), Identified(SCARA, SCARA.apriori, 1e-3), predictions=predictions))
     identify(gapped(), SCARA, ESTIMATORS.load("rls")(), SCARA.apriori, trace=trace)

@@ -82,7 +82,7 @@ def test_exact_torques_give_the_parameters_back() -> None:
     np.testing.assert_allclose(result.column("estimate"), SCARA.apriori, atol=1e-10)
 
 
-def test_parameters_a_motion_cannot_tell_are_named() -> None:
+def test_parameters_a_motion_does_not_determine_are_named() -> None:
     columns = consistent()
     for name in ("dq2", "ddq2"):
         columns[name] = np.zeros_like(columns[name])

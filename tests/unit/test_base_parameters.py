@@ -13,7 +13,7 @@ from unit.arms import URDF, described_arm
 from scarid_cli.algorithms.robots.base import independent
 from scarid_cli.algorithms.robots.coupled import CoupledInertia
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.robots.terms import Samples, StandardTerm
+from scarid_cli.algorithms.robots.terms import JointMotion, StandardTerm
 from scarid_cli.cli.robot import described
 from scarid_cli.errors import UsageFault
 
@@ -79,17 +79,17 @@ def test_dependent_columns_are_counted_to_those_before_them() -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         ("<robot", "not a URDF"),
         (URDF.replace("TYPE", "floating"), "only revolute, continuous and prismatic"),
     ],
     ids=["broken", "floating"],
 )
-def test_what_is_no_arm_is_refused(content: str, told: str, tmp_path: Path) -> None:
+def test_what_is_no_arm_is_refused(content: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "x.urdf"
     path.write_text(content)
-    with pytest.raises(UsageFault, match=told):
+    with pytest.raises(UsageFault, match=message):
         load(str(path))
 
 
@@ -100,7 +100,7 @@ def test_a_prismatic_joint_is_known_by_its_type(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("lines", "told"),
+    ("lines", "message"),
     [
         ("[[joint]]", "1 tables [[joint]] for the 2 axes of"),
         ("[[joint]]\n[[joint]]\nterms = ['magic']", "an axis has no term 'magic'; choose viscous"),
@@ -124,12 +124,12 @@ def test_a_prismatic_joint_is_known_by_its_type(tmp_path: Path) -> None:
     ids=lambda value: value.replace("\n", " ") if "[" in value else "",
 )
 def test_a_description_that_does_not_fit_is_refused(
-    lines: str, told: str, urdf: str, tmp_path: Path
+    lines: str, message: str, urdf: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "robot.toml"
     place = urdf if lines else "nowhere.urdf"
     path.write_text(f"title = 'two'\nurdf = '{place}'\n{lines}\n")
-    with pytest.raises(UsageFault, match=re.escape(told)):
+    with pytest.raises(UsageFault, match=re.escape(message)):
         load(str(path))
 
 
@@ -205,7 +205,7 @@ def test_a_coupled_motor_is_felt_by_both_joints(urdf: str, tmp_path: Path) -> No
     np.testing.assert_allclose(column["fsm2"], slopes * np.sign(angle_rate))
     own = np.array([k * k * dq[0], dq[1]])  # what the axes' own columns have
     np.testing.assert_allclose(column["fvm2"], slopes * angle_rate - own)
-    both = CoupledInertia(joint=1, other=2, ratio=k).column(Samples(dq, dq, ddq))
+    both = CoupledInertia(joint=1, other=2, ratio=k).column(JointMotion(dq, dq, ddq))
     own = np.array([k * k * ddq[0], ddq[1]])
     np.testing.assert_allclose([both[0], both[1]], slopes * (k * ddq[0] + ddq[1]) - own)
 

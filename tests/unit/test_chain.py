@@ -90,7 +90,7 @@ def test_fingers_are_locked_and_their_mass_is_carried(gripper: Path) -> None:
     assert robot.body.standard[17] == pytest.approx(0.1 * 0.02)
 
 
-def test_a_check_tells_which_joints_are_locked_and_why(gripper: Path) -> None:
+def test_a_check_shows_which_joints_are_locked_and_why(gripper: Path) -> None:
     lines = list(described(load(str(gripper))))
     assert "freedom     2 joints, 13 parameters" in lines
     at = lines.index("  locked: left (beyond b, where the joints branch and the arm ends)")

@@ -225,7 +225,7 @@ def test_every_public_function_is_compared_with_its_source() -> None:
 
 
 def bits(x: Any) -> np.ndarray:
-    """Which tell -0 from 0."""
+    """The bits, which distinguish -0 from 0."""
     return np.asarray(x, dtype=np.float64).view(np.int64)
 
 

@@ -82,12 +82,12 @@ def test_logged_motion_and_torques_obey_the_inverse_dynamics(name: str) -> None:
     W = robot.regressor(log.q_true, log.dq_true, log.ddq_true)
     missing = log.tau_true - robot.torques(W, robot.apriori)
     at_rest = log.dq_true == 0.0
-    dry = np.array([[robot.value("coulomb", joint)] for joint in range(1, joints + 1)])
+    coulomb = np.array([[robot.value("coulomb", joint)] for joint in range(1, joints + 1)])
     scale = np.abs(log.tau_true).max()
     assert np.abs(missing[~at_rest]).max() < 1e-12 * scale
     assert at_rest.any()
     assert np.all(
-        np.abs(missing)[at_rest] <= np.broadcast_to(dry, missing.shape)[at_rest] + 1e-12 * scale
+        np.abs(missing)[at_rest] <= np.broadcast_to(coulomb, missing.shape)[at_rest] + 1e-12 * scale
     )
 
 

@@ -72,16 +72,16 @@ def test_joint_at_rest_is_dragged_along_beyond_its_coulomb_friction(
     assert (log.ddq_true[1, 0] != 0.0) == slides
 
 
-def complementary(q2: float, tau: Array, dry: Array) -> Array:
+def complementary(q2: float, tau: Array, coulomb: Array) -> Array:
     """The accelerations from rest, by trying all nine ways to stick and slide: one is right."""
     M, found = mass_matrix(q2), []
     for way in itertools.product((-1.0, 0.0, 1.0), repeat=2):
         s, a = np.array(way), np.zeros(2)
         slides = np.flatnonzero(s)
         if len(slides):
-            a[slides] = np.linalg.solve(M[np.ix_(slides, slides)], (tau - dry * s)[slides])
+            a[slides] = np.linalg.solve(M[np.ix_(slides, slides)], (tau - coulomb * s)[slides])
         holding = tau - M @ a
-        if np.all(np.where(s == 0.0, np.abs(holding) <= dry, a * s > 0.0)):
+        if np.all(np.where(s == 0.0, np.abs(holding) <= coulomb, a * s > 0.0)):
             found.append(a)
     assert len(found) == 1
     return found[0]
@@ -89,14 +89,14 @@ def complementary(q2: float, tau: Array, dry: Array) -> Array:
 
 def test_both_joints_leave_rest_as_complementarity_says() -> None:
     rng = np.random.default_rng(0)
-    dry = np.array([0.58, 0.156])
+    coulomb = np.array([0.58, 0.156])
     for _ in range(300):
         q2, tau = rng.uniform(-1.5, 1.5), rng.uniform(-1.0, 1.0, 2) * [3.0, 0.8]
-        model = np.array([*ARM, 0.0, 0.0, *dry, 0.0, 0.0])
+        model = np.array([*ARM, 0.0, 0.0, *coulomb, 0.0, 0.0])
         state = np.array([0.0, q2, 0.0, 0.0, 0.0, q2, *np.zeros(4)])
         reference = np.array([[*(np.sign(tau) * 1e6), 0.0, 0.0]])
         control = np.array([1e9, 1e9, 0.0, 0.0, 0.0, 0.0, *np.abs(tau), 0.0, 0.0, 0.0])
         log = np.empty((1, 10))
         plant.run(reference, np.zeros((1, 2)), log, state, model, control, 1e-3, 4)
         np.testing.assert_allclose(log[0, 2:4], tau)
-        np.testing.assert_allclose(log[0, 8:10], complementary(q2, tau, dry), atol=1e-10)
+        np.testing.assert_allclose(log[0, 8:10], complementary(q2, tau, coulomb), atol=1e-10)

@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 
 from scarid_cli.algorithms.choices.registry import (
+    ALGORITHMS,
     DIFFERENTIATORS,
     ESTIMATORS,
     EXCITATIONS,
-    FOLDER,
     Registry,
 )
 from scarid_cli.algorithms.choices.settings import names_of
@@ -52,7 +52,7 @@ def module_of(registry: Registry, name: str) -> Any:
 
 @pytest.mark.parametrize("folder", REGISTRIES)
 def test_names_are_those_of_the_modules(folder: str) -> None:
-    stems = {path.stem for path in (FOLDER / folder).glob("*.py")} - {"__init__"}
+    stems = {path.stem for path in (ALGORITHMS / folder).glob("*.py")} - {"__init__"}
     names = REGISTRIES[folder].names
     assert names == sorted(names)
     assert {name.replace("-", "_") for name in names} == {stem.lstrip("_") for stem in stems}
@@ -145,7 +145,7 @@ def test_presets_set_what_there_is_to_set(registry: Registry, name: str) -> None
         assert {key: getattr(made, key) for key in values} == values
 
 
-def test_documented_settings_are_told_from_rules_and_prose() -> None:
+def test_documented_settings_are_reported_from_rules_and_prose() -> None:
     """The parser above, on what a docstring may say."""
     text = """A method (paper eq. 1). Rule: eta = 2 L^(1/3), gamma = 1 / (wanted delay): try it.
 

@@ -74,7 +74,7 @@ def test_a_split_table_has_every_column_once_and_fits(
 ) -> None:
     headers, rows = table
     section = Section("t", "", headers, tuple(rows), keys=1, group=2)
-    parts = split(section, width, gap=2)
+    parts = split(section, width)
     for row, of_parts in zip(
         (headers, *rows), zip(*((p.headers, *p.rows) for p in parts), strict=True), strict=True
     ):

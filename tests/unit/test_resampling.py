@@ -104,7 +104,7 @@ def test_the_bits_do_not_depend_on_the_batches(sizes: list[int], rate: float) ->
     assert clocks[0].repeated == 1
 
 
-def test_the_clock_is_told() -> None:
+def test_the_clock_is_reported() -> None:
     t, (q, _) = jittered()
     clocks: list[Clock] = []
     collected(resample(table({"t": t, "q1": q}), 500.0, 0.1, clocks.append))
@@ -127,10 +127,10 @@ def test_other_columns_have_the_value_of_the_row_before() -> None:
 
 
 @pytest.mark.parametrize("sizes", [(), (1,), (2,)])
-def test_a_clock_that_goes_back_is_told(sizes: tuple[int, ...]) -> None:
+def test_a_clock_that_goes_back_is_reported(sizes: tuple[int, ...]) -> None:
     source = table({"t": np.array([0.0, 0.1, 0.05, 0.2]), "q1": np.zeros(4)}, sizes)
-    told = r"row 3, column t: found time that goes back by 0\.05 s"
-    with pytest.raises(BadData, match=told):
+    message = r"row 3, column t: found time that goes back by 0\.05 s"
+    with pytest.raises(BadData, match=message):
         Kept().batches.extend(resample(source, 10.0, 0.2).batches)
 
 
@@ -142,6 +142,6 @@ def test_rows_that_are_each_there_twice_are_one_log() -> None:
     assert clocks[0].repeated == 50
 
 
-def test_a_clock_that_stands_still_is_told() -> None:
-    with pytest.raises(BadData, match="column t: found time that never increases"):
+def test_a_clock_that_stands_still_is_reported() -> None:
+    with pytest.raises(BadData, match="column t: found a time that never increases"):
         collected(resample(table({"t": np.ones(5), "q1": np.ones(5)}), 100.0))

@@ -96,8 +96,8 @@ def test_separable_without_dry_friction_is_refused() -> None:
 # Instruments
 
 
-def test_instruments_are_not_attenuated_and_hausman_tells() -> None:
-    """Noise in the regressor, none in the instruments: least squares is off, and this is told."""
+def test_instruments_are_not_attenuated_and_the_hausman_test_rejects() -> None:
+    """With noise in the regressor but none in the instruments, only least squares is biased."""
     rng = np.random.default_rng(4)
     W = smooth(8000, P, rng)[:, None, :]
     y = W @ THETA + rng.standard_normal((8000, 1))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from scarid_cli.algorithms.robots.reading import FOLDER, load
+from scarid_cli.algorithms.robots.reading import ROBOTS, load
 from scarid_cli.errors import UsageFault
 
 
@@ -49,7 +49,7 @@ def test_unit_follows_the_type_of_joint() -> None:
 
 def test_file_describes_a_robot_as_a_built_in_does(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text((FOLDER / "emps.toml").read_text("utf-8"), "utf-8")
+    path.write_text((ROBOTS / "emps.toml").read_text("utf-8"), "utf-8")
     mine, theirs = load(str(path)), load("emps")
     assert mine.name == str(path)
     assert (mine.title, mine.joints, mine.parameters, mine.control) == (
@@ -99,7 +99,7 @@ def test_a_description_that_is_not_there_is_refused() -> None:
 def test_bad_description_is_refused_in_one_line(
     tmp_path: Path, text: str, instead: str, complaint: str
 ) -> None:
-    good = (FOLDER / "emps.toml").read_text("utf-8")
+    good = (ROBOTS / "emps.toml").read_text("utf-8")
     assert text in good
     path = tmp_path / "mine.toml"
     path.write_text(good.replace(text, instead), "latin-1")
@@ -113,7 +113,7 @@ def test_bad_description_is_refused_in_one_line(
 
 def test_term_of_the_planar_arm_needs_two_joints(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text((FOLDER / "emps.toml").read_text("utf-8").replace('"mass"', '"ZZ2"'), "utf-8")
+    path.write_text((ROBOTS / "emps.toml").read_text("utf-8").replace('"mass"', '"ZZ2"'), "utf-8")
     with pytest.raises(UsageFault, match="ZZ2"):
         load(str(path))
 
@@ -134,7 +134,7 @@ def test_description_that_cannot_be_used_is_refused_at_once(
     tmp_path: Path, text: str, instead: str
 ) -> None:
     path = tmp_path / "mine.toml"
-    good = (FOLDER / "emps.toml").read_text("utf-8")
+    good = (ROBOTS / "emps.toml").read_text("utf-8")
     assert text in good
     path.write_text(good.replace(text, instead), "utf-8")
     with pytest.raises(UsageFault) as refused:
@@ -154,7 +154,7 @@ def test_robot_without_parameters_is_refused(tmp_path: Path, joint: str) -> None
 def test_term_given_twice_is_refused(tmp_path: Path) -> None:
     """The regressor would add both, and the plant take one."""
     path = tmp_path / "mine.toml"
-    good = (FOLDER / "emps.toml").read_text("utf-8")
+    good = (ROBOTS / "emps.toml").read_text("utf-8")
     path.write_text(good.replace('"coulomb"', '"viscous"'), "utf-8")
     with pytest.raises(UsageFault, match="appears twice"):
         load(str(path))

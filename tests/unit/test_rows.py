@@ -54,8 +54,8 @@ def test_a_subsample_is_the_same_however_rows_arrive_and_stays_small(
 ) -> None:
     W = np.arange(60_000.0).reshape(-1, 1, 1)
     rows = plain(W, W[:, :, 0])
-    begun = Subsample(samples=5_000, thinnest=thinnest)
-    subsample = fed(begun, rows, sizes)
+    empty = Subsample(samples=5_000, thinnest=thinnest)
+    subsample = fed(empty, rows, sizes)
     assert isinstance(subsample, Subsample)
     kept = subsample.rows()
     assert subsample.total == subsample.counted == rows.samples
@@ -64,7 +64,7 @@ def test_a_subsample_is_the_same_however_rows_arrive_and_stays_small(
     assert subsample.thin == {1: 1, 5: 4}[thinnest]
     assert kept.h == subsample.thin * rows.h
     np.testing.assert_array_equal(kept.W[:, 0, 0], kept.at * subsample.thin)
-    np.testing.assert_array_equal(kept.at, begun.add(rows).rows().at)
+    np.testing.assert_array_equal(kept.at, empty.add(rows).rows().at)
 
 
 def test_a_subsample_is_thinned_before_segments_are_dropped() -> None:

@@ -14,9 +14,9 @@ from scarid_cli.algorithms.robots.terms import (
     Coulomb,
     CoulombBackward,
     CoulombForward,
+    JointMotion,
     Mass,
     Offset,
-    Samples,
     Stribeck,
     Viscous,
     ViscousBackward,
@@ -148,7 +148,7 @@ def test_a_term_of_an_axis_is_its_formula_on_its_joint_alone(
 ) -> None:
     motion = motions(joints=3)
     motion[1, 1, 0] = 0.0
-    column = term.column(Samples(*motion))
+    column = term.column(JointMotion(*motion))
     assert list(column) == [1]
     _, dq, ddq = motion[:, 1]
     np.testing.assert_allclose(column[1], ddq if expected is None else expected(dq), atol=1e-15)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-FOLDER = Path(__file__).parents[1]
+ALGORITHMS = Path(__file__).parents[1]
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Registry:
     @property
     def names(self) -> list[str]:
         """All choices, sorted."""
-        stems = (path.stem for path in (FOLDER / self.folder).glob("*.py"))
+        stems = (path.stem for path in (ALGORITHMS / self.folder).glob("*.py"))
         return sorted(_name(stem) for stem in stems if not stem.startswith("__"))
 
     def load(self, name: str) -> Any:
@@ -39,7 +39,7 @@ class Registry:
 
     def describe(self, name: str) -> str:
         """The docstring of the module of a choice."""
-        path = FOLDER / self.folder / f"{_stem(name)}.py"
+        path = ALGORITHMS / self.folder / f"{_stem(name)}.py"
         return ast.get_docstring(ast.parse(path.read_text("utf-8"))) or ""
 
 

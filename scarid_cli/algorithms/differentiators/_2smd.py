@@ -5,8 +5,8 @@ That is equation 6 of the paper with its exponent corrected to 2/3. The output i
 states after each update, brought back to the present sample.
 Delay: that of the sampling if eta2 exceeds the largest jerk of the motion, otherwise tens of
 milliseconds.
-Matched by measured delays: position, velocity and torque are delayed by what the method delays
-quintic moves of 1 rad in 0.8 to 2 s with the settings given.
+Matched by measured delays: position, velocity and torque are delayed by as much as the method
+delays quintic moves of 1 rad in 0.8 to 2 s with the same settings.
 Rule: for the largest jerk L [1/s3], take eta0 = 2 L^(1/3), eta1 = 1.5 L^(1/2) and eta2 = 1.1 L.
 eta0 = 10: first gain, as in Table 1 of the paper.
 eta1 = 12, eta2 = 70: second and third gain, by the rule for L = 64 rad/s3, which moves of 1 rad in

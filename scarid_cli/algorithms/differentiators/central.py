@@ -23,7 +23,7 @@ class RunningDifference:
     """One differentiation: the last samples (at most two), and whether the first has its output."""
 
     held: Array
-    begun: bool = False
+    started: bool = False
 
 
 @dataclass(frozen=True)
@@ -68,10 +68,10 @@ def advance(running: RunningDifference, x: Array, h: float) -> tuple[RunningDiff
     """The differentiation after the samples x, and the derivatives known by then."""
     samples = np.concatenate((running.held, x))
     inner = (samples[2:] - samples[:-2]) / (2.0 * h)
-    if running.begun or len(samples) < 2:
-        return RunningDifference(samples[-2:], running.begun), inner
+    if running.started or len(samples) < 2:
+        return RunningDifference(samples[-2:], running.started), inner
     first = (samples[1:2] - samples[:1]) / h
-    return RunningDifference(samples[-2:], begun=True), np.concatenate((first, inner))
+    return RunningDifference(samples[-2:], started=True), np.concatenate((first, inner))
 
 
 def last_derivative(running: RunningDifference, h: float) -> Array:

@@ -2,10 +2,10 @@
 
 Causal. Levant and Livne, Eur. J. Control (2020), doi 10.1016/j.ejcon.2019.08.006: Euler steps for
 the filter and Taylor steps for the differentiator. The output is taken from the states after each
-update. Of all methods here it withstands vibration and glitches best.
+update. It withstands vibration and glitches better than all other methods here.
 Delay: tens of milliseconds.
-Matched by measured delays: position, velocity and torque are delayed by what the method delays
-quintic moves of 1 rad in 0.8 to 2 s with the settings given.
+Matched by measured delays: position, velocity and torque are delayed by as much as the method
+delays quintic moves of 1 rad in 0.8 to 2 s with the same settings.
 Rule: the bound is the largest derivative of order + 1 of the motion.
 bound = 64 [1/s^(order+1)]: the largest jerk for order 2.
 order = 2: the order of differentiation, 2 to 5.

@@ -1,12 +1,12 @@
 """Levant's sliding-mode differentiator of arbitrary order in implicit Euler steps.
 
 Causal. The implicit steps of Mojallizadeh, Brogliato and Acary (Int. J. Robust Nonlinear Control
-31 (2021), doi 10.1002/rnc.5710) do not chatter and are stable with every gain. The output map takes
-the states for what they are, backward differences (compare Seeber, arXiv 2404.02770, 2024). Without
-noise the error converges to that of the sampling if the bound holds.
+31 (2021), doi 10.1002/rnc.5710) do not chatter and are stable with every gain. The output map
+treats the states as backward differences, which they are (compare Seeber, arXiv 2404.02770, 2024).
+Without noise the error converges to that of the sampling if the bound holds.
 Delay: with noise, tens of milliseconds at the default.
-Matched by measured delays: position, velocity and torque are delayed by what the method delays
-quintic moves of 1 rad in 0.8 to 2 s with the settings given.
+Matched by measured delays: position, velocity and torque are delayed by as much as the method
+delays quintic moves of 1 rad in 0.8 to 2 s with the same settings.
 Rule: the bound is the largest derivative of order + 1 of the motion (see levant).
 bound = 400 [1/s^(order+1)]: the largest snap for order 3.
 order = 3: the order of differentiation, 2 to 5.

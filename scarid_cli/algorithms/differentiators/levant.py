@@ -5,9 +5,9 @@ Causal. Levant, Int. J. Control 76 (2003) 924, in the homogeneous discrete form 
 update, brought back to the present sample. Without noise the error converges to that of the
 sampling if the bound holds.
 Delay: with noise, tens of milliseconds at the default.
-Matched by measured delays: position, velocity and torque are delayed by what the method delays
-quintic moves of 1 rad in 0.8 to 2 s with the settings given. If those moves exceed the bound, the
-delay is some 25 ms too long on motions within it.
+Matched by measured delays: position, velocity and torque are delayed by as much as the method
+delays quintic moves of 1 rad in 0.8 to 2 s with the same settings. If those moves exceed the bound,
+the delay is some 25 ms too long on motions within it.
 Rule: the bound is the largest derivative of order + 1 of the motion. A quintic move of d in the
 time T has a jerk of 60 d / T^3 and a snap of 360 d / T^4.
 bound = 400 [1/s^(order+1)]: the largest snap for order 3.

@@ -7,9 +7,9 @@ held-out positions, unless noise and intensity are given. See docs/theory.md, se
 likelihood and cross-validation".
 Delay: none.
 Matched (to second order in the period): position and torque are smoothed alike.
-Rule: none; nothing has to be known.
+Rule: none is needed, since all settings are found from the data.
 noise = 0: standard deviation of the position; 0 to find all settings except the gate from the data.
-intensity = 0: spectral density of the white noise, [rad2/s7] for 4 states; 0 likewise.
+intensity = 0: spectral density of the white noise, [rad2/s7] for 4 states; 0 to find it as well.
 states = 4: number of states, 3 to 5.
 damping = frequency = 0: damping [1/s] and frequency [rad/s] of the acceleration process.
 gate = 20: number of standard deviations beyond which an innovation is taken for a glitch and left

@@ -1,7 +1,8 @@
 """Savitzky-Golay: the polynomial that fits the window around each sample best.
 
-Fixed lag of half a window; at both ends of the record the first and the last window serve. Savitzky
-and Golay, Anal. Chem. 36 (1964) 1627; the same as scipy.signal.savgol_filter.
+Fixed lag of half a window; at both ends of the record the polynomial of the first or the last whole
+window is evaluated. Savitzky and Golay, Anal. Chem. 36 (1964) 1627; the same as
+scipy.signal.savgol_filter.
 Delay: none beyond the wait.
 Matched (exact): position and torque pass the symmetric low-pass of which the acceleration is the
 second difference.
@@ -59,13 +60,13 @@ class Differentiator(LowpassMethod):
         return WindowState(np.empty(0), h)
 
     def step(self, state: WindowState, x: Array) -> tuple[WindowState, tuple[Array, ...]]:
-        begun = len(state.samples) == self.window
+        full = len(state.samples) == self.window
         samples = np.concatenate((state.samples, x))
         after = WindowState(samples[-self.window :], state.h)
         if len(samples) < self.window:
             return after, (np.empty(0), np.empty(0))
-        middle = [convolved(samples[begun:], taps) for taps in self._fit(self.half, state.h)]
-        if begun:
+        middle = [convolved(samples[full:], taps) for taps in self._fit(self.half, state.h)]
+        if full:
             return after, tuple(middle)
         early = range(self.window - 1, self.half, -1)
         first = self._edge(samples[: self.window], early, state.h)

@@ -6,7 +6,8 @@ size of the noise.
 Delay: none.
 Matched (to second order in the period): the torque passes the least-squares spline of the same
 knots.
-Rule: none; give the noise if an encoder step is coarser than the motion within a sample.
+Rule: none is needed; but give the noise if an encoder step is coarser than the motion within a
+sample.
 noise = 0: standard deviation of the position; 0 to estimate it from differences of high order.
 """
 

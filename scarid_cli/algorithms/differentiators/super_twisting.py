@@ -1,14 +1,15 @@
-"""Super-twisting differentiator of Levant, two in a row.
+"""Super-twisting differentiator of Levant, two in series.
 
 Causal. Levant, Automatica 34 (1998) 379, in explicit Euler steps: equation 30 of the paper with
 fixed gains. The second differentiates the velocity of the first. Without noise the error converges
 to that of the sampling if the bounds hold; the acceleration chatters.
 Delay: with noise, tens of milliseconds.
-Matched by measured delays: position, velocity and torque are delayed by what the method delays
-quintic moves of 1 rad in 0.8 to 2 s with the settings given.
+Matched by measured delays: position, velocity and torque are delayed by as much as the method
+delays quintic moves of 1 rad in 0.8 to 2 s with the same settings.
 Rule: the bounds are those of the motion. A quintic move of d in the time T has an acceleration of
 5.8 d / T^2 and a jerk of 60 d / T^3.
-acceleration = 20 [1/s2], jerk = 150 [1/s3]: the largest of the motion; Levant's gains 1.5 and 1.1.
+acceleration = 20 [1/s2], jerk = 150 [1/s3]: the largest of the motion, from which Levant's gains
+follow with the factors 1.5 and 1.1.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Tracking differentiator of Han: a second-order system that follows in the shortest time.
 
 Causal. Han, IEEE Trans. Ind. Electron. 56 (2009) 900, with the discrete-time law fhan, which does
-not chatter. Two are run in a row: the second follows the velocity of the first.
+not chatter. Two are run in series: the second follows the velocity of the first.
 Delay: twice the smoothing time per stage, as long as the acceleration stays below the limit.
 Matched by its linearisation below the limit, two critically damped stages: velocity, position and
 torque pass both.

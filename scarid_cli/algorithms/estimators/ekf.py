@@ -1,11 +1,12 @@
 """Extended Kalman filter of joint positions, velocities and parameters (the paper's ref. 45).
 
-It is here for comparison: it needs no derivatives, but initial parameters (`--initial`), and takes
-a hundred times as long. It reads positions and torques only; accelerations are those of the model.
-Its errors are its own covariance, not robust ones.
-spread = 0.5: initial standard deviation of a parameter, in parts of its initial value (of 0.1 if
-that is 0).
-acceleration_noise = 2: what the model leaves out, standard deviation per sample [rad/s2 or m/s2].
+It is included for comparison. It needs initial parameters (`--initial`) instead of derivatives, and
+takes a hundred times as long as least squares. It reads only positions and torques; accelerations
+are those of the model. Its standard errors come from its own covariance and are not robust.
+spread = 0.5: initial standard deviation of a parameter, relative to its initial value (or to 0.1
+if that is 0).
+acceleration_noise = 2: standard deviation per sample of the acceleration that the model lacks
+[rad/s2 or m/s2].
 smoothing = 0.05: velocity over which Coulomb friction changes its sign [rad/s or m/s].
 """
 
@@ -24,8 +25,8 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
-STEP = 1e-6  # of numerical derivatives
-TINY = 1e-6  # rad or m: least deviation of a position
+STEP = 1e-6  # rad, m, and per s: for numerical derivatives
+TINY = 1e-6  # rad or m: the smallest standard deviation of a position
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Estimator(BaseEstimator):
     INITIAL: ClassVar[bool] = True
     ALIGNS: ClassVar[bool] = False
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "spread", "acceleration_noise", "smoothing")
 
     def for_robot(self, robot: Robot) -> Estimator:
@@ -55,7 +56,7 @@ class Estimator(BaseEstimator):
 
     def init(self, initial: Array) -> FilterState:
         if not np.any(initial):
-            raise UsageFault("ekf needs initial parameters: --initial apriori, or a table")
+            raise UsageFault("ekf needs initial parameters: give --initial apriori, or a table")
         assert self.robot is not None
         n = len(self.robot.joints)
         deviations = self.spread * np.where(initial == 0.0, 0.1, np.abs(initial))
@@ -88,7 +89,10 @@ class Estimator(BaseEstimator):
         assert self.robot is not None
         n = 2 * len(self.robot.joints)
         if not np.isfinite(state.x).all():
-            raise UsageFault("ekf diverged; start nearer (--initial) or smooth friction more")
+            raise UsageFault(
+                "ekf diverged; give better initial parameters (--initial) or a larger smoothing "
+                "of friction (--set smoothing=V)"
+            )
         fit = Fit(
             estimates=state.x[n:],
             unit_covariance=state.covariance[n:, n:],
@@ -98,14 +102,14 @@ class Estimator(BaseEstimator):
         return Estimation(fit, scores=None)
 
     def _position_noise(self) -> Array:
-        """Variance of a position that an encoder rounds."""
+        """The variance of each position, which an encoder rounds."""
         assert self.robot is not None
         steps = np.array([joint.encoder_resolution for joint in self.robot.joints])
         variance: Array = np.maximum(steps / np.sqrt(12.0), TINY) ** 2
         return variance
 
     def _predicted(self, x: Array, covariance: Array, tau: Array, h: float) -> tuple[Array, Array]:
-        """One period on, by the acceleration of the model and its derivatives."""
+        """The state one period later, from the model's acceleration and its derivatives."""
         assert self.robot is not None
         n = len(self.robot.joints)
         with np.errstate(all="ignore"):
@@ -125,11 +129,11 @@ class Estimator(BaseEstimator):
         return moved, spread
 
     def _acceleration(self, x: Array, tau: Array) -> tuple[Array, Array]:
-        """Of the model (joints), and its derivatives by the state (joints, states)."""
+        """The model's acceleration (joints), and its derivatives by the state (joints, states)."""
         assert self.robot is not None
         n = len(self.robot.joints)
         theta = x[2 * n :]
-        # The state, and each position and velocity a step to both sides.
+        # The state, then each position and velocity a step forwards, then a step backwards.
         steps = STEP * np.vstack((np.zeros(2 * n), np.eye(2 * n), -np.eye(2 * n)))
         points = x[: 2 * n] + steps
         found = forward(self.robot, points[:, :n].T, points[:, n:].T, tau, theta)
@@ -142,7 +146,7 @@ class Estimator(BaseEstimator):
 
 
 def _corrected(x: Array, covariance: Array, q: Array, noise: Array) -> tuple[Array, Array]:
-    """By the measured positions."""
+    """The state corrected by the measured positions."""
     n = len(q)
     gain = np.linalg.solve(covariance[:n, :n] + np.diag(noise), covariance[:n]).T
     moved: Array = x + gain @ (q - x[:n])
@@ -151,7 +155,7 @@ def _corrected(x: Array, covariance: Array, q: Array, noise: Array) -> tuple[Arr
 
 
 def forward(robot: Robot, q: Array, dq: Array, tau: Array, theta: Array) -> Array:
-    """Accelerations (joints, points) at positions and velocities (joints, points): eq. 1 solved."""
+    """Forward dynamics: eq. 1 solved for the accelerations (joints, points) at q, dq and tau."""
     rest = robot.regressor(q, dq, np.zeros_like(q)) @ theta
     inertia = _inertia(robot, q, dq, theta)
     return np.asarray(np.linalg.solve(inertia, (tau - rest)[:, :, None])[:, :, 0].T)

@@ -1,7 +1,8 @@
 """Iteratively reweighted least squares with Huber's weights (Huber 1964), robust to outliers.
 
-A row whose residual exceeds k standard deviations of its joint has a weight of k over its size. The
-standard deviation is the median absolute residual over 0.6745. All rows are held in memory.
+A row whose residual is x standard deviations of its joint gets the weight k / x if x exceeds k, and
+1 otherwise. The standard deviation is estimated as the median absolute residual divided by 0.6745.
+All rows are held in memory.
 k = 1.345: gives 95 % of the efficiency of least squares if the residuals are normal.
 """
 
@@ -25,7 +26,7 @@ NORMAL = 0.6744897501960817  # median absolute value of a standard normal variab
 class Estimator(HoldingEstimator):
     k: float = 1.345
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "k")
 
     def fit(self, state: list[Rows]) -> Estimation:
@@ -46,6 +47,6 @@ class Estimator(HoldingEstimator):
 
 
 def deviations(residual: Array, scales: Array) -> Array:
-    """Of each joint, from the median absolute residual of the rows that count."""
+    """The standard deviation of each joint's residual, from the median of its absolute values."""
     found = [np.median(np.abs(r[s > 0.0])) for r, s in zip(residual.T, scales.T, strict=True)]
     return np.maximum(np.array(found) / NORMAL, np.finfo(float).tiny)

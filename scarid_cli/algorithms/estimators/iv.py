@@ -1,10 +1,10 @@
 """Instrumental variables from the simulated model, IDIM-IV (Janot, Vandanjon and Gautier 2014).
 
-The instruments are the regressor along a noise-free simulation of the robot in its loop with the
-previous estimates, so noise of the measured motion cannot bias the estimates. The log must have its
-reference (q1_ref, ...) and the robot description its controller. Joints are weighted by their
-residuals. The Durbin-Wu-Hausman test against weighted least squares is reported. All rows are held
-in memory. No settings.
+The instruments are the regressor along a noise-free simulation of the robot in closed loop with the
+previous estimates, so noise of the measured motion cannot bias the estimates. The log must have the
+reference (q1_ref, ...), and the robot description must have the controller. Joints are weighted by
+their residuals. The Durbin-Wu-Hausman test against weighted least squares is reported. All rows are
+held in memory. No settings.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from scarid_cli.errors import UsageFault
 
 ITERATIONS = 10
 CONTROL_RATE = 1000.0  # Hz
-SETTLING = 0.5  # s: until a simulation that starts at rest follows its reference
+SIMULATION_SETTLING = 0.5  # s: until a simulation that starts at rest follows its reference
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,20 @@ class Estimator(HoldingEstimator):
 
     def for_robot(self, robot: Robot) -> Estimator:
         if robot.control is None:
-            raise UsageFault(f"iv: robot {robot.name} has no controller to simulate it with")
+            raise UsageFault(
+                f"iv: robot {robot.name} has no controller to simulate it with; add [control] to "
+                "its description"
+            )
         return replace(self, robot=robot)
 
     def step(
         self, state: list[Rows], rows: Rows, *, trace: bool = False
     ) -> tuple[list[Rows], Array]:
         if rows.reference is None:
-            raise UsageFault("iv needs the reference that the robot followed: columns q1_ref, ...")
+            raise UsageFault(
+                "iv needs the reference that the robot followed; give a log with the columns "
+                "q1_ref, ... and dq1_ref, ..."
+            )
         return super().step(state, rows, trace=trace)
 
     def fit(self, state: list[Rows]) -> Estimation:
@@ -68,11 +74,11 @@ class Estimator(HoldingEstimator):
         )
 
     def _simulated(self, rows: Rows, theta: Array) -> Array:
-        """The regressor along the simulated motion, zero until it has settled."""
+        """The regressor along the simulated motion, zero until the simulation has settled."""
         assert self.robot is not None
         assert rows.reference is not None
         instruments = np.zeros_like(rows.W)
-        settling = round(SETTLING / rows.h)
+        settling = round(SIMULATION_SETTLING / rows.h)
         for run in runs(rows.at):
             reference = rows.reference[:, :, run]
             if reference.shape[2] > 2 * settling:
@@ -83,7 +89,7 @@ class Estimator(HoldingEstimator):
 
 
 def _followed(robot: Robot, theta: Array, reference: Array, h: float) -> list[Array]:
-    """Position, velocity and acceleration of the robot with these parameters in its loop."""
+    """The closed-loop position, velocity and acceleration of a robot with these parameters."""
     control = robot.control
     assert control is not None
     joints = len(robot.joints)
@@ -111,7 +117,7 @@ def _followed(robot: Robot, theta: Array, reference: Array, h: float) -> list[Ar
             "iv: the simulated robot diverges with the estimates of least squares; use wls"
         ) from None
     signals = (log.q_true, log.dq_true, log.ddq_true)
-    # The last sample is where no reference goes on from.
+    # The simulation ends one sample early, since nothing follows the last reference.
     return [np.ascontiguousarray(np.pad(x[:, ::ratio], ((0, 0), (0, 1)), "edge")) for x in signals]
 
 
@@ -140,10 +146,11 @@ def solved(rows: Rows, instruments: Array, plain: Estimation) -> Estimation:
 
 
 def hausman(rows: Rows, plain: Estimation, found: Estimation) -> tuple[float, float]:
-    """Whether two fits differ by more than chance: the statistic, and the chance of a greater one.
+    """The Durbin-Wu-Hausman test of whether two fits differ by more than chance.
 
-    Durbin, Wu and Hausman's, with the covariance of the difference from blocks left out of both, so
-    that autocorrelated residuals do not make it cry wolf; F by Hotelling's T^2.
+    Returns the statistic and its p-value. The covariance of the difference comes from leaving the
+    same blocks out of both fits, so that autocorrelated residuals cause no false alarms; the
+    p-value is that of Hotelling's T^2.
     """
     from scipy.special import fdtrc
 

@@ -1,6 +1,6 @@
 """Least squares by streaming orthogonal factorisation (paper eq. 25), without normal equations.
 
-The memory does not depend on the number of rows. No settings.
+The memory that it needs does not depend on the number of rows. No settings.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from scarid_cli.arrays import Array
 @dataclass(frozen=True)
 class Estimator(BaseEstimator):
     def init(self, initial: Array) -> Information:
-        """Of the initial parameters only their number counts."""
+        """The state before the first row; only the number of the initial parameters matters."""
         return empty(len(initial))
 
     def step(

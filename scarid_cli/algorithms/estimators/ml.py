@@ -1,8 +1,8 @@
 """Maximum likelihood for normal torque noise with an unknown covariance between the joints.
 
 It alternates between the covariance of the residuals and generalised least squares (Zellner 1962;
-iterated as by Oberhofer and Kmenta 1974). A sample of which one row is left out is left out. All
-rows are held in memory. No settings.
+iterated as by Oberhofer and Kmenta 1974). If the row of one joint is left out, the whole sample is
+left out. All rows are held in memory. No settings.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.arrays import Array
 
 ITERATIONS = 100
-LEAST = 1e-6  # deviation of the noise in any direction, in parts of the largest
+LEAST = 1e-6  # the smallest standard deviation of the noise, relative to the largest
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Estimator(HoldingEstimator):
 
 
 def _definite(covariance: Array) -> Array:
-    """The covariance, where it is singular with a little noise on every joint.
+    """The covariance, with a little noise added to every joint if it is singular.
 
     A joint that is fitted exactly (torques without noise) must not outweigh all others.
     """

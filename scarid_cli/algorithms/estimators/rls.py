@@ -1,7 +1,7 @@
 """Recursive least squares with forgetting (paper section 2.3; several factors: section 5).
 
-The recursion is in factored information form: the covariance stays symmetric positive definite, and
-bounded when the filter forgets without excitation.
+The recursion is in factored information form: the covariance stays symmetric and positive definite,
+and it stays bounded when the filter forgets without excitation.
 forgetting = 1: forgetting factor per sample, in (0, 1]; one, or one per parameter.
 p0 = 100: initial covariance, P0 = p0 I.
 """
@@ -20,8 +20,7 @@ from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
-# What forgetting leaves of the initial information.
-FADED = 1e-10
+FADED = 1e-10  # the part of the initial information that forgetting leaves in the long run
 
 
 @dataclass(frozen=True)
@@ -32,7 +31,7 @@ class Estimator(BaseEstimator):
     RECURSIVE: ClassVar[bool] = True
     INITIAL: ClassVar[bool] = True
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
         require_positive(self, "p0")
         for factor in self.factors:
             if not factor > 0.0:
@@ -47,7 +46,8 @@ class Estimator(BaseEstimator):
     def init(self, initial: Array) -> Information:
         if len(self.factors) not in (1, len(initial)):
             raise UsageFault(
-                f"forgetting: {len(self.factors)} factors for {len(initial)} parameters"
+                f"forgetting: {len(self.factors)} factors for {len(initial)} parameters; give one "
+                "factor, or one per parameter"
             )
         return prior(initial, self.p0)
 
@@ -65,7 +65,7 @@ class Estimator(BaseEstimator):
         )
 
     def widened(self) -> Estimator:
-        """The delay of the torques is forgotten no faster than any parameter."""
+        """The estimator with one more factor: the delay is forgotten as slowly as any parameter."""
         if not isinstance(self.forgetting, tuple):
             return self
         return replace(self, forgetting=(*self.forgetting, max(self.forgetting)))

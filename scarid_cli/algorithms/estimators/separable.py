@@ -1,8 +1,9 @@
 """Separable least squares with Stribeck friction (Golub and Pereyra 1973; the paper's ref. 46).
 
-Each joint with Coulomb friction gets a part that decays with speed, Fst sign(dq) exp(-(dq / vs)^2).
-The velocities vs are searched; everything else is linear, and solved for each trial of them. Joints
-are weighted by their residuals. All rows are held in memory. No settings.
+Each joint with Coulomb friction gets a further term that decays with speed,
+Fst sign(dq) exp(-(dq / vs)^2). The Stribeck velocities vs are found by a search; all other
+parameters are linear and are solved for in each trial. Joints are weighted by their residuals. All
+rows are held in memory. No settings.
 """
 
 from __future__ import annotations
@@ -22,9 +23,9 @@ from scarid_cli.algorithms.robots.terms import Coulomb, Stribeck
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
-GUESSES = 15  # of each velocity, before the simplex
-RANGE = (0.01, 1.0)  # of the velocities, in parts of the root-mean-square velocity
-FADED = 3.0  # velocities after which the new part has faded to 1e-4: no row is known to have it
+GRID = 15  # trials of each velocity before the simplex search
+RANGE = (0.01, 1.0)  # of the velocities, relative to the root-mean-square velocity
+FADED = 3.0  # velocities after which this friction has faded to 1e-4: no row would show it
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,10 @@ class Estimator(HoldingEstimator):
 
     def for_robot(self, robot: Robot) -> Estimator:
         if not any(isinstance(p.term, Coulomb) for p in robot.parameters):
-            raise UsageFault(f"separable: robot {robot.name} has no joint with Coulomb friction")
+            raise UsageFault(
+                f"separable: robot {robot.name} has no joint with Coulomb friction; use another "
+                "estimator"
+            )
         return replace(self, robot=robot)
 
     def fit(self, state: list[Rows]) -> Estimation:
@@ -58,7 +62,7 @@ def _solved(rows: Rows, joints: list[int]) -> Estimation:
     velocities = _searched(rows, joints, inverse)
     linear = _with_columns(rows, [_column(rows, j, v) for j, v in velocities.items()])
     theta = least_squares(linear.W, linear.y, rows.scales * inverse).estimates
-    # Linear in the velocities as well at the solution: errors and residuals are then as usual.
+    # Linearised at the solution, the velocities are parameters like all others.
     peaks = theta[-len(joints) :]
     slopes = [
         (j, peak * slope)
@@ -76,18 +80,19 @@ def _solved(rows: Rows, joints: list[int]) -> Estimation:
 
 
 def _column(rows: Rows, joint: int, velocity: float) -> tuple[int, Array]:
+    """The joint, and the column of its Stribeck friction with this velocity vs."""
     return joint, Stribeck(joint, velocity).torque(rows.motion[1][joint - 1])
 
 
 def _slope(rows: Rows, joint: int, velocity: float) -> Array:
-    """Of the column, by the velocity."""
+    """The derivative of the column by the Stribeck velocity."""
     dq = rows.motion[1][joint - 1]
     slope: Array = _column(rows, joint, velocity)[1] * 2.0 * dq * dq / velocity**3
     return slope
 
 
 def _with_columns(rows: Rows, columns: list[tuple[int, Array]]) -> Rows:
-    """The rows with columns that concern one joint (from 1) each."""
+    """The rows with more columns, each of which acts on one joint (from 1)."""
     added = np.zeros((*rows.y.shape, len(columns)))
     for k, (joint, values) in enumerate(columns):
         added[:, joint - 1, k] = values
@@ -95,7 +100,7 @@ def _with_columns(rows: Rows, columns: list[tuple[int, Array]]) -> Rows:
 
 
 def _inverse_deviations(rows: Rows) -> Array:
-    """Of the residual of each joint without the new friction."""
+    """The inverse standard deviation of each joint's residual without Stribeck friction."""
     theta = least_squares(rows.W, rows.y, rows.scales).estimates
     residual = (rows.y - rows.W @ theta) * rows.scales
     rms = np.sqrt((residual**2).sum(axis=0) / np.maximum((rows.scales > 0.0).sum(axis=0), 1))
@@ -104,15 +109,15 @@ def _inverse_deviations(rows: Rows) -> Array:
 
 
 def _searched(rows: Rows, joints: list[int], inverse: Array) -> dict[int, float]:
-    """Velocities that leave the least residual: each by itself first, then all together."""
+    """The velocities with the smallest residual: first each by itself, then all together."""
     from scipy.optimize import minimize
 
     cost = _cost(rows, joints, inverse)
     sizes = [float(np.sqrt(np.mean(rows.motion[1][j - 1] ** 2))) or 1.0 for j in joints]
-    grids = [np.log(np.geomspace(*RANGE, GUESSES) * size) for size in sizes]
-    best = np.array([grid[GUESSES // 2] for grid in grids])
+    grids = [np.log(np.geomspace(*RANGE, GRID) * size) for size in sizes]
+    best = np.array([grid[GRID // 2] for grid in grids])
     for k, grid in enumerate(grids):
-        tries = np.tile(best, (GUESSES, 1))
+        tries = np.tile(best, (GRID, 1))
         tries[:, k] = grid
         best = tries[int(np.argmin([cost(x) for x in tries]))]
     options = {"xatol": 1e-6, "fatol": 1e-12, "maxiter": 400}
@@ -133,7 +138,7 @@ def _slowest(rows: Rows, joint: int) -> float:
 
 
 def _cost(rows: Rows, joints: list[int], inverse: Array) -> Callable[[Array], float]:
-    """The sum of squares that is left, over that of the torques; of the logarithms of vs."""
+    """The relative residual sum of squares, as a function of the logarithms of the velocities."""
     scales = rows.scales * inverse
     p = rows.W.shape[2]
     W = (rows.W * scales[:, :, None]).reshape(-1, p)

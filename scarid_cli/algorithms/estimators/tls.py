@@ -1,9 +1,10 @@
 """Total least squares (Golub and Van Loan 1980), for errors in the regressor and in the torque.
 
-The estimates come from the smallest singular vector of [W y], each column divided by its norm, so
-all columns are assumed to be wrong by the same part of their size. It takes one pass, because the
-singular values are those of the triangle. The covariance is the first-order one of Van Huffel and
-Vandewalle (1991, section 8.5). No settings.
+The estimates come from the singular vector of [W y] that belongs to the smallest singular value.
+Each column is divided by its norm first, so all columns are assumed to have the same relative
+error. One pass over the rows is enough, because their triangular factor has the same singular
+vectors. The first-order covariance is that of Van Huffel and Vandewalle (1991, section 8.5).
+No settings.
 """
 
 from __future__ import annotations

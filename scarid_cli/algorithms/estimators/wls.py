@@ -1,8 +1,8 @@
-"""Least squares with each joint weighted by its residual (Gautier 1997), in one pass.
+"""Least squares with each joint weighted by its residual, in one pass.
 
-"Dynamic identification of robots with power model". The standard deviation of a joint's torque is
-that of the residual of its own rows, fitted alone. A joint with torques of hundreds of N m does not
-hide one with 1 N m. No settings.
+Gautier, "Dynamic identification of robots with power model" (1997). The standard deviation of a
+joint's torque is estimated from a fit of that joint's rows alone. Thus a joint with torques of
+hundreds of N m does not drown out one with 1 N m. No settings.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ NOTHING = 1e-150  # a deviation whose square is no number any more
 @dataclass(frozen=True)
 class Estimator(BaseEstimator):
     def init(self, initial: Array) -> JointsInformation:
-        """Of the initial parameters only their number counts: the joints are not known yet."""
+        """One part for now: the number of joints is known only with the first rows."""
         return (empty(len(initial)),)
 
     def step(
@@ -43,8 +43,9 @@ class Estimator(BaseEstimator):
     ) -> tuple[JointsInformation, Array]:
         joints = rows.y.shape[1]
         parts = state if len(state) == joints else state * joints
+        arrays = (rows.W, rows.y, rows.scales)
         found = [
-            absorb(part, *(np.ascontiguousarray(x[:, j : j + 1]) for x in _of(rows)))
+            absorb(part, *(np.ascontiguousarray(x[:, j : j + 1]) for x in arrays))
             for j, part in enumerate(parts)
         ]
         return tuple(part for part, _ in found), np.empty((0, rows.W.shape[2]))
@@ -56,7 +57,3 @@ class Estimator(BaseEstimator):
         inverse = 1.0 / np.maximum(deviations, least)
         fit = solve(merged(state, inverse.tolist()))
         return Estimation(fit, Scores(whitening=np.diag(inverse)))
-
-
-def _of(rows: Rows) -> tuple[Array, Array, Array]:
-    return rows.W, rows.y, rows.scales

@@ -1,1 +1,1 @@
-"""Ways to excite a robot: a registry, in which each module is one choice of `scarid trajgen`."""
+"""Excitations: each module of this folder is one choice of `scarid trajgen --excitation`."""

@@ -154,7 +154,7 @@ def _settling_rows(process: Process, h: float) -> tuple[int, int]:
 
 def over(process: Process, x: Array, h: float) -> tuple[Array, ...]:
     """The outputs of a process for a whole record x, sampled every h [s]."""
-    state, begun = process.step(process.init(float(x[0]), h), x)
+    state, first = process.step(process.init(float(x[0]), h), x)
     rest = process.finish(state)
-    parts = [rows for rows in (begun, rest) if rows]
+    parts = [rows for rows in (first, rest) if rows]
     return tuple(np.concatenate(pieces) for pieces in zip(*parts, strict=True))

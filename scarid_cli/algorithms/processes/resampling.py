@@ -127,14 +127,14 @@ WINDOWS = 256  # computed at once
 class DecimatorState:
     """The samples of a segment (columns, samples) that the next rows need, from number `at` on.
 
-    `row` is the number of the next row. `begun` says whether the samples have been extended before
+    `row` is the number of the next row. `padded` says whether the samples have been extended before
     the first one.
     """
 
     x: Array
     at: int
     row: int
-    begun: bool = False
+    padded: bool = False
 
 
 @dataclass(frozen=True)
@@ -164,17 +164,17 @@ class Decimator:
         """Take in samples; return the rows that can be made of them, as numbers and values."""
         half = REACH * self.factor
         state = replace(state, x=np.concatenate((state.x, x), axis=1))
-        if not state.begun and state.x.shape[1] > half:
-            state = replace(state, x=_turned(state.x, half, 0), at=state.at - half, begun=True)
-        return self._rows(state) if state.begun else (state, np.empty(0, int), x[:, :0])
+        if not state.padded and state.x.shape[1] > half:
+            state = replace(state, x=_turned(state.x, half, 0), at=state.at - half, padded=True)
+        return self._rows(state) if state.padded else (state, np.empty(0, int), x[:, :0])
 
     def finish(self, state: DecimatorState) -> tuple[Numbers, Array]:
         """The remaining rows at the end of a segment, as numbers and values."""
         half = REACH * self.factor
         if not state.x.shape[1]:
             return np.empty(0, int), state.x
-        before = 0 if state.begun else half
-        whole = replace(state, x=_turned(state.x, before, half), at=state.at - before, begun=True)
+        before = 0 if state.padded else half
+        whole = replace(state, x=_turned(state.x, before, half), at=state.at - before, padded=True)
         _, numbers, rows = self._rows(whole)
         return numbers, rows
 

@@ -1,1 +1,1 @@
-"""The regression tau = W theta (paper eq. 25): its rows, their decimation, their information."""
+"""The regression tau = W theta (paper eq. 25): its rows, their decimation, and its solution."""

@@ -1,7 +1,8 @@
-"""Decimation with parallel filtering: every column of W and the torque by the same low-pass.
+"""Decimation with parallel filtering: every column of W and the torques pass the same low-pass.
 
-As MATLAB's `decimate`: Chebyshev type I of order 8, ripple 0.05 dB, cut-off 0.8 of the new Nyquist
-frequency, forwards and backwards; of the samples every N-th is kept, the last among them.
+The filter is that of MATLAB's `decimate`: Chebyshev type I of order 8 with a ripple of 0.05 dB and
+a cut-off at 0.8 of the new Nyquist frequency, run forwards and backwards. Then every N-th sample is
+kept, counted back from the last one.
 """
 
 from __future__ import annotations
@@ -14,16 +15,17 @@ from scarid_cli.arrays import Array
 
 ORDER = 8
 RIPPLE = 0.05  # dB
-CUTOFF = 0.8  # of the new Nyquist frequency
+CUTOFF_OF_NYQUIST = 0.8  # of the new Nyquist frequency
 PADDING = 3 * ORDER
 
 
 def decimated(rows: Rows, factor: int) -> Rows:
-    """Every `factor`-th sample after the low-pass; each run of the record by itself.
+    """Every `factor`-th sample after the low-pass, which filters each run between gaps by itself.
 
-    Runs too short for the filter's padding are left out; `at` counts in the new samples.
+    Runs that are too short for the padding of the filter are left out; `at` numbers the new
+    samples.
     """
-    sections = cheby1(ORDER, RIPPLE, CUTOFF / factor, output="sos")
+    sections = cheby1(ORDER, RIPPLE, CUTOFF_OF_NYQUIST / factor, output="sos")
     parts = []
     for run in runs(rows.at):
         part = rows.part(run)

@@ -1,4 +1,4 @@
-"""What an estimator is, what it may need, and what it returns: numbers, and how they came about."""
+"""The base classes of estimators, what an estimator declares, and what it returns."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.settings import Validated
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
@@ -16,12 +17,12 @@ from scarid_cli.arrays import Array
 
 @dataclass(frozen=True)
 class Scores:
-    """The equations Z' (y - W theta) = 0 that the estimates solve, which tell their robust errors.
+    """The equations Z' (y - W theta) = 0 that the estimates solve, from which robust errors follow.
 
-    `whitening` (joints, joints) is what the rows of a sample were multiplied by; `huber` the
-    whitened residual from which a row counts less; `instruments` (samples, joints, parameters)
-    take the place of W in Z. `rows` are those in which the fit is linear, where they are not those
-    that the estimator was given.
+    `whitening` (joints, joints) is the matrix that the rows of each sample were multiplied by.
+    `huber` is the whitened residual above which Huber's weights reduce the weight of a row.
+    `instruments` (samples, joints, parameters) take the place of W in Z. `rows` are the rows in
+    which the problem is linear, if they are not those that the estimator was given.
     """
 
     whitening: Array | None = None
@@ -32,11 +33,11 @@ class Scores:
 
 @dataclass(frozen=True)
 class Estimation:
-    """What an estimator found.
+    """The result of an estimator.
 
-    `scores` is None where no such equations hold for the rows as they are: a filter, an estimate
-    that forgets. `added` are names and units of parameters beyond the robot's, `extra` is whatever
-    else there is to report.
+    `scores` is None if the estimates solve no such equations for the rows as they are, as with a
+    Kalman filter or with forgetting. `added` has the names and units of parameters beyond the
+    robot's, and `extra` whatever else the estimator reports.
     """
 
     fit: Fit
@@ -44,13 +45,18 @@ class Estimation:
     added: tuple[tuple[str, str], ...] = ()
     extra: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def weighted(self) -> bool:
+        """Whether the rows were weighted by their residuals."""
+        return self.scores is not None and self.scores.whitening is not None
 
-class BaseEstimator(ABC):
+
+class BaseEstimator(Validated, ABC):
     """What all estimators share, and what each of them declares.
 
-    RECURSIVE: there are estimates after every sample. HOLDS: the state is all rows so far.
-    INITIAL: the estimates start from initial parameters. REFERENCE: the rows need the reference
-    that the robot followed. ALIGNS: the delay of the torques can be fitted as one more parameter.
+    RECURSIVE: the estimator gives estimates after every sample. HOLDS: it keeps all rows in memory.
+    INITIAL: it starts from initial parameters. REFERENCE: it needs the reference that the robot
+    followed. ALIGNS: the delay of the torques can be fitted as one more parameter.
     """
 
     RECURSIVE: ClassVar[bool] = False
@@ -59,17 +65,17 @@ class BaseEstimator(ABC):
     REFERENCE: ClassVar[bool] = False
     ALIGNS: ClassVar[bool] = True
 
-    def for_robot(self, robot: Robot) -> Self:  # noqa: ARG002 (most need not know it)
-        """The estimator for the rows of this robot."""
+    def for_robot(self, robot: Robot) -> Self:  # noqa: ARG002 (most do not depend on it)
+        """The estimator for this robot."""
         return self
 
     def widened(self) -> Self:
-        """The estimator for rows with one more column, the delay of the torques."""
+        """The estimator for rows with one more column, that of the delay of the torques."""
         return self
 
     @abstractmethod
     def init(self, initial: Array) -> Any:
-        """The state before the first row, given initial parameters or zeros."""
+        """The state before the first row; `initial` are the initial parameters, or zeros."""
 
     @abstractmethod
     def step(self, state: Any, rows: Rows, *, trace: bool = False) -> tuple[Any, Array]:
@@ -77,11 +83,11 @@ class BaseEstimator(ABC):
 
     @abstractmethod
     def fit(self, state: Any) -> Estimation:
-        """What the rows so far say."""
+        """The result from all rows so far."""
 
 
 class HoldingEstimator(BaseEstimator):
-    """An estimator whose state is all rows so far: what it does with them is its `fit`."""
+    """An estimator that keeps all rows and solves for the estimates in `fit`."""
 
     HOLDS: ClassVar[bool] = True
 
@@ -93,6 +99,6 @@ class HoldingEstimator(BaseEstimator):
         state: list[Rows],
         rows: Rows,
         *,
-        trace: bool = False,  # noqa: ARG002 (there is nothing before the end)
+        trace: bool = False,  # noqa: ARG002 (there are no estimates before the end)
     ) -> tuple[list[Rows], Array]:
         return [*state, rows], np.empty((0, rows.W.shape[2]))

@@ -1,4 +1,4 @@
-"""The information of a linear regression, and the estimates it holds."""
+"""Linear least squares in information form: accumulating rows, and solving for the estimates."""
 
 from __future__ import annotations
 
@@ -10,14 +10,13 @@ import numpy as np
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import information
 
-# Of the residual: r - c degrees of freedom, 1 as printed in eq. 32-33, r - 1 degrees of freedom.
+# Variance of the residual: with r - c degrees of freedom, 1 as printed in eq. 32-33, with r - 1.
 RESIDUAL, UNIT, SAMPLE = "residual", "unit", "sample"
-VARIANCES = (RESIDUAL, UNIT, SAMPLE)
-ROUNDING = 1e-15
+ROUNDING = 1e-15  # the relative error of the largest eigenvalue of a matrix
 
 
 class NotIdentifiableError(ValueError):
-    """The data leave a combination of parameters free; `direction` is it, of unit length.
+    """The data do not determine a combination of parameters; `direction` is its unit vector.
 
     `added` are the names of parameters that come after the robot's own.
     """
@@ -30,10 +29,11 @@ class NotIdentifiableError(ValueError):
 
 @dataclass(frozen=True)
 class Information:
-    """What the rows so far say, as the kernel keeps it: a unit triangle with weights.
+    """The information of the rows so far, as the kernel keeps it: R as a weighted unit triangle.
 
-    `weight` is the number of rows, each weighted by what forgetting left of it, `count` that of the
-    samples.
+    `weighted` (parameters, parameters + 1) has the weights on its diagonal. `residual` is the
+    residual sum of squares. `weight` is the number of rows and `count` that of the samples, each
+    reduced by forgetting.
     """
 
     weighted: Array
@@ -47,7 +47,7 @@ class Information:
 
     @property
     def triangle(self) -> Array:
-        """R and z: |R theta - z|^2 + residual is the sum of squares."""
+        """[R z], such that the sum of squares is |R theta - z|^2 + residual."""
         unit = self.weighted.copy()
         np.fill_diagonal(unit, 1.0)
         triangle: Array = np.sqrt(np.diag(self.weighted))[:, None] * unit
@@ -58,10 +58,10 @@ class Information:
 class Fit:
     """The numbers of a linear fit.
 
-    `estimates` (parameters) and their `unit_covariance`, which is that of a residual variance of 1
-    (eq. 33). `variance` of the residual is s^2 = |rho|^2 / (r - c), nan without redundancy;
-    `sample_variance` is |rho|^2 / (r - 1). `condition` is the condition number of the observation
-    matrix.
+    `estimates` (parameters) have the covariance `unit_covariance` if the variance of the residual
+    is 1 (eq. 33). `variance` is that of the residual, s^2 = |rho|^2 / (r - c), nan if there are no
+    more rows than parameters; `sample_variance` is |rho|^2 / (r - 1). `condition` is the condition
+    number of the observation matrix.
     """
 
     estimates: Array
@@ -71,24 +71,24 @@ class Fit:
     sample_variance: float = float("nan")
 
     def standard_errors(self, variance: str = RESIDUAL) -> Array:
-        """Square roots of the diagonal of the covariance, for one of VARIANCES."""
+        """Standard errors (parameters), with the variance RESIDUAL, UNIT or SAMPLE."""
         size = {UNIT: 1.0, RESIDUAL: self.variance, SAMPLE: self.sample_variance}[variance]
         errors: Array = np.sqrt(size * np.diag(self.unit_covariance))
         return errors
 
     def part(self, kept: slice | list[int]) -> Fit:
-        """The fit of some of the parameters; what the others cost stays in the numbers."""
+        """The fit of some of the parameters, with the statistics of the fit of all of them."""
         covariance = self.unit_covariance[kept][:, kept]
         return replace(self, estimates=self.estimates[kept], unit_covariance=covariance)
 
 
 def empty(parameters: int) -> Information:
-    """Nothing known."""
+    """The information of no rows."""
     return Information(np.zeros((parameters, parameters + 1)))
 
 
 def prior(estimates: Array, p0: float) -> Information:
-    """Initial parameters with covariance P0 = p0 I."""
+    """The information of initial parameters with covariance P0 = p0 I."""
     return Information(np.column_stack((np.eye(len(estimates)) / p0, estimates)))
 
 
@@ -102,10 +102,11 @@ def absorb(
     floor: float = 0.0,
     trace: bool = False,
 ) -> tuple[Information, Array]:
-    """Take rows in, each times its scale; with `trace`, also the estimates after each sample.
+    """The information after these rows, each multiplied by its scale.
 
-    `forgetting` (parameters): factors per sample; `floor`: the information that forgetting leaves
-    of each parameter in the long run.
+    With `trace` the estimates after each sample (samples, parameters) are returned as well.
+    `forgetting` (parameters) are factors per sample; `floor` is the information on each parameter
+    that forgetting leaves in the long run.
     """
     samples, _, parameters = W.shape
     weighted = state.weighted.copy()
@@ -126,7 +127,7 @@ def absorb(
 
 
 def merged(parts: Sequence[Information], scales: Sequence[float]) -> Information:
-    """What several sources say together, each times its scale."""
+    """The information of several sets of rows together, each set multiplied by its scale."""
     total = empty(parts[0].parameters)
     for part, scale in zip(parts, scales, strict=True):
         triangle = part.triangle
@@ -142,7 +143,7 @@ def merged(parts: Sequence[Information], scales: Sequence[float]) -> Information
 
 
 def solve(state: Information) -> Fit:
-    """Estimates and statistics; NotIdentifiableError if the triangle is singular to rounding."""
+    """Estimates and statistics; NotIdentifiableError if R is singular to working precision."""
     p = state.parameters
     triangle = state.triangle
     R, z = triangle[:, :p], triangle[:, p]
@@ -162,14 +163,17 @@ def solve(state: Information) -> Fit:
 
 
 def least_squares(W: Array, y: Array, scales: Array | None = None) -> Fit:
-    """Of rows that are all there, each times its scale."""
+    """The least-squares fit of these rows, each multiplied by its scale."""
     whole = (None if x is None else np.ascontiguousarray(x) for x in (W, y, scales))
     state, _ = absorb(empty(W.shape[2]), *whole)  # type: ignore[arg-type]
     return solve(state)
 
 
 def residual_deviation(state: Information) -> float:
-    """Of a part of the rows, by the parameters that fit it best; 0 if they fit it exactly."""
+    """The standard deviation of the residual of the best fit; 0 if the fit is exact.
+
+    Parameters that the rows do not determine are allowed, and not counted.
+    """
     R = state.triangle[:, :-1]
     length = np.sqrt((R * R).sum(axis=0))
     rank = np.linalg.matrix_rank(R / np.where(length > 0.0, length, 1.0))
@@ -177,9 +181,9 @@ def residual_deviation(state: Information) -> float:
 
 
 def weakest(covariance: Array) -> tuple[float, Array]:
-    """The condition number of W with columns of unit length, and the direction it knows least of.
+    """The condition number of W with columns of unit length, and its least determined direction.
 
-    From the covariance of the estimates, so that units do not matter.
+    Both are computed from the covariance of the estimates and do not depend on units.
     """
     errors = np.sqrt(np.diag(covariance))
     gram = _inverse(covariance / np.outer(errors, errors))
@@ -192,7 +196,7 @@ def weakest(covariance: Array) -> tuple[float, Array]:
 def _inverse(correlation: Array) -> Array:
     """The inverse of a correlation matrix, positive definite even where rounding left it singular.
 
-    An eigenvalue below the rounding error of the largest is not known better than that.
+    Eigenvalues below the rounding error of the largest one are replaced by that error.
     """
     values, vectors = np.linalg.eigh(correlation)
     inverse: Array = (vectors / np.maximum(values, ROUNDING * values[-1])) @ vectors.T
@@ -200,7 +204,7 @@ def _inverse(correlation: Array) -> Array:
 
 
 def _check_rank(R: Array, rows: float) -> None:
-    """By the singular values of R with columns of unit length, so that units do not matter."""
+    """Raise NotIdentifiableError if R, with columns scaled to unit length, is singular."""
     length = np.sqrt((R * R).sum(axis=0))
     if not np.all(length > 0.0):
         free = np.where(length > 0.0, 0.0, 1.0)

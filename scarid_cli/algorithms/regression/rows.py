@@ -1,4 +1,4 @@
-"""Rows of the regression tau = W theta (paper eq. 25), and what is done to them before it."""
+"""The rows of the regression tau = W theta (paper eq. 25), and operations on them."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from scarid_cli.arrays import Array, Numbers
 
 @dataclass(frozen=True)
 class Rows:
-    """W (samples, joints, parameters), torques y and scales (samples, joints).
+    """Rows of the regression: W (samples, joints, parameters), torques y (samples, joints).
 
-    A row counts `scales` times, 0 leaves it out. `at` (samples) are the numbers of the samples in
-    the record, which are `h` [s] apart; where the numbers jump, the record has a gap. `motion`
-    (4, joints, samples): position, velocity, acceleration and torque that the rows were made of;
-    `reference` (2, joints, samples): position and velocity that the robot was to follow, where the
-    log has them.
+    Each row is multiplied by its entry in `scales` (samples, joints); 0 leaves it out. `at`
+    (samples) are the numbers of the samples in the record, which are `h` [s] apart; where the
+    numbers jump, the record has a gap. `motion` (4, joints, samples) has the position, velocity,
+    acceleration and torque that the rows were computed from, and `reference` (2, joints, samples)
+    the reference position and velocity, if the log has them.
     """
 
     W: Array
@@ -36,7 +36,7 @@ class Rows:
         return len(self.W)
 
     def part(self, chosen: slice) -> Rows:
-        """Some of the samples."""
+        """The rows of a slice of the samples."""
         return Rows(
             np.ascontiguousarray(self.W[chosen]),
             np.ascontiguousarray(self.y[chosen]),
@@ -48,7 +48,7 @@ class Rows:
         )
 
     def taken(self, chosen: Numbers) -> Rows:
-        """Samples by their places, as copies."""
+        """The rows of the samples at these indices, as copies."""
         return Rows(
             self.W[chosen],
             self.y[chosen],
@@ -61,7 +61,7 @@ class Rows:
 
 
 def plain(W: Array, y: Array, h: float = 1.0) -> Rows:
-    """Rows of equal weight without a motion behind them, every h [s]."""
+    """Rows of equal weight, h [s] apart, that were not computed from a motion."""
     samples, joints, _ = W.shape
     motion = np.zeros((4, joints, samples))
     motion[3] = y.T
@@ -78,10 +78,10 @@ def rows_of(
     slow: Array | None = None,
     reference: Array | None = None,
 ) -> Rows:
-    """The rows of a motion (4, joints, samples): position, velocity, acceleration, torque.
+    """The rows of a motion (4, joints, samples): position, velocity, acceleration and torque.
 
-    Rows of joints below their velocity `slow` (joints) are left out: there Coulomb friction is not
-    sign(dq).
+    Rows of a joint that is slower than `slow` (joints) [rad/s or m/s] are left out, because Coulomb
+    friction near rest is not sign(dq).
     """
     q, dq, ddq, tau = motion
     y = np.ascontiguousarray(tau.T)
@@ -90,12 +90,12 @@ def rows_of(
 
 
 def without_slow(rows: Rows, slow: Array) -> Rows:
-    """The rows without those of joints below these velocities (joints)."""
+    """The rows without those of joints that are slower than `slow` (joints) [rad/s or m/s]."""
     return replace(rows, scales=rows.scales * (np.abs(rows.motion[1].T) >= slow))
 
 
 def joined(parts: Sequence[Rows]) -> Rows:
-    """Parts of a record as one."""
+    """Several parts of a record as one."""
     if len(parts) == 1:
         return parts[0]
     references = [part.reference for part in parts if part.reference is not None]
@@ -125,10 +125,11 @@ def with_delay(rows: Rows, theta: Array) -> Rows:
 
 
 def delay_column(rows: Rows, predicted: Array) -> Array:
-    """How predicted torques (samples, joints) change if they come a second earlier.
+    """The time derivative of the predicted torques (samples, joints).
 
-    To first order tau(t) = W(t + delay) theta, with the delay by which the measured torques lead
-    the motion. At reversals, where Coulomb friction jumps, the column is 0.
+    The measured torques lead the motion by a delay: tau(t) = W(t + delay) theta, so to first order
+    this derivative is the column of W whose parameter is the delay [s]. It is 0 where a joint
+    reverses, because Coulomb friction jumps there.
     """
     column = np.zeros_like(predicted)
     for run in runs(rows.at):

@@ -22,10 +22,9 @@ from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.base import with_base_parameters
 from scarid_cli.algorithms.robots.coupled import COUPLED_TERMS
 from scarid_cli.algorithms.robots.description import Parameter, Robot
-from scarid_cli.algorithms.robots.joints import UNITS, Joint, joint_of
+from scarid_cli.algorithms.robots.joints import JOINT_UNITS, Joint, joint_of
 from scarid_cli.algorithms.robots.logs import coupled, gear_ratio, log_of
-from scarid_cli.algorithms.robots.rigid import GRAVITY, SYMBOLS, Body
-from scarid_cli.algorithms.robots.rigid import UNITS as STANDARD_UNITS
+from scarid_cli.algorithms.robots.rigid import GRAVITY, STANDARD_UNITS, SYMBOLS, Body
 from scarid_cli.algorithms.robots.terms import AXIS_TERMS, AxisTerm, Mass, StandardTerm
 
 
@@ -40,7 +39,7 @@ TERMS: dict[str, type[AxisTerm]] = {
     for name, term in AXIS_TERMS.items()
     if _complete(term)
 }
-DEFAULT = ("inertia", "viscous", "coulomb", "offset")
+DEFAULT_TERMS = ("inertia", "viscous", "coulomb", "offset")
 KEYS = ("title", "urdf", "gravity", "joint", "coupling", "log")
 
 
@@ -63,7 +62,7 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
         own = {key: value for key, value in entry.items() if key not in ("name", "terms")}
         joints.append(joint_of({"type": joint.type, **own}, joint))
         parameters += _standard(i, standard)
-        parameters += _terms(i, joint, entry.get("terms", list(DEFAULT)))
+        parameters += _terms(i, joint, entry.get("terms", list(DEFAULT_TERMS)))
     for entry in values.tables("coupling", document.get("coupling", [])):
         parameters += _coupled(entry, entries)
     values.distinct("parameter", [parameter.name for parameter in parameters])
@@ -113,7 +112,7 @@ def _terms(i: int, joint: Joint, wanted: Any) -> list[Parameter]:
         if name not in TERMS:
             raise ValueError(f"an axis has no term {name!r}; choose {', '.join(TERMS)}")
         term = TERMS[name](i)
-        unit = term.UNITS[list(UNITS).index(joint.type)]
+        unit = term.UNITS[list(JOINT_UNITS).index(joint.type)]
         value = values.number(name, apriori)
         parameters.append(Parameter(term.SYMBOL.format(i=i), unit, value, term))
     return parameters

@@ -15,10 +15,10 @@ import numpy as np
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 
-SAMPLES = 400
-REACH = 3.0  # rad or m, and per s and s2
+RANDOM_STATES = 400
+STATE_RANGE = 3.0  # rad or m, and per s and s2
 DEPENDENT = 1e-8  # rest of a column of unit length that counts as none
-NONE = 1e-12  # times the longest column: a column that is rounding alone
+ZERO_COLUMN = 1e-12  # times the longest column: a column that is rounding alone
 ROUNDING = 1e-12
 ABSENT = 1e-6  # factor of a parameter that is not part of a combination
 
@@ -26,7 +26,7 @@ ABSENT = 1e-6  # factor of a parameter that is not part of a combination
 def with_base_parameters(robot: Robot) -> Robot:
     """The robot with its base parameters only, each with the combination that it stands for."""
     rng = np.random.default_rng(0)
-    motion = rng.uniform(-REACH, REACH, (3, len(robot.joints), SAMPLES))
+    motion = rng.uniform(-STATE_RANGE, STATE_RANGE, (3, len(robot.joints), RANDOM_STATES))
     W = robot.regressor(*motion).reshape(-1, len(robot.parameters))
     kept, parts = independent(W)
     parameters = []
@@ -57,7 +57,7 @@ def independent(W: Array) -> tuple[list[int], Array]:
     basis = np.empty((len(W), 0))
     kept: list[int] = []
     for i, length in enumerate(lengths):
-        if not length > NONE * lengths.max():
+        if not length > ZERO_COLUMN * lengths.max():
             continue
         rest = W[:, i] / length
         for _ in range(2):  # twice, for the digits that the first projection loses

@@ -62,7 +62,7 @@ def named(names: Sequence[str], wanted: Sequence[str]) -> Chain:
 
 
 def _way(children: Mapping[int, list[int]]) -> list[int]:
-    """From the base to where no branch outweighs the others."""
+    """The joints from the base to the point where no branch outweighs the others."""
     way = [0]
     while True:
         sizes = {child: 1 + len(_beyond(children, child)) for child in children[way[-1]]}

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.robots.terms import INERTIA, TORQUE, VISCOUS, Column, Samples, Term
+from scarid_cli.algorithms.robots.terms import INERTIA, TORQUE, VISCOUS, Column, JointMotion, Term
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class CoupledInertia(CoupledTerm):
 
     NAME, SYMBOL, UNIT = "coupled-inertia", "Iam{i}", INERTIA[0]
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         one, two = self.joint - 1, self.other - 1
         return {one: self.ratio * samples.ddq[two], two: self.ratio * samples.ddq[one]}
 
@@ -43,7 +43,7 @@ class CoupledViscous(CoupledTerm):
 
     NAME, SYMBOL, UNIT = "coupled-viscous", "fvm{i}", VISCOUS[0]
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         one, two = self.joint - 1, self.other - 1
         return {one: self.ratio * samples.dq[two], two: self.ratio * samples.dq[one]}
 
@@ -54,7 +54,7 @@ class CoupledCoulomb(CoupledTerm):
     NAME, SYMBOL, UNIT = "coupled-coulomb", "fsm{i}", TORQUE[0]
     JUMPS = True
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         one, two = self.joint - 1, self.other - 1
         direction = np.sign(self.ratio * samples.dq[one] + samples.dq[two])
         return {one: self.ratio * direction, two: direction}

@@ -9,7 +9,7 @@ import numpy as np
 
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.logs import LogFormat
-from scarid_cli.algorithms.robots.terms import Coulomb, Samples, Stribeck, Term
+from scarid_cli.algorithms.robots.terms import Coulomb, JointMotion, Stribeck, Term
 from scarid_cli.arrays import Array
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ class Robot:
         """
         joints, samples = q.shape
         W = np.zeros((samples, joints, len(self.parameters)))
-        motion = Samples(q, dq, ddq, self.body.columns(q, dq, ddq) if self.body else None)
+        motion = JointMotion(q, dq, ddq, self.body.columns(q, dq, ddq) if self.body else None)
         for index, parameter in enumerate(self.parameters):
             for joint, values in parameter.term.column(motion).items():
                 W[:, joint, index] = values

@@ -9,8 +9,8 @@ from typing import Any
 from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.logs import AXIS
 
-UNITS = {"revolute": ("rad", "N m"), "prismatic": ("m", "N")}
-NUMBERS = (
+JOINT_UNITS = {"revolute": ("rad", "N m"), "prismatic": ("m", "N")}
+NUMERIC_KEYS = (
     "velocity_limit",
     "acceleration_limit",
     "torque_limit",
@@ -39,19 +39,19 @@ class Joint:
     @property
     def unit(self) -> str:
         """The unit of the position."""
-        return UNITS[self.type][0]
+        return JOINT_UNITS[self.type][0]
 
     @property
     def torque_unit(self) -> str:
         """The unit of the torque or force."""
-        return UNITS[self.type][1]
+        return JOINT_UNITS[self.type][1]
 
 
 def joint_of(entry: dict[str, Any], known: Joint | None = None) -> Joint:
     """The joint of a [[joint]] table; what the table does not give is taken from `known`."""
-    values.only("[[joint]]", entry, ("type", "position_limit", *NUMBERS, *AXIS))
-    kind = values.choice("joint type", entry["type"], UNITS)
-    numbers = {key: values.number(key, entry[key]) for key in NUMBERS if key in entry}
+    values.only("[[joint]]", entry, ("type", "position_limit", *NUMERIC_KEYS, *AXIS))
+    kind = values.choice("joint type", entry["type"], JOINT_UNITS)
+    numbers = {key: values.number(key, entry[key]) for key in NUMERIC_KEYS if key in entry}
     for key, value in numbers.items():
         if value < 0.0:
             raise ValueError(f"{key} is negative")

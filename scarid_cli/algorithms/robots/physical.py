@@ -32,10 +32,10 @@ from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import BadData, UsageFault
 
 LENGTH = 0.1  # m: with lengths in decimetres the entries of a pseudo-inertia are of similar size
-MARGIN = 1e-4  # kg: the smallest eigenvalue of a pseudo-inertia in these units
+LEAST_EIGENVALUE = 1e-4  # kg: the smallest eigenvalue of a pseudo-inertia in these units
 PRICE = 1e-4  # squared errors per kg^2 of distance from the URDF's bodies: decides what the base
 # parameters leave open, and keeps masses finite where the nearest ones would be infinite
-ROUNDING = 1e-12  # kg m2: smaller values are left over by the solver
+SOLVER_ROUNDING = 1e-12  # kg m2: smaller values are left over by the solver
 RESOLUTION = 1e-6  # of an estimate: smaller errors are beyond the accuracy of the solver
 YIELD = 1.0  # squared errors: by one standard deviation the zeros of dropped parameters may move
 # the estimates, beyond what dropping them did
@@ -140,7 +140,7 @@ class _Arm:
             axes,
             _combinations(robot, standard),
             _combinations(robot, axes),
-            [*bounds, *(J >> MARGIN * np.eye(4) for J in pseudo)],
+            [*bounds, *(J >> LEAST_EIGENVALUE * np.eye(4) for J in pseudo)],
             [*apart, beside],
         )
 
@@ -190,7 +190,7 @@ def _smallest(
 def _rounded(robot: Robot, arm: _Arm, zero: Numbers, distance: float) -> Physical:
     """The solution, with zeros for what the solver leaves of them."""
     bodies = np.array([np.asarray(body.value, dtype=np.float64) for body in arm.bodies])
-    bodies[np.abs(bodies) < ROUNDING] = 0.0
+    bodies[np.abs(bodies) < SOLVER_ROUNDING] = 0.0
     alone = {name for i in zero for (name, _), *more in [_parts(robot)[i]] if not more}
     values = np.asarray(arm.beside.value, dtype=np.float64)
     values[[name in alone for name in arm.axes]] = 0.0

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.algorithms.robots.terms import Column, Samples, Term
+from scarid_cli.algorithms.robots.terms import Column, JointMotion, Term
+from scarid_cli.arrays import Array
 
 
 class PlanarTerm(Term):
@@ -22,7 +23,7 @@ class ZZ1R(PlanarTerm):
 
     NAME = "ZZ1R"
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         return {0: samples.ddq[0]}
 
 
@@ -31,9 +32,18 @@ class ZZ2(PlanarTerm):
 
     NAME = "ZZ2"
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         both = samples.ddq[0] + samples.ddq[1]
         return {0: both, 1: both}
+
+
+def _first_moment(samples: JointMotion, c: Array, s: Array) -> Column:
+    """The torques of a first moment of link 2 whose axis has the direction (c, s) in link 1."""
+    dq, ddq = samples.dq, samples.ddq
+    return {
+        0: (2.0 * ddq[0] + ddq[1]) * c - dq[1] * (2.0 * dq[0] + dq[1]) * s,
+        1: ddq[0] * c + dq[0] * dq[0] * s,
+    }
 
 
 class L1MX2(PlanarTerm):
@@ -41,13 +51,8 @@ class L1MX2(PlanarTerm):
 
     NAME = "L1MX2"
 
-    def column(self, samples: Samples) -> Column:
-        q, dq, ddq = samples.q, samples.dq, samples.ddq
-        c, s = np.cos(q[1]), np.sin(q[1])
-        return {
-            0: (2.0 * ddq[0] + ddq[1]) * c - dq[1] * (2.0 * dq[0] + dq[1]) * s,
-            1: ddq[0] * c + dq[0] * dq[0] * s,
-        }
+    def column(self, samples: JointMotion) -> Column:
+        return _first_moment(samples, np.cos(samples.q[1]), np.sin(samples.q[1]))
 
 
 class L1MY2(PlanarTerm):
@@ -55,13 +60,8 @@ class L1MY2(PlanarTerm):
 
     NAME = "L1MY2"
 
-    def column(self, samples: Samples) -> Column:
-        q, dq, ddq = samples.q, samples.dq, samples.ddq
-        c, s = np.cos(q[1]), np.sin(q[1])
-        return {
-            0: -(2.0 * ddq[0] + ddq[1]) * s - dq[1] * (2.0 * dq[0] + dq[1]) * c,
-            1: -ddq[0] * s + dq[0] * dq[0] * c,
-        }
+    def column(self, samples: JointMotion) -> Column:
+        return _first_moment(samples, -np.sin(samples.q[1]), np.cos(samples.q[1]))
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class MX1R(PlanarTerm):
     NAME = "MX1R"
     gravity: float = 0.0
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         return {0: self.gravity * np.sin(samples.q[0])}
 
 
@@ -89,7 +89,7 @@ class MX2(PlanarTerm):
     length: float = 0.0
     gravity: float = 0.0
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         weight = self.gravity * np.sin(samples.q[0] + samples.q[1])
         inertial = L1MX2().column(samples)
         return {joint: self.length * inertial[joint] + weight for joint in (0, 1)}

@@ -15,14 +15,14 @@ from scarid_cli.algorithms.robots.planar import PLANAR_TERMS, PlanarTerm
 from scarid_cli.algorithms.robots.terms import AXIS_TERMS, Term
 from scarid_cli.errors import UsageFault
 
-FOLDER = Path(__file__).parent
-TERMS: dict[str, type[Term]] = {**AXIS_TERMS, **PLANAR_TERMS}  # that [[parameter]] may name
-DEFAULT = "scara2"
+ROBOTS = Path(__file__).parent
+NAMED_TERMS: dict[str, type[Term]] = {**AXIS_TERMS, **PLANAR_TERMS}  # that [[parameter]] may name
+DEFAULT_ROBOT = "scara2"
 
 
 def built_in() -> list[str]:
     """The names of the robots that come with the package."""
-    return sorted(path.stem for path in FOLDER.glob("*.toml"))
+    return sorted(path.stem for path in ROBOTS.glob("*.toml"))
 
 
 def load(name: str) -> Robot:
@@ -31,7 +31,7 @@ def load(name: str) -> Robot:
         from scarid_cli.algorithms.robots.arms import arm
 
         return arm(name, {"title": name, "urdf": name}, Path())
-    path = Path(name) if name.endswith(".toml") else FOLDER / f"{name}.toml"
+    path = Path(name) if name.endswith(".toml") else ROBOTS / f"{name}.toml"
     if not path.exists():
         if name.endswith(".toml"):
             raise UsageFault(f"{name}: no such file")
@@ -89,9 +89,9 @@ def _parameter(entry: dict[str, Any], joints: int) -> Parameter:
 def _term(name: str, entry: dict[str, Any]) -> Term:
     """The term that [[parameter]] names, with its constants."""
     wanted = values.text("term", entry["term"])
-    if wanted not in TERMS:
-        raise ValueError(f"{name}: there is no term {wanted!r}; choose {', '.join(TERMS)}")
-    term = TERMS[wanted]
+    if wanted not in NAMED_TERMS:
+        raise ValueError(f"{name}: there is no term {wanted!r}; choose {', '.join(NAMED_TERMS)}")
+    term = NAMED_TERMS[wanted]
     constants = {field.name: field for field in fields(term)}
     known = ("name", "term", "unit", "apriori", *constants)
     values.only(f"a [[parameter]] with term {wanted}", entry, known)

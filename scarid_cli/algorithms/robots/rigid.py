@@ -21,7 +21,7 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
 SYMBOLS = ("Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz", "mx", "my", "mz", "m")
-UNITS = ("kg m2",) * 6 + ("kg m",) * 3 + ("kg",)
+STANDARD_UNITS = ("kg m2",) * 6 + ("kg m",) * 3 + ("kg",)
 PINOCCHIO = np.array([4, 5, 7, 6, 8, 9, 1, 2, 3, 0])  # their places there
 
 GRAVITY = (0.0, 0.0, -9.81)  # m/s2

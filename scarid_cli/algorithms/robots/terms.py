@@ -22,7 +22,7 @@ TORQUE = ("N m", "N")
 
 
 @dataclass(frozen=True)
-class Samples:
+class JointMotion:
     """Positions, velocities and accelerations, each (joints, samples) in rad or m, s.
 
     `rigid` is the regressor of the standard parameters (samples, joints, standard parameters), for
@@ -52,7 +52,7 @@ class Term:
         """The joints (from 1) that it depends on or acts on."""
         raise NotImplementedError
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         """The torque or force on each joint, per unit of the parameter."""
         raise NotImplementedError
 
@@ -68,7 +68,7 @@ class StandardTerm(Term):
     def joints(self) -> tuple[int, ...]:
         return ()
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         assert samples.rigid is not None
         return dict(enumerate(samples.rigid[:, :, self.place].T))
 
@@ -92,7 +92,7 @@ class AxisTerm(Term):
     def joints(self) -> tuple[int, ...]:
         return (self.joint,)
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         axis = self.joint - 1
         return {axis: self.torque(samples.dq[axis])}
 
@@ -202,7 +202,7 @@ class Mass(AxisTerm):
 
     NAME, SYMBOL, UNITS = "mass", "Ia{i}", INERTIA
 
-    def column(self, samples: Samples) -> Column:
+    def column(self, samples: JointMotion) -> Column:
         return {self.joint - 1: samples.ddq[self.joint - 1]}
 
 

@@ -17,7 +17,7 @@ MASSLESS = 1e-6  # kg: some URDFs give their frames a token mass
 
 @dataclass(frozen=True)
 class Tree:
-    """A URDF as Pinocchio reads it, and what Pinocchio does not tell.
+    """A URDF as Pinocchio reads it, and what Pinocchio does not keep of it.
 
     `model` has all joints that move. `drivers` has the joint that each joint with a <mimic>
     follows, `offsets` where it is when that joint is at 0 [rad or m], `frames` the numbers of the
@@ -49,7 +49,7 @@ def read(path: str) -> Tree:
     except (RuntimeError, SyntaxError, ValueError) as error:
         raise UsageFault(f"{path}: not a URDF: {' '.join(str(error).split())}") from None
     if not model.nq or model.nq != model.nv:
-        raise UsageFault(f"{path}: only revolute, continuous and prismatic joints are understood")
+        raise UsageFault(f"{path}: only revolute, continuous and prismatic joints are supported")
     frames = {model.frames[model.getFrameId(name)].parentJoint for name in _massless_tips(tree)}
     return Tree(model, drivers, offsets, frozenset(frames))
 

@@ -1,6 +1,7 @@
-"""A record of any length as blocks: what each tells of the parameters, joint by joint.
+"""The normal equations of a record in blocks of time, for each joint.
 
-For the errors (`jackknife.py`) and the residuals of a record without holding its rows.
+From these blocks the robust errors (`jackknife.py`) and the residuals of a record of any length are
+computed without holding its rows in memory.
 """
 
 from __future__ import annotations
@@ -13,19 +14,21 @@ import numpy as np
 from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.arrays import Array
 
-FINEST = 0.1  # s: of a block in the beginning
-FEWEST = 16  # samples of a block
-MOST = 128  # blocks; then they are merged by twos
-UNIT = 1024  # samples
+BLOCK_DURATION = 0.1  # s, before any blocks are merged
+SHORTEST_BLOCK = 16  # samples
+MOST_BLOCKS = 128  # above this number, neighbouring blocks are merged in pairs
+MOST_HELD = 1024  # samples that are held until their products are computed
 
 
 @dataclass(frozen=True)
 class Blocks:
-    """Products of the rows of samples number k `length` to (k + 1) `length` - 1, for each k.
+    """The products of the rows in consecutive blocks of a record, each `length` samples long.
 
-    `products` (blocks, joints, parameters + 2, parameters + 2) of [W, y, 1]; `numbers` are the k.
-    Always a `unit` of samples is multiplied at once, so that batches do not change a bit; `held`
-    are the rows of one that is not full.
+    Block k consists of the samples from k `length` to (k + 1) `length` - 1; `numbers` lists the k
+    of the blocks that have samples. `products` (blocks, joints, parameters + 2, parameters + 2) are
+    A'A of the rows of each block, where A = [W, y, 1]. Rows are multiplied a fixed number of
+    samples (`unit`) at a time, so that the result is the same to the last bit for any batches;
+    `held` are the rows of a unit that is not yet complete.
     """
 
     length: int
@@ -35,32 +38,32 @@ class Blocks:
 
     @classmethod
     def every(cls, h: float) -> Blocks:
-        """Before the first of samples that are h [s] apart."""
-        return cls(max(FEWEST, round(FINEST / h)) if h > 0.0 else FEWEST)
+        """No blocks yet, for a record sampled every h [s]."""
+        return cls(max(SHORTEST_BLOCK, round(BLOCK_DURATION / h)) if h > 0.0 else SHORTEST_BLOCK)
 
     @property
     def unit(self) -> int:
-        """Samples: a block, but no more than can be held."""
-        return min(self.length, UNIT)
+        """The number of samples that are multiplied at once: a block, or what may be held of it."""
+        return min(self.length, MOST_HELD)
 
     def add(self, rows: Rows) -> Blocks:
-        """Take in the next samples."""
+        """The blocks after the next samples of the record."""
         blocks, start = self, 0
         while start < rows.samples:
-            blocks = blocks._begun(int(rows.at[start]))
+            blocks = blocks._before_sample(int(rows.at[start]))
             end = (int(rows.at[start]) // blocks.unit + 1) * blocks.unit
             stop = start + int(np.searchsorted(rows.at[start:], end))
             blocks = replace(blocks, held=(*blocks.held, rows.part(slice(start, stop))))
             start = stop
         return blocks
 
-    def _begun(self, at: int) -> Blocks:
-        """Before the sample of this number: what is held is of the same unit."""
+    def _before_sample(self, at: int) -> Blocks:
+        """The blocks ready for sample `at`: rows of an earlier unit are no longer held."""
         same = self.held and int(self.held[-1].at[-1]) // self.unit == at // self.unit
         return self if same else self.whole()
 
     def whole(self) -> Blocks:
-        """With the rows that were held."""
+        """The blocks with the held rows included."""
         if not self.held:
             return self
         rows = joined(self.held)
@@ -73,7 +76,7 @@ class Blocks:
             numbers.append(number)
             products.append(mine)
         counted = replace(self, numbers=tuple(numbers), products=tuple(products), held=())
-        return counted if len(numbers) <= MOST else _halved(counted)
+        return counted if len(numbers) <= MOST_BLOCKS else _merged_in_pairs(counted)
 
     @property
     def total(self) -> Array:
@@ -81,27 +84,27 @@ class Blocks:
         return np.asarray(np.sum(self.products, axis=0), dtype=np.float64)
 
     def columns(self, kept: list[int]) -> Blocks:
-        """With some of the columns of W alone."""
+        """The blocks of a regression with only these columns of W."""
         chosen = np.array([*kept, -2, -1])
         products = tuple(p[:, chosen[:, None], chosen] for p in self.products)
         return replace(self, products=products)
 
     def grouped(self, count: int) -> list[Array]:
-        """The products of at most so many parts of the record, of equal length."""
+        """The products of the record divided into at most `count` parts of equal length."""
         first, last = self.numbers[0], self.numbers[-1] + 1
         parts = ((number - first) * count // (last - first) for number in self.numbers)
         return list(_summed(parts, self.products).values())
 
 
-def _halved(blocks: Blocks) -> Blocks:
-    """Each two as one."""
+def _merged_in_pairs(blocks: Blocks) -> Blocks:
+    """Blocks of twice the length, each the sum of two neighbours."""
     merged = _summed((number // 2 for number in blocks.numbers), blocks.products)
     numbers, products = tuple(merged), tuple(merged.values())
     return replace(blocks, length=2 * blocks.length, numbers=numbers, products=products)
 
 
 def _summed(keys: Iterable[int], products: Iterable[Array]) -> dict[int, Array]:
-    """The sum of the products of each key."""
+    """The sums of the products that have the same key."""
     sums: dict[int, Array] = {}
     for key, product in zip(keys, products, strict=True):
         sums[key] = sums[key] + product if key in sums else product
@@ -109,6 +112,7 @@ def _summed(keys: Iterable[int], products: Iterable[Array]) -> dict[int, Array]:
 
 
 def _products(rows: Rows) -> Array:
+    """A'A of each joint (joints, parameters + 2, parameters + 2) for A = [W, y, 1], scaled."""
     samples, joints, parameters = rows.W.shape
     found = np.empty((joints, parameters + 2, parameters + 2))
     for j in range(joints):

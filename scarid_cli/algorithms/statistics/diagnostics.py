@@ -1,6 +1,7 @@
-"""What the residuals say of an estimation: its errors, its bias, how well it explains the torques.
+"""The diagnostics of an estimation: robust errors, tests for bias, and residuals of each joint.
 
-Errors and sums are from all rows of a record, the rest is from a subsample of a long one.
+Errors and sums of squares are computed from all rows of a record. Everything else is computed from
+a subsample if the record is long.
 """
 
 from __future__ import annotations
@@ -19,24 +20,25 @@ from scarid_cli.algorithms.statistics.jackknife import (
     jackknife,
     jackknife_of_blocks,
 )
-from scarid_cli.algorithms.statistics.lag_test import lag_share
+from scarid_cli.algorithms.statistics.misalignment import lag_share
 from scarid_cli.algorithms.statistics.residuals import JointResidual, residuals
 from scarid_cli.arrays import Array
 
-SLOW = 0.1  # of the usual velocity
+SLOW = 0.1  # of the root-mean-square velocity of a joint: below it, a row counts as slow
 
 
 @dataclass(frozen=True)
 class Diagnostics:
-    """What the residuals say of an estimation.
+    """What the residuals show about an estimation.
 
-    `covariance` is robust to autocorrelation; None for an estimator without scores. `errors` are
-    its standard errors, or those of white residuals times what least squares on the same rows would
-    need (`inflation`); either way from so many `blocks` of the record. `lag_share` is the part of
-    the residual that the motion 25 ms before and after explains: near 0 if all signals belong to
-    the same instant, near 1 if they do not. `moved` is by how many errors the estimates move if the
-    rows slower than `slow` (joints) [rad/s or m/s] are left out and a delay of the torques is
-    fitted as well.
+    `covariance` is robust to autocorrelated residuals; it is None for an estimator without scores.
+    `errors` (parameters) are its standard errors. Without it they are the standard errors for white
+    residuals, multiplied by the ratio of robust to white errors of least squares on the same rows
+    (`inflation`). `blocks` is the number of blocks of the record that the errors come from.
+    `lag_share` is the part of the residual that the motion 25 ms before and after explains: it is
+    near 0 if all signals belong to the same instant, and near 1 if they are misaligned. `moved` is
+    the number of standard errors by which each estimate changes when the rows slower than `slow`
+    (joints) [rad/s or m/s] are left out and a delay of the torques is fitted as well.
     """
 
     covariance: RobustCovariance | None
@@ -48,7 +50,7 @@ class Diagnostics:
     slow: Array
 
     def part(self, own: int) -> Diagnostics:
-        """Those of the first parameters."""
+        """The diagnostics of the first `own` parameters."""
         covariance = self.covariance and self.covariance.part(own)
         return replace(self, covariance=covariance, errors=self.errors[:own])
 
@@ -56,9 +58,10 @@ class Diagnostics:
 def diagnose(
     rows: Rows, found: Estimation, parameters: int, record: Blocks | None = None
 ) -> Diagnostics:
-    """From the rows, and the blocks of the `record` if there are more rows than these.
+    """Diagnose an estimation from its rows.
 
-    `parameters`: how many of the columns are the robot's; the others are nuisances.
+    `record` has the blocks of the whole record if `rows` are only a subsample of it. The first
+    `parameters` columns of W belong to the robot; the others are nuisance parameters.
     """
     joints = residuals(rows, found.fit.estimates, record)
     covariance = _covariance(rows, found, record)
@@ -93,13 +96,13 @@ def _covariance(rows: Rows, found: Estimation, record: Blocks | None) -> RobustC
 
 
 def _inflated(rows: Rows, found: Estimation, record: Blocks) -> tuple[int, Array]:
-    """The number of blocks, and the errors of an estimator without scores."""
+    """The number of blocks, and the standard errors of an estimator without scores."""
     blocks, ratio = inflation(record, rows)
     return blocks, np.asarray(found.fit.standard_errors() * ratio, dtype=np.float64)
 
 
 def with_delay_fitted(rows: Rows, estimates: Array, weights: Array) -> Array:
-    """The estimates with the delay of the torques fitted as well; nan if that is singular."""
+    """The estimates when the delay of the torques is fitted as well; nan if that is singular."""
     parameters = len(estimates)
     wide = with_delay(replace(rows, W=rows.W[:, :, :parameters]), estimates)
     try:

@@ -1,9 +1,9 @@
-"""Essential parameters: those that the data know well enough to keep (Gautier and Khalil).
+"""Essential parameters: those that the data determine well enough to keep (Gautier and Khalil).
 
-The worst known is removed while its relative deviation is at least 30 times that of the best, as
-long as the noise can account for it: all that is removed must together lie within the 95 %
-confidence region of the full model about zero. Where one parameter is known very well, the ratio
-alone would remove parameters that are known to a percent.
+The least certain parameter is removed as long as its relative standard deviation is at least 30
+times that of the most certain one, and as long as the loss can be due to noise: zero must lie
+within the 95 % confidence region, under the full model, of all removed parameters together. Where
+one parameter is very certain, the ratio alone would remove parameters that are known to a percent.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True)
 class Essential:
-    """The fit of what was kept, and what dropping the others cost.
+    """The fit of the essential parameters, and what dropping the others cost.
 
-    `kept` and `dropped` are numbers of parameters, the latter in the order they went; `cost` is how
-    much greater the deviation of the residual became, and `allowed` how much greater it might have
-    become by noise alone, in parts of it.
+    `kept` and `dropped` are indices of parameters, the latter in the order in which they were
+    dropped. `cost` is the relative increase of the standard deviation of the residual, and
+    `allowed` the increase that noise alone can explain.
     """
 
     fit: Fit
@@ -37,10 +37,10 @@ class Essential:
 
 @dataclass(frozen=True)
 class Noise:
-    """How uncertain a fit really is.
+    """The uncertainty of a fit with autocorrelated residuals.
 
-    `rows` that were fitted, `inflation` of the variances of the estimates over those of white
-    residuals, from so many independent `blocks`.
+    `rows` is the number of fitted rows. `inflation` is the ratio of the robust variances of the
+    estimates to those for white residuals, from this number of independent `blocks`.
     """
 
     rows: float
@@ -48,7 +48,7 @@ class Noise:
     blocks: int
 
     def growth(self, dropped: int, variance: float) -> float:
-        """By how much the sum of squares may grow: the F test, for autocorrelated residuals."""
+        """How much the residual sum of squares may grow: an F test for autocorrelated residuals."""
         from scipy.special import fdtri
 
         point = fdtri(dropped, self.blocks - 1, CONFIDENCE)
@@ -56,7 +56,10 @@ class Noise:
 
 
 def essential(fit: Fit, noise: Noise, own: int) -> Essential:
-    """The first `own` parameters by the ratio rule; the rest is fitted again each time."""
+    """Drop those of the first `own` parameters that are not essential, one by one.
+
+    After each of them the remaining parameters are fitted again.
+    """
     theta, covariance = fit.estimates.copy(), fit.unit_covariance.copy()
     kept = list(range(len(theta)))
     dropped: list[int] = []
@@ -88,7 +91,7 @@ def essential(fit: Fit, noise: Noise, own: int) -> Essential:
 
 
 def _worst(theta: Array, covariance: Array, kept: list[int]) -> int | None:
-    """The parameter that is known worst, if that is 30 times worse than the best."""
+    """The least certain parameter, if it is 30 times less certain than the most certain one."""
     if len(kept) < 2:
         return None
     with np.errstate(divide="ignore"):
@@ -97,18 +100,18 @@ def _worst(theta: Array, covariance: Array, kept: list[int]) -> int | None:
 
 
 def _relative(growth: float, first: float) -> float:
-    """Of the deviation of the residual, from the growth of its sum of squares."""
+    """The relative growth of the deviation of the residual, from that of its sum of squares."""
     return float(np.sqrt(1.0 + growth / first) - 1.0) if first > 0.0 else 0.0
 
 
 def _condition(covariance: Array) -> float:
-    """Of the observation matrix with these columns."""
+    """The condition number of the observation matrix, from the covariance of its estimates."""
     values = np.linalg.eigvalsh(covariance)
     return float(np.sqrt(values[-1] / max(values[0], 1e-300)))
 
 
 def without(theta: Array, covariance: Array, i: int) -> tuple[Array, Array]:
-    """Estimates and covariance of least squares with one parameter held at 0."""
+    """Estimates and covariance of least squares with parameter i held at zero."""
     gain = covariance[:, i] / covariance[i, i]
     reduced = covariance - np.outer(gain, covariance[i])
     moved = theta - gain * theta[i]

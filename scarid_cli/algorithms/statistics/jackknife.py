@@ -1,6 +1,6 @@
-"""The covariance of the estimates by leaving out blocks of time.
+"""The covariance of the estimates from a jackknife that leaves out one block of time after another.
 
-Errors from it hold for autocorrelated residuals, which those of white residuals do not.
+Its standard errors also hold for autocorrelated residuals; those for white residuals do not.
 """
 
 from __future__ import annotations
@@ -15,46 +15,50 @@ from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.arrays import Array
 
-BLOCK = 0.5  # s: residuals so far apart are taken to be independent
-BLOCKS = (10, 128)  # of a record at least, and at most
+BLOCK_DURATION = 0.5  # s: residuals this far apart are taken to be independent
+BLOCK_COUNTS = (10, 128)  # the smallest and the largest number of blocks of a record
 Z95 = 1.959963984540054
 
 
 @dataclass(frozen=True)
 class RobustCovariance:
-    """Of the estimates (parameters, parameters), from so many blocks; nan where that is too few."""
+    """The robust covariance `matrix` (parameters, parameters) of the estimates.
+
+    `blocks` is the number of blocks that it comes from; too few of them leave nan.
+    """
 
     matrix: Array
     blocks: int
 
     @property
     def errors(self) -> Array:
-        """Standard errors robust to autocorrelated residuals."""
+        """Standard errors (parameters) that are robust to autocorrelated residuals."""
         return np.asarray(np.sqrt(np.diag(self.matrix)), dtype=np.float64)
 
     def part(self, own: int) -> RobustCovariance:
-        """Of the first estimates."""
+        """The covariance of the first `own` estimates."""
         return RobustCovariance(self.matrix[:own, :own], self.blocks)
 
     @property
     def quantile(self) -> float:
-        """So many errors are half of a 95 % interval."""
+        """Half the width of a 95 % confidence interval, in standard errors."""
         return t95(self.blocks - 1)
 
 
 def jackknife(rows: Rows, found: Estimation) -> RobustCovariance:
-    """By leaving out blocks of half a second.
+    """The covariance from leaving out blocks of half a second.
 
-    To first order in the scores of a block, with its leverage (the "CR3" of clustered errors; Bell
-    and McCaffrey 2002), so that a few violent moves that carry an estimate widen its error.
+    It is of first order in the scores of a block and accounts for its leverage (the "CR3" estimator
+    of clustered errors; Bell and McCaffrey 2002), so an estimate that rests on a few violent moves
+    gets a larger error.
     """
     return _scatter(shifts(rows, found))
 
 
 def jackknife_of_blocks(record: Blocks, rows: Rows, found: Estimation) -> RobustCovariance:
-    """The same from all rows of a long record, of which `rows` are a subsample.
+    """The same from the blocks of a long record, of which `rows` are a subsample.
 
-    The estimator may weight the joints, and do no more.
+    It holds for estimators that do no more than weight the joints.
     """
     assert found.scores is not None
     weights = np.ones(rows.y.shape[1])
@@ -68,10 +72,10 @@ def jackknife_of_blocks(record: Blocks, rows: Rows, found: Estimation) -> Robust
 
 
 def inflation(record: Blocks, rows: Rows) -> tuple[int, Array]:
-    """By how much the robust errors of least squares exceed those of white residuals (parameters).
+    """The number of blocks, and the ratio of robust to white standard errors (parameters).
 
-    With the number of blocks, from all rows of the record; nan where they do not determine every
-    parameter.
+    Both are those of least squares on all rows of the record. The ratio is nan if these do not
+    determine every parameter.
     """
     parts = _normal(record, rows, np.ones(rows.y.shape[1]))
     gram, moment = (np.sum(x, axis=0) for x in zip(*parts, strict=True))
@@ -88,7 +92,7 @@ def inflation(record: Blocks, rows: Rows) -> tuple[int, Array]:
 
 
 def _normal(record: Blocks, rows: Rows, weights: Array) -> list[tuple[Array, Array]]:
-    """W'W and W'y of each block, the joints weighted."""
+    """W'W and W'y of each block, with weighted joints."""
     parts = []
     for products_of_joints in record.grouped(_count((rows.at[-1] - rows.at[0]) * rows.h)):
         total = np.tensordot(weights, products_of_joints, 1)
@@ -97,6 +101,7 @@ def _normal(record: Blocks, rows: Rows, weights: Array) -> list[tuple[Array, Arr
 
 
 def _scatter(moved: Array) -> RobustCovariance:
+    """The jackknife covariance of estimates that move by `moved` (blocks, parameters)."""
     blocks, p = moved.shape
     if blocks < 2 or not np.isfinite(moved).all():
         return RobustCovariance(np.full((p, p), np.nan), max(blocks, 2))
@@ -104,7 +109,7 @@ def _scatter(moved: Array) -> RobustCovariance:
 
 
 def shifts(rows: Rows, found: Estimation) -> Array:
-    """How far the estimates move without each block (blocks, parameters)."""
+    """How far the estimates move when each block is left out (blocks, parameters)."""
     first, last = rows.at[0], rows.at[-1] + 1
     count = _count((last - first) * rows.h)
     block = (rows.at - first) * count // (last - first)
@@ -113,11 +118,12 @@ def shifts(rows: Rows, found: Estimation) -> Array:
 
 
 def _count(duration: float) -> int:
-    """Of the blocks of a record [s]."""
-    return int(np.clip(round(duration / BLOCK), *BLOCKS))
+    """The number of blocks of a record of this duration [s]."""
+    return int(np.clip(round(duration / BLOCK_DURATION), *BLOCK_COUNTS))
 
 
 def _without_each(parts: list[tuple[Array, Array]]) -> Array:
+    """How far the estimates move when each part, given by its Z'W and Z'rho, is left out."""
     p = len(parts[0][1])
     total = sum((gram for gram, _ in parts), np.zeros((p, p)))
     moved = np.full((len(parts), p), np.inf)
@@ -128,6 +134,7 @@ def _without_each(parts: list[tuple[Array, Array]]) -> Array:
 
 
 def _regular(gram: Array) -> bool:
+    """Whether a Gram matrix is well conditioned once its columns have unit length."""
     size = np.sqrt(np.abs(np.diag(gram)))
     if not np.all(size > 0.0):
         return False
@@ -135,7 +142,7 @@ def _regular(gram: Array) -> bool:
 
 
 def products(rows: Rows, found: Estimation, chosen: slice) -> tuple[Array, Array]:
-    """Z'W and Z'rho of some samples, whitened; Z is W unless the fit has instruments."""
+    """Z'W and Z'rho of some samples after whitening; Z is W unless the fit has instruments."""
     scores = found.scores
     assert scores is not None
     part = rows.part(chosen)
@@ -149,13 +156,14 @@ def products(rows: Rows, found: Estimation, chosen: slice) -> tuple[Array, Array
 
 
 def _whitened(rows: Rows, estimates: Array, scores: Scores) -> tuple[Array, Array]:
+    """The regressor and the residual, both scaled and whitened as the fit did."""
     residual = rows.y - rows.W @ estimates
     scaled = _times(residual[:, :, None], rows.scales, scores.whitening)[:, :, 0]
     return _times(rows.W, rows.scales, scores.whitening), scaled
 
 
 def _times(W: Array, scales: Array, whitening: Array | None) -> Array:
-    """Each sample's rows times its scales, then mixed as the fit did."""
+    """The rows of each sample, multiplied by their scales and then by the whitening matrix."""
     scaled = W * scales[:, :, None]
     if whitening is None:
         return scaled

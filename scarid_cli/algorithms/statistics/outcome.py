@@ -1,4 +1,4 @@
-"""From an estimator's state to what is reported: estimates, their errors, whether they hold."""
+"""From the final state of an estimator to its outcome: estimates, errors and diagnostics."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from scarid_cli.algorithms.statistics.essential import Essential, Noise, essenti
 from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.arrays import Array
 
-ALIGNMENTS = 3  # times that the delay is fitted, each from the estimates before
+ALIGNMENTS = 3  # times that the delay is fitted, each time from the previous estimates
 
 
 @dataclass(frozen=True)
 class Problem:
-    """The rows that an estimation is judged by, and what it found in them.
+    """An estimation and the rows that it is judged by.
 
-    The first `own` columns are those of parameters, the others nuisances. `record` has the blocks
-    of all rows where `rows` are a subsample.
+    The first `own` columns of W belong to the robot's parameters, the others to nuisance
+    parameters. `record` has the blocks of all rows if `rows` are a subsample.
     """
 
     rows: Rows
@@ -36,7 +36,7 @@ class Problem:
         return diagnose(self.rows, self.found, self.own, self.record)
 
     def reduced(self, to: Essential) -> Problem:
-        """With the essential parameters alone."""
+        """The problem with only the essential parameters."""
         rows = replace(self.rows, W=np.ascontiguousarray(self.rows.W[:, :, to.kept]))
         scores = self.found.scores
         if scores and scores.instruments is not None:
@@ -51,13 +51,13 @@ class Problem:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of an estimation.
+    """The outcome of an estimation.
 
-    `found` and `diagnostics` are those of the parameters with the numbers `kept`; `reduction` is
-    there if essential parameters were asked for. `full` is the fit of all parameters, before any
-    were dropped, with its `errors`. `delay` is that of the torques [s] with its error, if it was
-    fitted. `excitation` (parameters) is the root-mean-square torque that a unit of each parameter
-    makes.
+    `found` and `diagnostics` refer to the parameters with the indices `kept`; `reduction` is set if
+    the model was reduced to essential parameters. `full` is the fit of all parameters, before any
+    were dropped, and `errors` are its standard errors. `delay` is the fitted delay of the torques
+    and its standard error [s]. `excitation` (parameters) is the root-mean-square torque that one
+    unit of each parameter causes on this motion. `samples` is the number of samples.
     """
 
     found: Estimation
@@ -81,9 +81,9 @@ def outcome(
     align: bool = False,
     reduce: bool = False,
 ) -> Outcome:
-    """From the last state of an estimator, and what was kept of its rows.
+    """The outcome, from the final state of an estimator and a subsample of its rows.
 
-    `align`: fit the delay of the torques as well. `reduce`: to essential parameters.
+    `align` also fits the delay of the torques; `reduce` drops parameters that are not essential.
     """
     whole = _problem(estimator, initial, state, subsample, record, align=align)
     problem, diagnostics = whole, whole.diagnostics()
@@ -140,18 +140,19 @@ def _aligned(
 
 
 def _noise(problem: Problem, diagnostics: Diagnostics, rows: float) -> Noise:
-    """How much more uncertain than for white residuals the estimates are, on average."""
+    """How much larger the variances are than those for white residuals, on average."""
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = diagnostics.errors / problem.found.fit.standard_errors()
     return Noise(rows, float(np.mean(ratio[: problem.own] ** 2)), diagnostics.blocks)
 
 
 def covariance(full: Fit, errors: Array) -> Array | None:
-    """The covariance of all estimates, sized to their errors; None if it is not known.
+    """The covariance of all estimates, scaled to their robust errors; None if it is not known.
 
-    The classical one, s^2 (W'W)^-1, times the median ratio of the variances to its own:
-    autocorrelated residuals increase all errors, but which directions the motion does not determine
-    stays the same. The robust covariance itself has a rank below the number of its blocks.
+    It is the classical covariance s^2 (W'W)^-1, multiplied by the median ratio of robust to
+    classical variances. Autocorrelated residuals increase all errors, but do not change the
+    directions that the motion leaves undetermined. The robust covariance itself would not do,
+    because its rank is below the number of its blocks.
     """
     classical = full.variance * full.unit_covariance
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -162,6 +163,7 @@ def covariance(full: Fit, errors: Array) -> Array | None:
 
 
 def _excitation(problem: Problem) -> Array:
+    """The root-mean-square torque per unit of each parameter (parameters)."""
     counts = problem.rows.scales > 0.0
     W = problem.rows.W[:, :, : problem.own] * counts[:, :, None]
     excitation: Array = np.sqrt((W**2).sum(axis=(0, 1)) / max(counts.sum(), 1))

@@ -9,7 +9,7 @@ import numpy as np
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import moments
 
-# Count, mean, squares about the mean, squared errors, squares: see the kernel.
+# Count, mean, sums of squares about the mean, of errors and of torques (see kernels/moments.py).
 SUMS = 5
 
 
@@ -27,9 +27,10 @@ def accumulate(sums: Array, measured: Array, predicted: Array) -> Array:
 
 @dataclass(frozen=True)
 class Quality:
-    """r2: eq. 36, nan for a constant torque. rmse: eq. 35, in the torque's unit.
+    """How well predicted torques of one joint agree with the measured ones.
 
-    relative_error: 100 |tau - tau_hat| / |tau| [%].
+    `r2` is that of paper eq. 36, nan for a constant torque; `rmse` that of eq. 35, in the unit of
+    the torque; `relative_error` is 100 |tau - tau_hat| / |tau| [%].
     """
 
     r2: float

@@ -1,4 +1,4 @@
-"""The residual of each joint: how well the model explains its torque, and what is left."""
+"""The residual of each joint, and how well the model explains the joint's torque."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from scarid_cli.arrays import Array, Marks, Numbers
 
 @dataclass(frozen=True)
 class JointResidual:
-    """The residual of one joint: R2 (eq. 36) and deviation over the rows that count.
+    """Statistics of the residual rho of one joint, over its fitted `rows`.
 
-    `autocorrelation` from one sample to the next and excess `kurtosis`: 0 for white normal noise.
-    `relative_error` is 100 |rho| / |tau| [%], `torque` the root-mean-square torque.
+    `r2` is that of paper eq. 36. `deviation` (the root-mean-square residual) and `torque` (the
+    root-mean-square torque) are in N m or N; `relative_error` is 100 |rho| / |tau| [%]. The
+    `autocorrelation` from one sample to the next and the excess `kurtosis` are 0 for white normal
+    noise.
     """
 
     rows: int
@@ -31,7 +33,10 @@ class JointResidual:
 def residuals(
     rows: Rows, estimates: Array, record: Blocks | None = None
 ) -> tuple[JointResidual, ...]:
-    """Of each joint; sums are of all rows of the `record`, where `rows` are a subsample of it."""
+    """The residual of each joint.
+
+    If `rows` are a subsample of a longer `record`, sums of squares are those of the whole record.
+    """
     left = rows.y - rows.W @ estimates
     joints = [
         _joint(rows.y[:, j], left[:, j], rows.scales[:, j] > 0.0, rows.at)
@@ -44,7 +49,7 @@ def residuals(
 
 
 def _over_all_rows(joint: JointResidual, products: Array, estimates: Array) -> JointResidual:
-    """With the sums of all rows, from the products of [W, y, 1]."""
+    """The residual with the sums of all rows, from the products of [W, y, 1]."""
     along = np.concatenate((-estimates, [1.0, 0.0]))
     rows, total, squares = products[-1, -1], products[-1, -2], products[-2, -2]
     if not rows > 1.0:

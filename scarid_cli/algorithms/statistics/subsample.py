@@ -1,4 +1,4 @@
-"""Rows of a record that stand for all of them: the whole of a short one, segments of a long one."""
+"""A subsample of a record: all rows of a short one, evenly spread segments of a long one."""
 
 from __future__ import annotations
 
@@ -8,23 +8,24 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows, joined
 
-SAMPLES = 16_384  # held of a streamed record, at most
-NUMBERS = 2_000_000  # that these have, unless that is too few
-FEWEST = 4096  # samples
+MOST_SAMPLES = 16_384  # of a streamed record
+MOST_NUMBERS = 2_000_000  # in the arrays of these samples, unless FEWEST_SAMPLES have more
+FEWEST_SAMPLES = 4096
 ALL = 10**15
-SEGMENTS = 8  # that these are in, at most
+MOST_SEGMENTS = 8
 
 
 @dataclass(frozen=True)
 class Subsample:
-    """Samples by their numbers: every `thin`-th one of every `stride`-th segment of a record.
+    """Every `thin`-th sample of every `stride`-th segment of a record.
 
-    `samples` are held at most. First they are thinned, up to every `thinnest`-th; then segments are
-    dropped. `total` counts the samples that went by, `counted` their rows that count.
+    At most `samples` are held. As the record grows, the samples are thinned first, until every
+    `thinnest`-th is left; after that, segments are dropped. `total` is the number of samples of the
+    record so far, and `counted` the number of their rows whose scale is not zero.
     """
 
     parts: tuple[Rows, ...] = ()
-    samples: int = SAMPLES
+    samples: int = MOST_SAMPLES
     thinnest: int = 1
     thin: int = 1
     stride: int = 1
@@ -32,19 +33,19 @@ class Subsample:
     counted: int = 0
 
     def add(self, rows: Rows) -> Subsample:
-        """Take in the next samples."""
+        """The subsample after the next samples of the record."""
         limit = self.samples
         if limit < ALL:
-            limit = min(limit, max(FEWEST, NUMBERS // _size(rows)))
+            limit = min(limit, max(FEWEST_SAMPLES, MOST_NUMBERS // _size(rows)))
         parts, thin, stride = list(self.parts), self.thin, self.stride
         start = 0
         while start < rows.samples:
-            segment = limit // SEGMENTS * thin
+            segment = limit // MOST_SEGMENTS * thin
             number = int(rows.at[start]) // segment
             stop = start + int((rows.at[start:] < (number + 1) * segment).sum())
             if number % stride == 0:
                 parts += _thinned([rows.part(slice(start, stop))], thin)
-            while len({int(part.at[0]) // segment for part in parts}) > SEGMENTS:
+            while len({int(part.at[0]) // segment for part in parts}) > MOST_SEGMENTS:
                 if 2 * thin <= self.thinnest:
                     thin, segment = 2 * thin, 2 * segment
                     parts = _thinned(parts, thin)
@@ -63,22 +64,22 @@ class Subsample:
 
     @property
     def complete(self) -> bool:
-        """Whether it has every sample."""
+        """Whether the subsample has every sample of the record."""
         return self.thin == self.stride == 1
 
     def rows(self) -> Rows:
-        """What was kept, as one, numbered by the samples that are as far apart."""
+        """The rows of the subsample, with `at` and `h` those of the thinned record."""
         kept = joined(self.parts)
         return replace(kept, at=kept.at // self.thin, h=kept.h * self.thin)
 
 
 def _thinned(parts: list[Rows], thin: int) -> list[Rows]:
-    """Every so many-th sample by its number, in copies that do not keep what they were cut from."""
+    """The samples whose number is a multiple of `thin`, copied so that the rest can be freed."""
     chosen = [(part, np.flatnonzero(part.at % thin == 0)) for part in parts]
     return [part.taken(at) for part, at in chosen if len(at)]
 
 
 def _size(rows: Rows) -> int:
-    """Numbers of one sample."""
+    """How many numbers the arrays hold for one sample."""
     arrays = (rows.W, rows.y, rows.scales, rows.motion)
     return max(1, sum(array.size for array in arrays) // max(1, rows.samples))

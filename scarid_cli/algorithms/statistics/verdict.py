@@ -1,4 +1,4 @@
-"""Is the result any good? One grade, and the reasons in plain words."""
+"""The verdict on an estimation: a grade, and its reasons in plain words."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.arrays import Array
 
 GOOD, DOUBTFUL, NOT_IDENTIFIABLE = "good", "doubtful", "not identifiable"
-LAGGED = 0.5  # of the residual that the neighbours explain: biased beyond
-DOUBT = 30.0  # %: a parameter with a greater relative deviation is not known
-WEAK = 1e4  # scaled condition number from which a combination of parameters is not determined
-POOR = 0.8  # R2 of a joint below which the model does not tell its torque
-DEVIATIONS = 3.0  # that an estimate may move by
-NOISE = 3.0  # times the torque noise: less is no torque
+LAGGED = 0.5  # share of the residual above which the lag test finds a bias
+DOUBT = 30.0  # %: the relative standard error above which a parameter counts as unknown
+WEAK = 1e4  # scaled condition number above which a combination of parameters is undetermined
+POOR = 0.8  # R2 below which the model does not explain the torque of a joint
+DEVIATIONS = 3.0  # standard errors by which an estimate may move
+NOISE = 3.0  # times the torque noise: a joint with a smaller torque counts as not driven
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """The grade, and why, each reason a sentence without its full stop."""
+    """The grade and its reasons, each a sentence without its full stop."""
 
     grade: str
     reasons: tuple[str, ...]
@@ -35,10 +35,11 @@ class Verdict:
 
 @dataclass(frozen=True)
 class InUse:
-    """What was asked of the estimation, so that the advice of a verdict is not that again.
+    """The options that are already in use, so that the verdict does not recommend them again.
 
-    `slow` (joints): velocities [rad/s or m/s] below which rows were left out; whether the delay of
-    the torques was fitted, the joints `weighted` by their residuals, and parameters dropped.
+    `slow` (joints) are the velocities [rad/s or m/s] below which rows were left out; `align`: the
+    delay of the torques was fitted; `weighted`: joints are weighted by their residuals;
+    `essential`: parameters that are not essential were dropped.
     """
 
     slow: tuple[float, ...] = ()
@@ -49,7 +50,7 @@ class InUse:
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a verdict is made of, in the order of the names."""
+    """What a verdict is based on; `estimates` and errors are in the order of `names`."""
 
     names: Sequence[str]
     estimates: Array
@@ -61,11 +62,11 @@ class Evidence:
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
-    """From the worst to the least: what cannot be known, what is wrong, what is uncertain."""
+    """Grade an estimation, with the gravest reasons first."""
     joints = evidence.diagnostics.joints
-    hopeless = [*_idle(joints, robot), *_undetermined(evidence)]
-    if hopeless:
-        return Verdict(NOT_IDENTIFIABLE, (*hopeless, *_summary(evidence)))
+    obstacles = [*_idle(joints, robot), *_undetermined(evidence)]
+    if obstacles:
+        return Verdict(NOT_IDENTIFIABLE, (*obstacles, *_summary(evidence)))
     unknown = _unknown(evidence)
     wrong = [
         *(_biased(evidence.diagnostics) or _moved(evidence, robot)),
@@ -81,7 +82,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
 
 
 def _idle(joints: Sequence[JointResidual], robot: Robot) -> list[str]:
-    """Joints without torque, to which parameters of zero would fit."""
+    """Joints with hardly any torque, which parameters of zero would fit as well."""
     return [
         f"joint {i} has hardly any torque ({joint.torque:.3g} {robot.joints[i - 1].torque_unit} "
         "rms, less than its noise or Coulomb friction), so parameters of zero would fit it: use a "
@@ -106,7 +107,7 @@ def _biased(diagnostics: Diagnostics) -> list[str]:
         return []
     if np.isnan(diagnostics.lag_share):
         return [
-            "not tested for bias: no row that counts has the rows 25 ms before and after it; use a "
+            "not tested for bias: too few rows have those 25 ms before and after them; use a "
             "longer log, or leave out fewer rows"
         ]
     return [
@@ -117,7 +118,7 @@ def _biased(diagnostics: Diagnostics) -> list[str]:
 
 
 def _moved(evidence: Evidence, robot: Robot) -> list[str]:
-    """Estimates that rely on what slow rows say of Coulomb friction, or on a delay."""
+    """Estimates that depend on the Coulomb friction of slow rows, or on a delay."""
     diagnostics, in_use = evidence.diagnostics, evidence.in_use
     if not any(p.term.JUMPS for p in robot.parameters):
         return []
@@ -142,7 +143,7 @@ def _moved(evidence: Evidence, robot: Robot) -> list[str]:
 
 
 def _untried(slow: Sequence[str], in_use: InUse) -> list[str]:
-    """The options that were not given, or with a lower velocity."""
+    """The recommended options that are not in use, or only with a lower velocity."""
     options = []
     if len(in_use.slow) < len(slow) or any(map(_below, in_use.slow, slow)):
         options.append(f"--drop-slow {','.join(slow)}")
@@ -166,7 +167,7 @@ def _poor(joints: Sequence[JointResidual]) -> list[str]:
 
 
 def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
-    """Friction that would drive the robot, beyond its error."""
+    """Friction parameters that are significantly negative, which would drive the robot."""
     friction = {p.name for p in robot.parameters if p.term.NEVER_NEGATIVE}
     errors = evidence.diagnostics.errors
     rows = zip(evidence.names, evidence.estimates, errors, strict=True)
@@ -178,14 +179,14 @@ def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
 
 
 def _unknown(evidence: Evidence) -> list[str]:
-    """Parameters whose error is greater than 30 % of them, or has no value."""
+    """Parameters whose standard error exceeds 30 % of their value, or is not known."""
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = 100.0 * evidence.diagnostics.errors / np.abs(evidence.estimates)
     return [n for n, r in zip(evidence.names, relative, strict=True) if not r <= DOUBT]
 
 
 def _summary(evidence: Evidence) -> list[str]:
-    """The numbers that say how good."""
+    """The key figures: known parameters, R2 of each joint, condition number."""
     known = len(evidence.names) - len(_unknown(evidence))
     parts = [f"{known} of {len(evidence.names)} parameters known within {DOUBT:g} %"]
     found = [joint.r2 for joint in evidence.diagnostics.joints]
@@ -204,7 +205,7 @@ def _listed(names: Sequence[str], most: int = 8) -> str:
 
 
 def combination(direction: Array, names: Sequence[str]) -> str:
-    """A direction of parameters written out: its parts above a tenth of the greatest."""
+    """A direction in parameter space as a sum; parts below a tenth of the largest are left out."""
     unit = direction / direction[int(np.argmax(np.abs(direction)))]
     parts = sorted(
         ((x, n) for x, n in zip(unit, names, strict=True) if abs(x) > 0.1),

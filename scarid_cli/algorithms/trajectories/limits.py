@@ -40,7 +40,7 @@ class Limits:
         return home
 
     def outside(self, q: Array) -> list[list[int]]:
-        """Where positions, (joints) or (joints, samples), lie outside: joint and sample, from 0."""
+        """The joints and samples (from 0) at which positions, (joints[, samples]), are outside."""
         slack = TOLERANCE * np.maximum(np.abs(self.lower), np.abs(self.upper))
         return _where(q, self.lower - slack, self.upper + slack)
 

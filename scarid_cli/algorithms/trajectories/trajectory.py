@@ -1,4 +1,4 @@
-"""What a trajectory is to the commands, whatever curve it follows."""
+"""The interface of trajectories, whatever curve they follow."""
 
 from __future__ import annotations
 

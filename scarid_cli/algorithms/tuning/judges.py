@@ -23,7 +23,7 @@ from scarid_cli.algorithms.tuning.likelihood import best_model, log_likelihood
 from scarid_cli.algorithms.tuning.search import Judge
 from scarid_cli.arrays import Array
 
-SETTLING = 1.0  # seconds at the start, where a method may still be on its way
+SKIPPED_START = 1.0  # seconds at the start, where a method may still be on its way
 SEGMENTS = 10  # of a record, every second one held out
 
 
@@ -46,7 +46,7 @@ def distance_to_smoother(q: Array, h: float) -> Judge:
     Each error is divided by the standard deviation of the smoother's signal.
     """
     _, *smooth = over(smoother(q, h).matched(), q, h)
-    late = min(int(SETTLING / h), len(q) // 5)
+    late = min(int(SKIPPED_START / h), len(q) // 5)
     inner = slice(late, -late)
     sizes = [float(np.std(x[inner])) or 1.0 for x in smooth]
 

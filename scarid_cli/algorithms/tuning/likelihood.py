@@ -19,12 +19,12 @@ from scarid_cli.errors import TooShort
 K = TypeVar("K", bound=KalmanMethod)
 
 ENOUGH = 20_000  # rows
-REACH = 4001  # rows that a pulse may act on
+PULSE_ROWS = 4001  # rows that a pulse may act on
 DIFFERENCES = 6  # order of the differences of positions that leave the noise and not the motion
 FITTED = ("noise", "intensity", "damping", "frequency")  # the last two for a damped process
 # The first innovations determine the states, and the others must outnumber the settings; and the
 # starting value of the noise needs differences.
-ROWS = max(STATES[-1] + len(FITTED), DIFFERENCES) + 1
+FEWEST_ROWS = max(STATES[-1] + len(FITTED), DIFFERENCES) + 1
 
 
 def noise_of(x: Array) -> float:
@@ -57,10 +57,10 @@ def best_model(method: K, x: Array, h: float) -> K:
     rows.
     """
     records = [np.ascontiguousarray(row[:ENOUGH]) for row in np.atleast_2d(x)]
-    if len(records[0]) < ROWS:
+    if len(records[0]) < FEWEST_ROWS:
         raise TooShort(
             f"{len(records[0])} rows are too few to find the noise and the model of the motion; "
-            f"give a log of at least {ROWS} rows"
+            f"give a log of at least {FEWEST_ROWS} rows"
         )
     found: list[tuple[float, K]] = []
     for states in STATES:
@@ -144,9 +144,9 @@ def held_out_error(method: KalmanMethod, x: Array, h: float) -> float:
     """
     model = method.model(h)
     residual = x - smoothed_position(model, x)
-    pulse = np.zeros(REACH)
-    pulse[REACH // 2] = method.noise  # below every gate
-    weight = smoothed_position(model, pulse)[REACH // 2] / method.noise
+    pulse = np.zeros(PULSE_ROWS)
+    pulse[PULSE_ROWS // 2] = method.noise  # below every gate
+    weight = smoothed_position(model, pulse)[PULSE_ROWS // 2] / method.noise
     squares = np.minimum(residual**2, (method.gate * method.noise) ** 2)
     edge = len(x) // 20
     free = 1.0 - float(weight)

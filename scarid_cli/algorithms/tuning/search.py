@@ -12,7 +12,7 @@ from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
-GUESSES = 16  # of a search, before the simplex
+LATTICE_POINTS = 16  # where a search starts, before the simplex
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def search(
         return
     # A scrambled lattice: as even in one dimension as in three
     rng = np.random.default_rng(seed)
-    lattice = (np.arange(GUESSES) + 0.5) / GUESSES
+    lattice = (np.arange(LATTICE_POINTS) + 0.5) / LATTICE_POINTS
     guesses = np.column_stack([rng.permutation(lattice) for _ in ranges])
     best = min(guesses, key=loss)
     options = {"xatol": 2e-3, "fatol": 1e-6, "maxfev": 60 * len(ranges)}

@@ -13,7 +13,7 @@ from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
-from scarid_cli.cli.pairs import require_known, settings
+from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.treatment import for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
@@ -82,12 +82,14 @@ def _require_possible(
 ) -> None:
     """Refuse options that the estimator, or the treatment of the rows, does not allow."""
     if trace and not method.RECURSIVE:
-        raise UsageFault(f"--trace: {name} has no estimates after every sample")
+        raise UsageFault(f"--trace: {name} has no estimates after every sample; use rls or ekf")
     if treatment.align and not method.ALIGNS:
-        raise UsageFault(f"--align does not go with --estimator {name}")
+        raise UsageFault(f"--align cannot be combined with --estimator {name}")
     if (resumable or trace) and (treatment.holds or method.HOLDS):
         what = f"--estimator {name}" if method.HOLDS else "--decimate or --align"
-        raise UsageFault(f"--save, --from and --trace go row by row; not with {what}")
+        raise UsageFault(
+            f"--save, --from and --trace work row by row and cannot be combined with {what}"
+        )
 
 
 def _initial(job: Job, initial: str | None, arm: Robot) -> Array:
@@ -120,14 +122,10 @@ def _fixed(
     }
 
 
-def _settings(method: Any, name: str, options: dict[str, Any]) -> dict[str, Any]:
+def _settings(method: Any, name: str, options: dict[str, Any]) -> dict[str, float]:
     """The settings that were given, which must be some of the estimator's."""
     known = names_of(method)
-    given: dict[str, Any] = {}
-    for key, values in settings(options["settings"], known, name):
-        if len(values) > 1:
-            raise UsageFault(f"--set {key}: give one value, not {len(values)}")
-        given[key] = values[0]
+    given = single_settings(options["settings"], known, name)
     if options["p0"] is not None:
         given["p0"] = options["p0"]
     if options["forgetting"] is not None:

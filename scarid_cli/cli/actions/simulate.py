@@ -34,7 +34,9 @@ def run(
     table, arm = job.read_for(file, "trajectory", robot)
     joints = arm.joints
     if arm.control is None:
-        raise UsageFault(f"robot {arm.name} cannot be simulated: its description has no [control]")
+        raise UsageFault(
+            f"robot {arm.name} cannot be simulated: its description has no [control]; add one"
+        )
 
     def each(given: tuple[float, ...] | None, own: Any, option: str) -> Any:
         return np.array(per_joint(given, len(joints), option) if given else own, dtype=float)

@@ -15,12 +15,12 @@ from scarid_cli.algorithms.trajectories.trajectory import Trajectory
 from scarid_cli.algorithms.trajectories.via import through
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job, per_joint, robot_of
-from scarid_cli.cli.pairs import require_known, settings
+from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Metadata
 from scarid_cli.stages import trajgen as stage
 
-MOST = 1e9  # a limit of this size is none
+LARGEST_LIMIT = 1e9  # a limit of this size is none
 
 
 def run(
@@ -57,11 +57,7 @@ def _excitation(given: dict[str, Any]) -> Any:
     values = dict(zip(("shortest", "longest"), given["segment"] or (), strict=False))
     for key in values:
         require_known(known, key, name)
-    for key, numbers in settings(given["settings"], known, name):
-        if len(numbers) > 1:
-            raise UsageFault(f"--set {key}: give one value, not {len(numbers)}")
-        values[key] = numbers[0]
-    return method(**values)
+    return method(**{**values, **single_settings(given["settings"], known, name)})
 
 
 def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
@@ -71,7 +67,7 @@ def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
     def row(option: str, otherwise: Array, *, positive: bool = True) -> Array:
         numbers = given[option.strip("-").replace("-", "_")]
         values = np.array(per_joint(numbers, len(arm.joints), option)) if numbers else otherwise
-        if not (np.abs(values) < MOST).all() or (positive and not (values > 0.0).all()):
+        if not (np.abs(values) < LARGEST_LIMIT).all() or (positive and not (values > 0.0).all()):
             lack = "" if numbers else f" (the description of {arm.name} gives none)"
             what = "positive and finite" if positive else "finite"
             raise UsageFault(f"{option}: the bounds must be {what}{lack}")

@@ -7,7 +7,7 @@ from scarid_cli.cli.job import Job, command_line, robot_of
 from scarid_cli.cli.progress import steps
 from scarid_cli.cli.settings import document
 from scarid_cli.io.reader import require
-from scarid_cli.io.schemas import joints_of, numbered
+from scarid_cli.io.schemas import joints_of, numbered, of_joints
 from scarid_cli.io.table import Table
 from scarid_cli.stages import tune as stage
 
@@ -41,6 +41,5 @@ def _joints(table: Table, arm: Robot | None) -> int:
     if arm is None:
         return joints_of(table.columns, "q")
     joints = len(arm.joints)
-    columns = [f"{signal}{i}" for signal in ("q", "tau") for i in range(1, joints + 1)]
-    require(table, columns, f"this one for robot {arm.name}")
+    require(table, of_joints(joints, "q{i}", "tau{i}"), f"this one for robot {arm.name}")
     return joints

@@ -23,7 +23,7 @@ def run(
     """Write the quality of the predicted torques."""
     treatment = treatment_of(given)
     if treatment.holds and predictions:
-        raise UsageFault("--predictions are of every row; not with --decimate")
+        raise UsageFault("--predictions needs every row and cannot be combined with --decimate")
     side = job.side_table(predictions)
     known = job.read(parameters, "parameters")
     table, arm = job.read_for(file, "motion", robot or known.meta.robot, torques=True)

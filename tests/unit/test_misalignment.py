@@ -10,7 +10,7 @@ from unit.slow_motions import THETA, H, P, least_squares, regression
 
 from scarid_cli.algorithms.regression.rows import Rows, plain, with_delay
 from scarid_cli.algorithms.statistics.diagnostics import diagnose
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, Numbers
 
 
 def share(rows: Rows) -> float:
@@ -27,10 +27,12 @@ def test_the_neighbours_explain_torques_of_another_instant(late: int) -> None:
     assert share(plain(rows.W[20:-20], np.roll(rows.y, late, axis=0)[20:-20], H)) > 0.5
 
 
-def test_rows_without_neighbours_tell_nothing() -> None:
-    """Not 0, which would be the best that can be said of a record."""
-    rows = regression(8000)
-    assert np.isnan(share(rows.taken(np.arange(0, 8000, 50))))
+@pytest.mark.parametrize(
+    "places", [np.arange(0, 8000, 50), np.arange(19)], ids=["no neighbours", "nine unknowns"]
+)
+def test_too_few_rows_give_no_lag_share(places: Numbers) -> None:
+    """Not 0, the best that can be said of a record; nor 1, where nine unknowns fit nine rows."""
+    assert np.isnan(share(regression(8000).taken(places)))
 
 
 @given(lead=st.floats(-2e-3, 2e-3))
