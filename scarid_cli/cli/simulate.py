@@ -51,7 +51,9 @@ from scarid_cli.cli.options import NUMBERS
     type=NUMBERS,
     help="Standard deviation of the noise of the logged torque [N m or N].  [default: the robot's]",
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the noise.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the noise."
+)
 @click.option(
     "--truth", is_flag=True, help="Add the true q, dq, ddq and tau as columns q1_true, ..."
 )

@@ -21,7 +21,13 @@ from scarid_cli.cli.options import NUMBERS
     help="The kind of motion; see below.",
 )
 @options.settings_of("excitation")
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random motion.")
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="Seed of the random motion.",
+)
 @click.option(
     "--duration", type=float, default=20.0, show_default=True, help="Length of the motion [s]."
 )

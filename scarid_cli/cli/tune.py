@@ -24,7 +24,9 @@ from scarid_cli.cli.declare import declare
     metavar="NAME|FILE",
     help="Judge settings by the predicted torques of this robot (see identify --robot).",
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the search.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the search."
+)
 @options.side_output("--save", help="Write the best settings, for differentiate --settings.")
 @options.table_output
 @options.common

@@ -134,9 +134,10 @@ def _outcome(
             reduce=treatment.essential,
         )
     except NotIdentifiableError as error:
+        names = [*robot.names, *(error.added or ["the delay"])]
         raise BadData(
             f"{table.name}: not identifiable: the motion leaves "
-            f"{combination(error.direction[: len(robot.names)], robot.names)} undetermined; "
+            f"{combination(error.direction, names[: len(error.direction)])} undetermined; "
             "use a log that excites every joint"
         ) from None
 

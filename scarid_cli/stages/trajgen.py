@@ -13,6 +13,7 @@ from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.algorithms.trajectories.trajectory import Trajectory
 from scarid_cli.algorithms.trajectories.via import ViaPath
 from scarid_cli.arrays import Array
+from scarid_cli.errors import bad_data
 from scarid_cli.io.table import Metadata, Table, doubles, motion_fields, number
 
 BATCH_ROWS = 4096
@@ -22,6 +23,13 @@ def via_points(table: Table, robot: Robot) -> ViaPath:
     """The via points of a table with columns t, q1, q2, ..."""
     joints = range(1, len(robot.joints) + 1)
     batches = list(table.batches)
+    if not batches:
+        raise bad_data(
+            table.name,
+            "no rows",
+            expected="two via points or more",
+            remedy="give a row for each via point",
+        )
     times = np.concatenate([batch.column("t").to_numpy() for batch in batches])
     columns = [np.concatenate([b.column(f"q{i}").to_numpy() for b in batches]) for i in joints]
     return ViaPath(times - times[0], np.column_stack(columns))

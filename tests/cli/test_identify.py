@@ -182,3 +182,19 @@ def test_the_delay_goes_with_the_parameters_to_validate(options: str, shell: She
     assert result.status == 0, result.err
     assert "applied the delay that identify fitted" in result.err
     assert result.err.splitlines()[-1].startswith("scarid identify: CSV does not keep the delay")
+
+
+def test_the_friction_of_separable_is_no_initial_value_of_others(shell: Shell) -> None:
+    result = shell(
+        f"{MOTION} && scarid identify -q --estimator separable motion.csv -o p.csv;"
+        " scarid identify --initial p.csv motion.csv"
+    )
+    refused(result, 2, "p.csv has friction that fades with speed (separable)")
+
+
+def test_an_error_of_the_delay_that_is_unknown_is_said_to_be(shell: Shell) -> None:
+    """Without the rows of joint 1, none of its parameters is known, and so no error is."""
+    result = shell(f"{MOTION} && scarid identify --align --drop-slow 100,0 motion.csv")
+    assert result.status == 0, result.err
+    assert "(error unknown)" in result.err
+    assert "nan" not in result.err

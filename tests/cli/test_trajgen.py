@@ -140,6 +140,12 @@ def test_via_points_start_and_end_at_home(
         assert columns(result.out)["q2_ref"][0] == -1.0
 
 
+def test_a_table_without_via_points_is_refused(scarid: Run, tmp_path: Path) -> None:
+    via = tmp_path / "via.csv"
+    via.write_text("t,q1,q2\n")
+    refused(scarid("trajgen", "--via", via), 65, "found no rows, expected two via points or more")
+
+
 def test_sequential_and_segment_are_short_for_an_excitation_and_its_settings(scarid: Run) -> None:
     short = scarid("trajgen", "--sequential", "--segment", 1, 1.5)
     settings = ("--set", "shortest=1", "--set", "longest=1.5")

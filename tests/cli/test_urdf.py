@@ -195,3 +195,12 @@ def test_another_friction_model_needs_no_other_command(folder: Path, shell: Shel
     description.write_text(described)
     stale = shell("scarid validate --robot arm.toml --parameters p.csv motion.csv")
     refused(stale, 65, "give the robot that they were identified for")
+
+
+def test_a_motion_that_is_none_is_refused_before_anything_is_reported(
+    folder: Path, shell: Shell
+) -> None:
+    assert shell(IDENTIFY).status == 0
+    result = shell("scarid urdf --parameters p.csv --motion p.csv arm.toml -o new.urdf")
+    refused(result, 65, "p.csv, column t: found the columns")
+    assert not (folder / "new.urdf").exists()

@@ -64,6 +64,9 @@ USAGE = {
         ["trajgen", "--q-max", "0"],
         "--q-max: the bounds must be positive and finite",
     ),
+    "negative seed of a motion": (["trajgen", "--seed", "-1"], "-1 is not in the range x>=0"),
+    "negative seed of noise": (["simulate", "--seed", "-1", "REF"], "-1 is not in the range"),
+    "negative seed of a search": (["tune", "--seed", "-1", "LOG"], "-1 is not in the range"),
     "duration too short": (["trajgen", "--duration", "1"], "too short for 2 segments"),
     "rates do not fit": (
         ["simulate", "--control-rate", "300", "REF"],

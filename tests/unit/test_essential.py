@@ -65,3 +65,9 @@ def test_the_residual_may_grow_by_what_the_noise_explains() -> None:
         found = essential(fit, Noise(5000.0, inflation, WHITE.blocks), P)
         assert found.dropped == dropped
         assert found.cost <= found.allowed
+
+
+@pytest.mark.parametrize("inflation", [float("inf"), float("nan")])
+def test_nothing_is_dropped_if_the_uncertainty_is_unknown(inflation: float) -> None:
+    _, fit = noisy([5.0, 1e-5, 1.0])
+    assert essential(fit, Noise(5000.0, inflation, WHITE.blocks), P).dropped == ()

@@ -56,7 +56,12 @@ def evidence(**changes: object) -> Evidence:
         (
             {"joints": (GOOD, replace(GOOD, r2=np.nan, torque=0.5))},
             "doubtful",
-            "explains the torque of joint 2 badly (R2 nan)",
+            "joint 2 has no R2, because its torque is constant or fewer than two",
+        ),
+        (
+            {"joints": (GOOD, replace(GOOD, r2=np.nan, torque=0.5))},
+            "doubtful",
+            "8 of 8 parameters known within 30 %, R2 0.9990, undefined, condition number 20",
         ),
         ({"errors": np.full(8, np.nan)}, "doubtful", "0 of 8 parameters known within 30 %"),
         ({"estimates": -np.ones(8)}, "doubtful", "Fv1 is negative"),

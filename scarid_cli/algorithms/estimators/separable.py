@@ -16,7 +16,7 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, Scores
-from scarid_cli.algorithms.regression.information import least_squares
+from scarid_cli.algorithms.regression.information import NotIdentifiableError, least_squares
 from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.terms import Coulomb, Stribeck
@@ -25,6 +25,7 @@ from scarid_cli.errors import UsageFault
 
 GRID = 15  # trials of each velocity before the simplex search
 RANGE = (0.01, 1.0)  # of the velocities, relative to the root-mean-square velocity
+FADED = 3.0  # velocities after which this friction has faded to 1e-4: no row would show it
 
 
 @dataclass(frozen=True)
@@ -43,34 +44,39 @@ class Estimator(HoldingEstimator):
 
     def fit(self, state: list[Rows]) -> Estimation:
         assert self.robot is not None
-        rows = joined(state)
         joints = [p.term.joint for p in self.robot.parameters if isinstance(p.term, Coulomb)]
-        inverse = _inverse_deviations(rows)
-        velocities = _searched(rows, joints, inverse)
-        linear = _with_columns(rows, [_column(rows, j, v) for j, v in velocities.items()])
-        theta = least_squares(linear.W, linear.y, rows.scales * inverse).estimates
-        # Linearised at the solution, the velocities are parameters like all others.
-        peaks = theta[-len(joints) :]
-        slopes = [
-            (j, peak * slope)
-            for (j, v), peak in zip(velocities.items(), peaks, strict=True)
-            for slope in [_slope(rows, j, v)]
-        ]
-        found = np.array(list(velocities.values()))
-        y = linear.y.copy()
-        for (j, slope), v in zip(slopes, found, strict=True):
-            y[:, j - 1] += slope * v
-        whole = replace(_with_columns(linear, slopes), y=y)
         units = [self.robot.joints[j - 1] for j in joints]
-        fit = least_squares(whole.W, whole.y, rows.scales * inverse)
-        return Estimation(
-            replace(fit, estimates=np.concatenate((theta, found))),
-            Scores(whitening=np.diag(inverse), rows=whole),
-            added=(
-                *((f"Fst{j}", u.torque_unit) for j, u in zip(joints, units, strict=True)),
-                *((f"vs{j}", f"{u.unit}/s") for j, u in zip(joints, units, strict=True)),
-            ),
+        added = (
+            *((f"Fst{j}", u.torque_unit) for j, u in zip(joints, units, strict=True)),
+            *((f"vs{j}", f"{u.unit}/s") for j, u in zip(joints, units, strict=True)),
         )
+        try:
+            return replace(_solved(joined(state), joints), added=added)
+        except NotIdentifiableError as error:
+            raise NotIdentifiableError(error.direction, [name for name, _ in added]) from None
+
+
+def _solved(rows: Rows, joints: list[int]) -> Estimation:
+    """With the velocities that leave the least residual."""
+    inverse = _inverse_deviations(rows)
+    velocities = _searched(rows, joints, inverse)
+    linear = _with_columns(rows, [_column(rows, j, v) for j, v in velocities.items()])
+    theta = least_squares(linear.W, linear.y, rows.scales * inverse).estimates
+    # Linearised at the solution, the velocities are parameters like all others.
+    peaks = theta[-len(joints) :]
+    slopes = [
+        (j, peak * slope)
+        for (j, v), peak in zip(velocities.items(), peaks, strict=True)
+        for slope in [_slope(rows, j, v)]
+    ]
+    found = np.array(list(velocities.values()))
+    y = linear.y.copy()
+    for (j, slope), v in zip(slopes, found, strict=True):
+        y[:, j - 1] += slope * v
+    whole = replace(_with_columns(linear, slopes), y=y)
+    fit = least_squares(whole.W, whole.y, rows.scales * inverse)
+    scores = Scores(whitening=np.diag(inverse), rows=whole)
+    return Estimation(replace(fit, estimates=np.concatenate((theta, found))), scores)
 
 
 def _column(rows: Rows, joint: int, velocity: float) -> tuple[int, Array]:
@@ -98,7 +104,7 @@ def _inverse_deviations(rows: Rows) -> Array:
     theta = least_squares(rows.W, rows.y, rows.scales).estimates
     residual = (rows.y - rows.W @ theta) * rows.scales
     rms = np.sqrt((residual**2).sum(axis=0) / np.maximum((rows.scales > 0.0).sum(axis=0), 1))
-    inverse: Array = 1.0 / np.maximum(rms, 1e-6 * rms.max())
+    inverse: Array = 1.0 / np.maximum(rms, 1e-6 * rms.max() or 1.0)
     return inverse
 
 
@@ -116,9 +122,19 @@ def _searched(rows: Rows, joints: list[int], inverse: Array) -> dict[int, float]
         best = tries[int(np.argmin([cost(x) for x in tries]))]
     options = {"xatol": 1e-6, "fatol": 1e-12, "maxiter": 400}
     found = minimize(cost, best, method="Nelder-Mead", options=options)
-    limits = np.log(np.outer(sizes, (RANGE[0] / 10.0, RANGE[1] * 10.0)))
-    x = np.clip(found.x, limits[:, 0], limits[:, 1])
+    least = [
+        max(RANGE[0] / 10.0 * size, _slowest(rows, j) / FADED)
+        for j, size in zip(joints, sizes, strict=True)
+    ]
+    most = [max(RANGE[1] * 10.0 * size, low) for size, low in zip(sizes, least, strict=True)]
+    x = np.clip(found.x, np.log(least), np.log(most))
     return dict(zip(joints, np.exp(x).tolist(), strict=True))
+
+
+def _slowest(rows: Rows, joint: int) -> float:
+    """The velocity of a joint (from 1) in the slowest of its rows that count."""
+    counts = rows.scales[:, joint - 1] > 0.0
+    return float(np.abs(rows.motion[1][joint - 1, counts]).min()) if counts.any() else 0.0
 
 
 def _cost(rows: Rows, joints: list[int], inverse: Array) -> Callable[[Array], float]:

@@ -15,7 +15,12 @@ import numpy as np
 
 from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.regression.estimation import Estimation
-from scarid_cli.algorithms.regression.information import Fit, Information, solve
+from scarid_cli.algorithms.regression.information import (
+    Fit,
+    Information,
+    NotIdentifiableError,
+    solve,
+)
 
 
 @dataclass(frozen=True)
@@ -28,10 +33,13 @@ class Estimator(ls.Estimator):
         norms[norms == 0.0] = 1.0
         _, singular, directions = np.linalg.svd(triangle / norms)
         last = directions[-1]
-        scaled = -last[:p] / last[p]
         W = triangle[:, :p] / norms[:p]
         spread = singular[-1] ** 2
+        _, own, free = np.linalg.svd(W)
+        if not own[-1] ** 2 - spread > p * np.finfo(float).eps:  # no unique solution
+            raise NotIdentifiableError(free[-1] / norms[:p])
         gram = np.linalg.inv(W.T @ W - spread * np.eye(p))
+        scaled = -last[:p] / last[p]
         unit = gram + spread * gram @ gram * (1.0 + scaled @ scaled)
         rescale = norms[p] / norms[:p]
         freedom = max(state.weight - p, 1.0)

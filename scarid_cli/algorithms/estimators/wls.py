@@ -25,6 +25,8 @@ from scarid_cli.arrays import Array
 
 JointsInformation = tuple[Information, ...]
 
+NOTHING = 1e-150  # a deviation whose square is no number any more
+
 
 @dataclass(frozen=True)
 class Estimator(BaseEstimator):
@@ -51,7 +53,7 @@ class Estimator(BaseEstimator):
     def fit(self, state: JointsInformation) -> Estimation:
         deviations = np.array([residual_deviation(part) for part in state])
         # A joint that is fitted exactly (no torque at all) must not outweigh all others.
-        least = 1e-6 * max(deviations.max(), np.finfo(float).tiny)
+        least = 1e-6 * deviations.max() if deviations.max() > NOTHING else 1.0
         inverse = 1.0 / np.maximum(deviations, least)
         fit = solve(merged(state, inverse.tolist()))
         return Estimation(fit, Scores(whitening=np.diag(inverse)))

@@ -16,11 +16,15 @@ ROUNDING = 1e-15  # the relative error of the largest eigenvalue of a matrix
 
 
 class NotIdentifiableError(ValueError):
-    """The data do not determine a combination of parameters; `direction` is its unit vector."""
+    """The data do not determine a combination of parameters; `direction` is its unit vector.
 
-    def __init__(self, direction: Array) -> None:
+    `added` are the names of parameters that come after the robot's own.
+    """
+
+    def __init__(self, direction: Array, added: Sequence[str] = ()) -> None:
         super().__init__("the data do not determine all parameters")
         self.direction = direction
+        self.added = tuple(added)
 
 
 @dataclass(frozen=True)
@@ -147,12 +151,14 @@ def solve(state: Information) -> Fit:
     singular = np.linalg.svd(R, compute_uv=False)
     inverse = np.linalg.inv(R)
     freedom = state.weight - p
+    with np.errstate(divide="ignore"):
+        condition = float(singular[0] / singular[-1])
     return Fit(
         estimates=np.asarray(np.linalg.solve(R, z), dtype=np.float64),
         unit_covariance=inverse @ inverse.T,
         variance=state.residual / freedom if freedom > 0 else float("nan"),
         sample_variance=state.residual / (state.weight - 1.0) if freedom > 0 else float("nan"),
-        condition=float(singular[0] / singular[-1]),
+        condition=condition,
     )
 
 

@@ -68,7 +68,7 @@ def essential(fit: Fit, noise: Noise, own: int) -> Essential:
     while (worst := _worst(theta, covariance, [i for i in kept if i < own])) is not None:
         grown = squares + theta[worst] ** 2 / covariance[worst, worst]
         growth = noise.growth(len(dropped) + 1, fit.variance)
-        if not grown - first <= growth:
+        if not (np.isfinite(growth) and grown - first <= growth):
             break
         squares, allowed = grown, growth
         theta, covariance = without(theta, covariance, worst)

@@ -158,7 +158,9 @@ def _below(given: float, advised: str) -> bool:
 
 def _poor(joints: Sequence[JointResidual]) -> list[str]:
     return [
-        f"the model explains the torque of joint {i} badly (R2 {joint.r2:.3g})"
+        f"joint {i} has no R2, because its torque is constant or fewer than two of its rows count"
+        if np.isnan(joint.r2)
+        else f"the model explains the torque of joint {i} badly (R2 {joint.r2:.3g})"
         for i, joint in enumerate(joints, start=1)
         if not joint.r2 >= POOR
     ]
@@ -187,7 +189,8 @@ def _summary(evidence: Evidence) -> list[str]:
     """The key figures: known parameters, R2 of each joint, condition number."""
     known = len(evidence.names) - len(_unknown(evidence))
     parts = [f"{known} of {len(evidence.names)} parameters known within {DOUBT:g} %"]
-    r2 = ", ".join(f"{joint.r2:.4f}" for joint in evidence.diagnostics.joints)
+    found = [joint.r2 for joint in evidence.diagnostics.joints]
+    r2 = ", ".join("undefined" if np.isnan(x) else f"{x:.4f}" for x in found)
     parts.append(f"R2 {r2}")
     if np.isfinite(evidence.condition):
         parts.append(f"condition number {evidence.condition:.3g}")

@@ -84,7 +84,7 @@ def error_of_torques(robot: Robot, q: Array, tau: Array, h: float) -> Judge:
             if not all(np.isfinite(signal).all() for signal in own.signals):
                 return np.inf
             theta = identified(robot, own, own.settled & ~held_out)
-            if theta is None:
+            if theta is None or not test.any():
                 return np.inf
             W = robot.regressor(*(np.ascontiguousarray(x[:, test]) for x in smooth.signals[:3]))
             measured = smooth.signals[3][:, test]

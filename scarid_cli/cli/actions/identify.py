@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -96,7 +97,13 @@ def _initial(job: Job, initial: str | None, arm: Robot) -> Array:
     if initial == "apriori":
         return arm.apriori
     if initial:
-        return identified(job.read(initial, "parameters"), arm).theta
+        theta = identified(job.read(initial, "parameters"), arm).theta
+        if len(theta) > len(arm.parameters):
+            raise UsageFault(
+                f"--initial: {initial} has friction that fades with speed (separable), which this "
+                "estimator does not have; give the parameters of another estimator"
+            )
+        return theta
     return np.zeros(len(arm.parameters))
 
 
@@ -160,7 +167,8 @@ def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[st
     line = f"{robot}, {estimator}, {extra['samples']} samples"
     if "delay" in extra:
         delay, error = 1e3 * extra["delay"], 1e3 * extra["delay_error"]
-        line += f", torques lead by {delay:.3g} ms (+- {error:.2g})"
+        known = f"+- {error:.2g}" if isfinite(error) else "error unknown"
+        line += f", torques lead by {delay:.3g} ms ({known})"
     if "dropped" in extra:
         names = ", ".join(extra["dropped"])
         line += f", dropped {names} (residual {100 * extra['dropped_cost']:.2g} % greater)"

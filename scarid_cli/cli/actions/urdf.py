@@ -36,11 +36,11 @@ def run(
     out, side = job.text(place), job.side_table(base)
     table = job.read(parameters, "parameters")
     identified = estimates_with_covariance(table, arm)
+    log = job.read_for(motion, "motion", robot, torques=True)[0] if motion else None
     found = stage.physical(identified)
     for line in stage.consistency_report(identified, found):
         job.say(line)
-    if motion:
-        log, _ = job.read_for(motion, "motion", robot, torques=True)
+    if log:
         r2 = stage.r2_before_and_after(log, identified, found, treatment)
         for line in stage.r2_report(*r2):
             job.say(line)
