@@ -14,7 +14,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.arrays import Array
 
-BLOCK_DURATION = 0.1  # s, before any blocks are merged
+FINEST_BLOCK = 0.1  # s, before any blocks are merged
 SHORTEST_BLOCK = 16  # samples
 MOST_BLOCKS = 128  # above this number, neighbouring blocks are merged in pairs
 MOST_HELD = 1024  # samples that are held until their products are computed
@@ -39,7 +39,7 @@ class Blocks:
     @classmethod
     def every(cls, h: float) -> Blocks:
         """No blocks yet, for a record sampled every h [s]."""
-        return cls(max(SHORTEST_BLOCK, round(BLOCK_DURATION / h)) if h > 0.0 else SHORTEST_BLOCK)
+        return cls(max(SHORTEST_BLOCK, round(FINEST_BLOCK / h)) if h > 0.0 else SHORTEST_BLOCK)
 
     @property
     def unit(self) -> int:
