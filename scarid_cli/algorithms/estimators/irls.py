@@ -14,7 +14,7 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.settings import require_positive
 from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, Scores
-from scarid_cli.algorithms.regression.information import least_squares
+from scarid_cli.algorithms.regression.information import inverse_deviations, least_squares
 from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.arrays import Array
 
@@ -34,7 +34,7 @@ class Estimator(HoldingEstimator):
         theta = least_squares(rows.W, rows.y, rows.scales).estimates
         for _ in range(ITERATIONS):
             residual = rows.y - rows.W @ theta
-            inverse = 1.0 / deviations(residual, rows.scales)
+            inverse = inverse_deviations(deviations(residual, rows.scales))
             size = np.abs(residual) * inverse
             weights = np.minimum(1.0, self.k / np.maximum(size, self.k))
             scales = rows.scales * np.sqrt(weights) * inverse
@@ -49,4 +49,4 @@ class Estimator(HoldingEstimator):
 def deviations(residual: Array, scales: Array) -> Array:
     """The standard deviation of each joint's residual, from the median of its absolute values."""
     found = [np.median(np.abs(r[s > 0.0])) for r, s in zip(residual.T, scales.T, strict=True)]
-    return np.maximum(np.array(found) / NORMAL, np.finfo(float).tiny)
+    return np.array(found) / NORMAL

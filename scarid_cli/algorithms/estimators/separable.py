@@ -16,7 +16,11 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, Scores
-from scarid_cli.algorithms.regression.information import NotIdentifiableError, least_squares
+from scarid_cli.algorithms.regression.information import (
+    NotIdentifiableError,
+    inverse_deviations,
+    least_squares,
+)
 from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.terms import Coulomb, Stribeck
@@ -104,8 +108,7 @@ def _inverse_deviations(rows: Rows) -> Array:
     theta = least_squares(rows.W, rows.y, rows.scales).estimates
     residual = (rows.y - rows.W @ theta) * rows.scales
     rms = np.sqrt((residual**2).sum(axis=0) / np.maximum((rows.scales > 0.0).sum(axis=0), 1))
-    inverse: Array = 1.0 / np.maximum(rms, 1e-6 * rms.max() or 1.0)
-    return inverse
+    return inverse_deviations(rms)
 
 
 def _searched(rows: Rows, joints: list[int], inverse: Array) -> dict[int, float]:

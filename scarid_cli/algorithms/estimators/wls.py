@@ -16,6 +16,7 @@ from scarid_cli.algorithms.regression.information import (
     Information,
     absorb,
     empty,
+    inverse_deviations,
     merged,
     residual_deviation,
     solve,
@@ -24,8 +25,6 @@ from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 
 JointsInformation = tuple[Information, ...]
-
-NOTHING = 1e-150  # a deviation whose square is no number any more
 
 
 @dataclass(frozen=True)
@@ -52,8 +51,6 @@ class Estimator(BaseEstimator):
 
     def fit(self, state: JointsInformation) -> Estimation:
         deviations = np.array([residual_deviation(part) for part in state])
-        # A joint that is fitted exactly (no torque at all) must not outweigh all others.
-        least = 1e-6 * deviations.max() if deviations.max() > NOTHING else 1.0
-        inverse = 1.0 / np.maximum(deviations, least)
+        inverse = inverse_deviations(deviations)
         fit = solve(merged(state, inverse.tolist()))
         return Estimation(fit, Scores(whitening=np.diag(inverse)))

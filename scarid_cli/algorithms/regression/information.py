@@ -13,6 +13,7 @@ from scarid_cli.kernels import information
 # Variance of the residual: with r - c degrees of freedom, 1 as printed in eq. 32-33, with r - 1.
 RESIDUAL, UNIT, SAMPLE = "residual", "unit", "sample"
 ROUNDING = 1e-15  # the relative error of the largest eigenvalue of a matrix
+NOTHING = 1e-150  # a standard deviation whose square is not a number any more
 
 
 class NotIdentifiableError(ValueError):
@@ -178,6 +179,16 @@ def residual_deviation(state: Information) -> float:
     length = np.sqrt((R * R).sum(axis=0))
     rank = np.linalg.matrix_rank(R / np.where(length > 0.0, length, 1.0))
     return float(np.sqrt(state.residual / max(state.weight - rank, 1.0)))
+
+
+def inverse_deviations(deviations: Array) -> Array:
+    """The weights of joints whose residuals have these standard deviations.
+
+    A joint that is fitted exactly, such as one without torque, must not outweigh all others.
+    """
+    largest = deviations.max()
+    least = 1e-6 * largest if largest > NOTHING else 1.0
+    return np.asarray(1.0 / np.maximum(deviations, least), dtype=np.float64)
 
 
 def weakest(covariance: Array) -> tuple[float, Array]:
