@@ -80,8 +80,8 @@ def command() -> None:
       scarid trajgen --robot arm.urdf --ddq-max 5 --home 0,-0.5 -o reference.csv
 
     The motion starts and ends at rest at the home position and stays within the limits on position,
-    velocity and acceleration, which are those of the robot's description unless an option gives
-    others. A motion that would leave its limits is refused before anything is written. The
+    velocity and acceleration, which are those of the robot's description unless an option narrows
+    them. A motion that would leave its limits is refused before anything is written. The
     condition number of the robot's observation matrix W along the motion is reported on standard
     error; if it is below about 100, the motion excites the robot well.
     """

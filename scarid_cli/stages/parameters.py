@@ -124,7 +124,7 @@ def _judged(found: Outcome, robot: Robot, labels: Labels, in_use: InUse) -> dict
     )
     judged = verdict(evidence, robot)
     return {
-        "condition_number": fit.condition if np.isfinite(fit.condition) else None,
+        "condition_number": _or_none(fit.condition),
         "scaled_condition_number": scaled,
         "verdict": judged.grade,
         "reasons": list(judged.reasons),
@@ -140,21 +140,29 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         "residual_deviation": float(np.sqrt(fit.variance)) if meaningful else None,
         "samples": found.samples,
         "excitation": dict(zip(labels.names, found.excitation.tolist(), strict=False)),
-        "joints": [asdict(joint) for joint in found.diagnostics.joints],
-        "lag_share": found.diagnostics.lag_share,
+        "joints": [
+            {fact: _or_none(value) for fact, value in asdict(joint).items()}
+            for joint in found.diagnostics.joints
+        ],
+        "lag_share": _or_none(found.diagnostics.lag_share),
         **found.found.extra,
     }
     full_covariance = covariance(found.full, found.errors)
     if full_covariance is not None:
         extra["covariance"] = full_covariance.tolist()
     if found.delay:
-        extra["delay"], extra["delay_error"] = found.delay
+        extra["delay"], extra["delay_error"] = map(_or_none, found.delay)
     if found.reduction and found.reduction.dropped:
         extra["dropped"] = [labels.names[i] for i in found.reduction.dropped]
         extra["dropped_cost"] = found.reduction.cost
         extra["dropped_allowed"] = found.reduction.allowed
         extra["full_estimates"] = found.full.estimates.tolist()
     return extra
+
+
+def _or_none(value: float) -> float | None:
+    """JSON has no nan and no infinity."""
+    return value if np.isfinite(value) else None
 
 
 def known(values: Array) -> pa.Array:

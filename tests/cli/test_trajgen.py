@@ -80,17 +80,27 @@ def test_home_may_be_given(scarid: Run) -> None:
 
 
 def test_limits_may_be_given_as_an_interval(scarid: Run) -> None:
-    words = ("--duration", 10, "--q-min", "0.1,-2", "--q-max", "0.5,-1", "--seed", 3)
+    words = ("--duration", 10, "--q-min", "0.1,-1.4", "--q-max", "0.5,-1", "--seed", 3)
     motion = columns(scarid("trajgen", *words).out)
-    for name, low, high in (("q1_ref", 0.1, 0.5), ("q2_ref", -2.0, -1.0)):
+    for name, low, high in (("q1_ref", 0.1, 0.5), ("q2_ref", -1.4, -1.0)):
         assert low <= motion[name].min() < motion[name].max() <= high
         assert motion[name][0] == pytest.approx((low + high) / 2.0)
 
 
-def test_limits_wider_than_the_description_s_are_reported(scarid: Run) -> None:
-    wider = scarid("trajgen", "--q-max", "1.3,1.5")
-    assert "joint 1: --q-min or --q-max go beyond the limits of the description" in wider.err
-    assert "go beyond" not in scarid("trajgen", "--q-max", "1.2,1.5").err
+@pytest.mark.parametrize(
+    "words", [("--q-max", "0.5"), ("--q-max", "9", "--dq-max", "99"), ("--q-min", "-9")]
+)
+def test_options_never_widen_the_limits_of_the_description(
+    words: tuple[str, ...], elbow: Path, scarid: Run
+) -> None:
+    """Joint 2 within -3.07 and -0.07: a bound of 0.5 on |q| must not drive it to +0.5."""
+    result = scarid("trajgen", "--robot", elbow, *words)
+    motion = columns(result.out)
+    assert np.all((motion["q2_ref"] >= -3.07) & (motion["q2_ref"] <= -0.07))
+    assert "joint" in result.err.splitlines()[0]
+    assert "the description has narrower limits than given, and these hold" in result.err
+    within = scarid("trajgen", "--robot", elbow, "--q-min", "-1", "--q-max", "1,-0.1")
+    assert "narrower" not in within.err
 
 
 @pytest.mark.parametrize(
@@ -102,7 +112,7 @@ def test_limits_wider_than_the_description_s_are_reported(scarid: Run) -> None:
         ),
         (("--home", "0,nan"), "--home: joint 2 at nan is outside"),
         (("--home", "0,-1,0"), "--home: 3 values for 2 joints; give 1 or 2"),
-        (("--q-min", "-1,0"), "--q-min: the lower bound of joint 2, 0, must be below its upper"),
+        (("--q-min", "-1,0"), "--q-min, --q-max: joint 2 has no position from 0 to -0.07"),
         (("--q-max", "-1"), "--q-max: the bounds must be positive and finite"),
         (("--q-max", "inf"), "--q-max: the bounds must be positive and finite"),
         (("--q-max", "1", "--q-min=-inf"), "--q-min: the bounds must be finite"),

@@ -53,6 +53,8 @@ def evidence(**changes: object) -> Evidence:
             "explains the torque of joint 2 badly",
         ),
         ({"lag_share": np.nan}, "doubtful", "not tested for bias"),
+        ({"moved": np.full(8, np.nan)}, "doubtful", "not tested whether the estimates depend on"),
+        ({"moved": np.full(8, 1e99)}, "doubtful", "would move by up to 1.0e+99 deviations"),
         (
             {"joints": (GOOD, replace(GOOD, r2=np.nan, torque=0.5))},
             "doubtful",

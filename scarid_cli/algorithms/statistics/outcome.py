@@ -140,10 +140,10 @@ def _aligned(
 
 
 def _noise(problem: Problem, diagnostics: Diagnostics, rows: float) -> Noise:
-    """How much larger the variances are than those for white residuals, on average."""
+    """How much larger the variances are than those for white residuals, as a median."""
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = diagnostics.errors / problem.found.fit.standard_errors()
-    return Noise(rows, float(np.mean(ratio[: problem.own] ** 2)), diagnostics.blocks)
+    return Noise(rows, float(np.median(ratio[: problem.own] ** 2)), diagnostics.blocks)
 
 
 def covariance(full: Fit, errors: Array) -> Array | None:

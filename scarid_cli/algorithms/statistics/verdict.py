@@ -17,6 +17,7 @@ LAGGED = 0.5  # share of the residual above which the lag test finds a bias
 DOUBT = 30.0  # %: the relative standard error above which a parameter counts as unknown
 WEAK = 1e4  # scaled condition number above which a combination of parameters is undetermined
 POOR = 0.8  # R2 below which the model does not explain the torque of a joint
+READABLE = 1e4  # deviations from which on a power of ten is printed
 DEVIATIONS = 3.0  # standard errors by which an estimate may move
 NOISE = 3.0  # times the torque noise: a joint with a smaller torque counts as not driven
 
@@ -122,22 +123,28 @@ def _moved(evidence: Evidence, robot: Robot) -> list[str]:
     diagnostics, in_use = evidence.diagnostics, evidence.in_use
     if not any(p.term.JUMPS for p in robot.parameters):
         return []
+    if np.isnan(diagnostics.moved).all():
+        return [
+            "not tested whether the estimates depend on slow rows: the other rows do not determine "
+            "all parameters; use a log that excites every joint"
+        ]
     moved = [
         n for n, x in zip(evidence.names, diagnostics.moved, strict=False) if abs(x) > DEVIATIONS
     ]
     if not moved:
         return []
-    most = np.nanmax(np.abs(diagnostics.moved))
+    largest = np.nanmax(np.abs(diagnostics.moved))
+    most = f"{largest:.1f}" if largest < READABLE else f"{largest:.1e}"
     slow = [f"{v:.1g}" for v in diagnostics.slow]
     options = _untried(slow, in_use)
     if options:
         return [
-            f"{_listed(moved)} would move by up to {most:.1f} deviations without the slow rows and "
+            f"{_listed(moved)} would move by up to {most} deviations without the slow rows and "
             f"with the torques' delay fitted ({' '.join(options)})"
         ]
     advice = "" if in_use.weighted else " (--estimator wls)"
     return [
-        f"{_listed(moved)} would move by up to {most:.1f} deviations in weighted least squares "
+        f"{_listed(moved)} would move by up to {most} deviations in weighted least squares "
         f"without the rows slower than {', '.join(slow)}{advice}"
     ]
 

@@ -39,6 +39,22 @@ class Limits:
         home: Array = np.where((self.lower <= 0.0) & (self.upper >= 0.0), 0.0, middle)
         return home
 
+    def within(self, other: Limits) -> Limits:
+        """The limits that keep both."""
+        found = Limits(
+            np.maximum(self.lower, other.lower),
+            np.minimum(self.upper, other.upper),
+            np.minimum(self.dq, other.dq),
+            np.minimum(self.ddq, other.ddq),
+        )
+        for joint in np.flatnonzero(~(found.lower < found.upper)).tolist():
+            raise UsageFault(
+                f"--q-min, --q-max: joint {joint + 1} has no position from "
+                f"{self.interval(joint)} within the limits of its description, "
+                f"{other.interval(joint)}"
+            )
+        return found
+
     def outside(self, q: Array) -> list[list[int]]:
         """The joints and samples (from 0) at which positions, (joints[, samples]), are outside."""
         slack = TOLERANCE * np.maximum(np.abs(self.lower), np.abs(self.upper))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -166,9 +165,9 @@ def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[st
     """A line of facts, and the verdict."""
     line = f"{robot}, {estimator}, {extra['samples']} samples"
     if "delay" in extra:
-        delay, error = 1e3 * extra["delay"], 1e3 * extra["delay_error"]
-        known = f"+- {error:.2g}" if isfinite(error) else "error unknown"
-        line += f", torques lead by {delay:.3g} ms ({known})"
+        error = extra["delay_error"]
+        known = "error unknown" if error is None else f"+- {1e3 * error:.2g}"
+        line += f", torques lead by {1e3 * extra['delay']:.3g} ms ({known})"
     if "dropped" in extra:
         names = ", ".join(extra["dropped"])
         line += f", dropped {names} (residual {100 * extra['dropped_cost']:.2g} % greater)"

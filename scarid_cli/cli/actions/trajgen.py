@@ -30,7 +30,8 @@ def run(
     arm = robot_of(robot)
     if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
         raise UsageFault("--rate and --duration must be positive")
-    limits = _limits(arm, given)
+    asked = _limits(arm, given)
+    limits = asked.within(Limits.of(arm.joints))
     home = _home(arm, limits, given["home"])
     if given["via"]:
         points, _ = job.read_for(given["via"], "via", arm.name)
@@ -39,8 +40,8 @@ def run(
         rng = np.random.default_rng(seed)
         trajectory = _excitation(given).trajectory(limits, home, duration, rng)
     stage.checked(trajectory, limits, rate)
-    if wider := _wider(arm, limits):
-        job.say(f"joint {wider}: --q-min or --q-max go beyond the limits of the description")
+    if narrowed := _narrowed(asked, limits):
+        job.say(f"joint {narrowed}: the description has narrower limits than given, and these hold")
     meta = Metadata(kind="trajectory", robot=arm.name, period=1.0 / rate)
     job.write(job.recorded(stage.tabulate(trajectory, arm, rate, meta)))
     job.say(
@@ -76,21 +77,14 @@ def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
     symmetric = bool(given["q_max"]) and not given["q_min"]
     upper = row("--q-max", own.upper, positive=symmetric)
     lower = row("--q-min", -upper if symmetric else own.lower, positive=False)
-    for joint in np.flatnonzero(lower >= upper):
-        raise UsageFault(
-            f"--q-min: the lower bound of joint {joint + 1}, {lower[joint]:g}, must be below its "
-            f"upper bound, {upper[joint]:g}"
-        )
     return Limits(lower, upper, row("--dq-max", own.dq), row("--ddq-max", own.ddq))
 
 
-def _wider(arm: Robot, limits: Limits) -> str:
-    """The joints (from 1) whose position limits are wider than those of the description."""
-    return ", ".join(
-        str(i)
-        for i, joint in enumerate(arm.joints, start=1)
-        if limits.lower[i - 1] < joint.lower or limits.upper[i - 1] > joint.upper
-    )
+def _narrowed(asked: Limits, limits: Limits) -> str:
+    """The joints (from 1) for which the description has narrower limits than were asked for."""
+    pairs = zip(vars(asked).values(), vars(limits).values(), strict=True)
+    differ = np.any([one != other for one, other in pairs], axis=0)
+    return ", ".join(str(i + 1) for i in np.flatnonzero(differ))
 
 
 def _home(arm: Robot, limits: Limits, given: tuple[float, ...] | None) -> Array:
