@@ -159,3 +159,16 @@ def test_ml_maximises_the_likelihood() -> None:
     np.testing.assert_allclose(estimation.fit.estimates, found.x[:P], rtol=1e-5)
     root = np.array([[np.exp(found.x[P]), 0.0], [found.x[P + 1], np.exp(found.x[P + 2])]])
     np.testing.assert_allclose(estimation.extra["noise_covariance"], root @ root.T, rtol=1e-4)
+
+
+@pytest.mark.parametrize("silent", [[1], [0, 1]], ids=["one joint", "both joints"])
+def test_ml_takes_joints_that_are_fitted_exactly(silent: list[int]) -> None:
+    """Their residual has no variance, so that the covariance of the noise is singular."""
+    W, y = data(300, noise=0.0)
+    W[:, silent], y[:, silent] = np.round(4.0 * W[:, silent]), 0.0
+    if len(silent) == 1:
+        W[:, silent] = 0.0
+    found = estimated(ml.Estimator(), plain(W, y))
+    truth = np.zeros(P) if len(silent) == 2 else THETA
+    np.testing.assert_allclose(found.fit.estimates, truth, atol=1e-9)
+    assert np.linalg.eigvalsh(found.extra["noise_covariance"]).min() > 0.0
