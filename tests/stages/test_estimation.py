@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -15,6 +16,7 @@ from defaults import PERIOD
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
+from scarid_cli.errors import BadData
 from scarid_cli.io.table import Metadata, Table, doubles
 from scarid_cli.stages.identify import identify
 from scarid_cli.stages.parameters import identified
@@ -76,13 +78,18 @@ def test_an_unmatched_soft_sensor_is_called_biased_by_every_estimator(
     assert extra["reasons"][0].startswith("biased")
 
 
-def test_a_late_torque_is_never_good_with_forgetting() -> None:
-    """10 ms: every parameter is more than 10 % off, over ten experiments."""
-    verdicts = [
-        found(motion(seed=seed, late=2), "rls", {"forgetting": 0.999}).meta.extra["verdict"]
-        for seed in range(1, 11)
-    ]
-    assert "good" not in verdicts
+def good(late: int) -> int:
+    """How many of ten experiments are good with forgetting, the torques late by so many samples."""
+    runs = (
+        found(motion(seed=seed, late=late), "rls", {"forgetting": 0.999}) for seed in range(1, 11)
+    )
+    return [run.meta.extra["verdict"] for run in runs].count("good")
+
+
+def test_torques_10_ms_late_are_never_good_with_forgetting() -> None:
+    """Which says something because most of the same experiments are good on time."""
+    assert good(late=2) == 0
+    assert good(late=0) > 5
 
 
 @pytest.mark.parametrize(
@@ -112,12 +119,8 @@ def test_torques_without_noise_are_fitted_by_maximum_likelihood() -> None:
 def test_barely_excited_rows_with_a_delay_get_a_verdict() -> None:
     """A quarter of a second, of which few rows are fast; the triangle is singular to rounding."""
     for rows in range(30, 80, 5):
-        source = motion(rows=rows)
-        try:
-            result = found(source, "wls", slow=(0.1, 0.1), align=True)
-        except Exception as error:
-            assert type(error).__name__ == "BadData"  # noqa: PT017
-        else:
+        with suppress(BadData):  # a refusal, but never a failure of the algebra
+            result = found(motion(rows=rows), "wls", slow=(0.1, 0.1), align=True)
             assert result.meta.extra["scaled_condition_number"] > 0.0
 
 

@@ -141,9 +141,14 @@ def _aligned(
 
 def _noise(problem: Problem, diagnostics: Diagnostics, rows: float) -> Noise:
     """How much larger the variances are than those for white residuals, as a median."""
+    ratios = _ratios(problem.found.fit, diagnostics.errors)[: problem.own]
+    return Noise(rows, float(np.median(ratios)), diagnostics.blocks)
+
+
+def _ratios(fit: Fit, errors: Array) -> Array:
+    """The squared errors, divided by the variances for white residuals (parameters)."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = diagnostics.errors / problem.found.fit.standard_errors()
-    return Noise(rows, float(np.median(ratio[: problem.own] ** 2)), diagnostics.blocks)
+        return np.asarray((errors / fit.standard_errors()) ** 2, dtype=np.float64)
 
 
 def covariance(full: Fit, errors: Array) -> Array | None:
@@ -155,8 +160,7 @@ def covariance(full: Fit, errors: Array) -> Array | None:
     because its rank is below the number of its blocks.
     """
     classical = full.variance * full.unit_covariance
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratios = errors**2 / np.diag(classical)
+    ratios = _ratios(full, errors)
     ratios = ratios[np.isfinite(ratios) & (ratios > 0.0)]
     sized: Array = classical * (np.median(ratios) if len(ratios) else 1.0)
     return sized if np.isfinite(sized).all() else None
