@@ -107,6 +107,24 @@ class Body:
         ]
 
     @property
+    def axes(self) -> Array:
+        """The geometry of the axes (joints, 16), as mechanism.Mechanism describes it."""
+        model = self.model
+        rows = []
+        for joint, placement in zip(
+            list(model.joints)[1:], list(model.jointPlacements)[1:], strict=True
+        ):
+            data = joint.createData()
+            joint.calc(data, np.zeros(1), np.zeros(1))
+            along, about = np.split(np.ravel(data.S), 2)
+            prismatic = bool(np.any(along))
+            direction = along if prismatic else about
+            rows.append(
+                [*placement.rotation.ravel(), *placement.translation, *direction, prismatic]
+            )
+        return np.array(rows, dtype=np.float64)
+
+    @property
     def standard(self) -> list[float]:
         """The standard parameters that the URDF gives, link after link."""
         inertias = list(self.model.inertias)[1:]
