@@ -29,10 +29,6 @@ class Verdict:
     grade: str
     reasons: tuple[str, ...]
 
-    @property
-    def text(self) -> str:
-        return f"{self.grade}: {'; '.join(self.reasons)}."
-
 
 @dataclass(frozen=True)
 class InUse:
