@@ -6,7 +6,7 @@ import contextlib
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -21,6 +21,8 @@ from scarid_cli.io.writer import Document, Output, all_or_none, write_table
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
+
+D = TypeVar("D", Output, Document)
 
 
 class Job:
@@ -42,17 +44,11 @@ class Job:
 
     def output(self, path: str, wanted: str | None = None) -> Output:
         """The output for a table; opened before anything is read, so that mistakes show at once."""
-        self._require_unused(path)
-        output = Output(path, wanted)
-        self.outputs.append(output)
-        return output
+        return self._new(path, lambda: Output(path, wanted))
 
     def text(self, path: str) -> Document:
         """The output for a document beside the tables, which is opened early as well."""
-        self._require_unused(path)
-        document = Document(path)
-        self.outputs.append(document)
-        return document
+        return self._new(path, lambda: Document(path))
 
     def side_table(self, path: str | None) -> Output | None:
         """The table of a side output, if it was asked for."""
@@ -62,10 +58,12 @@ class Job:
         """The document of a side output, if it was asked for."""
         return self.text(path) if path else None
 
-    def _require_unused(self, path: str) -> None:
+    def _new(self, path: str, opened: Callable[[], D]) -> D:
         if path in {output.path for output in self.outputs}:
             place = "standard output" if path == "-" else path
             raise UsageFault(f"{place}: two outputs cannot share it; give one of them another FILE")
+        self.outputs.append(output := opened())
+        return output
 
     def read(
         self,

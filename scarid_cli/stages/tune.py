@@ -14,6 +14,7 @@ from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning import judges, search
+from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, TooShort
 from scarid_cli.io import schemas
@@ -98,7 +99,7 @@ def _for_positions(
     judge = judges.distance_to_smoother(q, h)
     if method.HAS_LIKELIHOOD:
         likelihood = judges.negative_log_likelihood(q, h)
-        fitted = judges.fit(method, q, h)
+        fitted = best_model(method, q, h)
         for tried in (method, fitted) if values(method)["noise"] else (fitted,):
             trial = search.Trial(tried, likelihood(tried))
             yield Tried(name, joint, LIKELIHOOD, trial, tried is fitted)
@@ -116,7 +117,7 @@ def _for_torques(
     ranges = method.TUNED
     if method.HAS_LIKELIHOOD:
         # The most likely intensity also follows vibrations; a lower one may identify better.
-        method = judges.fit(method, record.q, record.h)
+        method = best_model(method, record.q, record.h)
         ranges = {"intensity": Range(1e-12 * method.intensity, 1e2 * method.intensity)}
     trials = search.search(method, ranges, judge, record.h, seed)
     yield from _marked(name, None, TORQUES, trials, progress)

@@ -19,20 +19,12 @@ from scarid_cli.algorithms.processes.matching import over, settling_rows
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.tuning.likelihood import best_model, log_likelihood
+from scarid_cli.algorithms.tuning.likelihood import log_likelihood
 from scarid_cli.algorithms.tuning.search import Judge
 from scarid_cli.arrays import Array
 
 SKIPPED_START = 1.0  # seconds at the start, where a method may still be on its way
 SEGMENTS = 10  # of a record, every second one held out
-
-
-def fit(method: Any, q: Array, h: float) -> Any:
-    """A Kalman method with the noise, the intensity and the acceleration process of the data.
-
-    q: positions of one joint (rows), or of several that share the settings (joints, rows).
-    """
-    return best_model(method, q, h)
 
 
 def negative_log_likelihood(q: Array, h: float) -> Judge:
