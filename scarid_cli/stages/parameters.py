@@ -9,9 +9,10 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.regression.information import weakest
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.outcome import Outcome, covariance
-from scarid_cli.algorithms.statistics.verdict import Evidence, InUse, combination, verdict
+from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
@@ -78,7 +79,7 @@ class Labels:
 
 
 def parameters(
-    found: Outcome, robot: Robot, meta: Metadata, in_use: InUse, *, variance: str
+    found: Outcome, robot: Robot, meta: Metadata, treatment: Treatment, *, variance: str
 ) -> Table:
     """The parameter table, with the verdict in its metadata."""
     labels = Labels.of(found, robot)
@@ -104,11 +105,11 @@ def parameters(
     else:
         schema = schema.remove(schema.get_field_index("stands_for"))
     batch = pa.RecordBatch.from_arrays(columns, schema=schema)
-    extra = _judged(found, robot, labels, in_use) | _facts(found, labels)
+    extra = _judged(found, robot, labels, treatment) | _facts(found, labels)
     return Table("identify", schema, replace(meta, extra=extra), iter([batch]))
 
 
-def _judged(found: Outcome, robot: Robot, labels: Labels, in_use: InUse) -> dict[str, Any]:
+def _judged(found: Outcome, robot: Robot, labels: Labels, treatment: Treatment) -> dict[str, Any]:
     """The metadata of the verdict, with the condition numbers that it is based on."""
     fit = found.found.fit
     names = [labels.names[i] for i in labels.kept]
@@ -120,7 +121,8 @@ def _judged(found: Outcome, robot: Robot, labels: Labels, in_use: InUse) -> dict
         scaled_condition=scaled,
         weak=combination(direction, names),
         diagnostics=found.diagnostics,
-        in_use=in_use,
+        treatment=treatment,
+        weighted=found.found.weighted,
     )
     judged = verdict(evidence, robot)
     return {

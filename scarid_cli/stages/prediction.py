@@ -10,11 +10,12 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.regression.rows import Rows, delay_column, joined
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table
 from scarid_cli.stages.parameters import Identified
-from scarid_cli.stages.rows import Treatment, treated
+from scarid_cli.stages.rows import treated
 
 Part = tuple[pa.RecordBatch | None, Rows]
 

@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, without_slow
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
@@ -17,29 +18,6 @@ from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, segments_of, settled_runs
 
 GAP_DURATION = 0.05  # s: longer than the intervals in the subsample of a long record
-
-
-@dataclass(frozen=True)
-class Treatment:
-    """How the rows of a motion are treated before the fit.
-
-    `skip` rows at the start and at the end of the table are left out. W and the torques are
-    decimated by each factor of `decimate` in turn. Rows of a joint that is slower than `slow`
-    (joints) [rad/s or m/s] are left out. Two more options concern the fit: `align` also fits the
-    time by which the torques lead the motion, and `essential` drops parameters that are not
-    essential.
-    """
-
-    skip: tuple[int, int] = (0, 0)
-    decimate: tuple[int, ...] = ()
-    slow: tuple[float, ...] = ()
-    align: bool = False
-    essential: bool = False
-
-    @property
-    def holds(self) -> bool:
-        """Whether the treatment needs all rows at once."""
-        return bool(self.decimate) or self.align
 
 
 @dataclass(frozen=True)

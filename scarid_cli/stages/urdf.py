@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.physical import Physical, chi_square, inertia_of, nearest
 from scarid_cli.arrays import Array
@@ -16,7 +17,6 @@ from scarid_cli.io.urdf import Inertial, rewritten
 from scarid_cli.stages.estimates import Estimates
 from scarid_cli.stages.parameters import Identified, known
 from scarid_cli.stages.prediction import qualities
-from scarid_cli.stages.rows import Treatment
 
 SHOWN = 5  # parameters that a message names at most
 COLLAPSE = 2.0  # ratio of residual variances above which a warning is given: physical consistency

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.io import schemas
@@ -14,7 +15,6 @@ from scarid_cli.io.table import Table, number, numbers, segment_field, with_colu
 from scarid_cli.stages import Sink
 from scarid_cli.stages.parameters import Identified, known
 from scarid_cli.stages.prediction import Tally, predicted
-from scarid_cli.stages.rows import Treatment
 
 
 def validate(
