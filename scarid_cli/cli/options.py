@@ -107,6 +107,13 @@ def side_output(*names: str, help: str, metavar: str = "FILE") -> Callable[[F], 
     return click.option(*names, cls=Unrecorded, metavar=metavar, help=help)
 
 
+def input_file(
+    *names: str, help: str, metavar: str = "FILE", required: bool = False
+) -> Callable[[F], F]:
+    """A file to read beside the table; - stands for standard input."""
+    return click.option(*names, type=INPUT, metavar=metavar, required=required, help=help)
+
+
 def settings_of(algorithm: str) -> Callable[[F], F]:
     """The settings of an algorithm that is the same for all joints."""
     text = f"A setting of the {algorithm}; repeatable."
