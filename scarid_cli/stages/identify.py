@@ -81,7 +81,12 @@ def identify(
         state = estimator.init(initial)
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
     for batch, rows in treated(
-        table, robot, treatment, checkpoint.seen, reference=estimator.REFERENCE
+        table,
+        robot,
+        treatment,
+        checkpoint.seen,
+        reference=estimator.REFERENCE,
+        follows=estimator.FOLLOWS,
     ):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:

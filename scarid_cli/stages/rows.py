@@ -46,17 +46,20 @@ class Treatment:
 class Columns:
     """The columns that the regression of a robot needs from a motion sampled every h [s].
 
-    With `reference`, these include the reference position and velocity if the table has them.
+    With `reference`, these include the reference position and velocity if the table has them. If
+    the estimator `follows` the reference, the motion is that of the reference as well.
     """
 
     robot: Robot
     h: float
     reference: bool
+    follows: bool
 
     def motion(self, batch: pa.RecordBatch) -> Array:
         """Position, velocity, acceleration and torque (4, joints, samples)."""
         joints = len(self.robot.joints)
-        names = of_joints(joints, "q{i}", "dq{i}", "ddq{i}", "tau{i}")
+        of = "_ref" if self.follows else ""
+        names = of_joints(joints, f"q{{i}}{of}", f"dq{{i}}{of}", f"ddq{{i}}{of}", "tau{i}")
         return matrix(batch, names).reshape(4, joints, batch.num_rows)
 
     def references(self, columns: list[str], batch: pa.RecordBatch) -> Array | None:
@@ -80,15 +83,23 @@ class Columns:
 
 
 def treated(
-    table: Table, robot: Robot, treatment: Treatment, seen: int = 0, *, reference: bool = False
+    table: Table,
+    robot: Robot,
+    treatment: Treatment,
+    seen: int = 0,
+    *,
+    reference: bool = False,
+    follows: bool = False,
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     """The rows of the settled samples, each part with the batch that it comes from.
 
     A treatment that needs all rows at once gives a single part, without a batch. `seen` is the
-    number of the first sample. With `reference`, the rows include the reference of the robot.
+    number of the first sample. With `reference`, the rows include the reference of the robot; if the
+    estimator `follows` it, they are those of the reference.
     """
     counted = 0
-    for batch, rows in _treated(table, Columns(robot, table.period, reference), treatment, seen):
+    columns = Columns(robot, table.period, reference, follows)
+    for batch, rows in _treated(table, columns, treatment, seen):
         counted += int(np.count_nonzero(rows.scales))
         yield batch, rows
     if not counted:
