@@ -94,8 +94,8 @@ def treated(
     """The rows of the settled samples, each part with the batch that it comes from.
 
     A treatment that needs all rows at once gives a single part, without a batch. `seen` is the
-    number of the first sample. With `reference`, the rows include the reference of the robot; if the
-    estimator `follows` it, they are those of the reference.
+    number of the first sample. With `reference`, the rows include the reference of the robot; if
+    the estimator `follows` it, they are those of the reference.
     """
     counted = 0
     columns = Columns(robot, table.period, reference, follows)
