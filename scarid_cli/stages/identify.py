@@ -51,9 +51,7 @@ def identify(
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
-    for batch, rows in treated(
-        table, robot, treatment, checkpoint.seen, reference=estimator.REFERENCE
-    ):
+    for batch, rows in treated(table, robot, treatment, checkpoint.seen, estimator):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, without_slow
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
@@ -16,21 +17,28 @@ from scarid_cli.errors import bad_data
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, segments_of, settled_runs
 
-REFERENCE = ("q{i}_ref", "dq{i}_ref")
+MEASURED = ("q{i}", "dq{i}", "ddq{i}", "tau{i}")
+FOLLOWED = ("q{i}_ref", "dq{i}_ref", "ddq{i}_ref", "tau{i}")
+REFERENCE = FOLLOWED[:2]
 GAP_DURATION = 0.05  # s: longer than the intervals in the subsample of a long record
 
 
 def treated(
-    table: Table, robot: Robot, treatment: Treatment, seen: int = 0, *, reference: bool = False
+    table: Table,
+    robot: Robot,
+    treatment: Treatment,
+    seen: int = 0,
+    estimator: BaseEstimator | None = None,
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     """The rows of the settled samples, each part with the batch that it comes from.
 
     A treatment that needs all rows at once gives a single part, without a batch. `seen` is the
-    number of the first sample. With `reference`, the rows include the reference position and
-    velocity if the table has them.
+    number of the first sample. The rows include the reference position and velocity if the
+    estimator needs them and the table has them; for one that follows the reference, the rows are
+    those of the reference.
     """
     counted = 0
-    for batch, rows in _treated(table, robot, treatment, seen, reference=reference):
+    for batch, rows in _treated(table, robot, treatment, seen, estimator):
         counted += int(np.count_nonzero(rows.scales))
         yield batch, rows
     if not counted:
@@ -43,18 +51,21 @@ def treated(
 
 
 def _treated(
-    table: Table, robot: Robot, treatment: Treatment, seen: int, *, reference: bool
+    table: Table, robot: Robot, treatment: Treatment, seen: int, estimator: BaseEstimator | None
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     slow = np.array(treatment.slow) if treatment.slow else None
     late = None if treatment.decimate else slow
     held, gaps = [], Gaps(table.period)
-    reference = reference and set(of_joints(len(robot.joints), *REFERENCE)) <= set(table.columns)
+    signals = FOLLOWED if estimator and estimator.FOLLOWS else MEASURED
+    known = set(of_joints(len(robot.joints), *REFERENCE)) <= set(table.columns)
     start, end = treatment.skip
     for first, kept in _after(start, settled_runs(_without_last(end, table.batches))):
         at = seen + first + gaps.before(kept) + np.arange(kept.num_rows)
-        motion = _signals(robot, kept, "q{i}", "dq{i}", "ddq{i}", "tau{i}")
-        followed = _signals(robot, kept, *REFERENCE) if reference else None
-        rows = rows_of(robot, motion, at, table.period, slow=late, reference=followed)
+        motion = _signals(robot, kept, *signals)
+        reference = None
+        if known and estimator and estimator.REFERENCE:
+            reference = _signals(robot, kept, *REFERENCE)
+        rows = rows_of(robot, motion, at, table.period, slow=late, reference=reference)
         if treatment.holds:
             held.append(rows)
         else:

@@ -56,13 +56,15 @@ class BaseEstimator(Validated, ABC):
 
     RECURSIVE: the estimator gives estimates after every sample. HOLDS: it keeps all rows in memory.
     INITIAL: it starts from initial parameters. REFERENCE: it needs the reference that the robot
-    followed. ALIGNS: the delay of the torques can be fitted as one more parameter.
+    followed. FOLLOWS: its rows are those of the reference, and it needs no measured motion. ALIGNS:
+    the delay of the torques can be fitted as one more parameter.
     """
 
     RECURSIVE: ClassVar[bool] = False
     HOLDS: ClassVar[bool] = False
     INITIAL: ClassVar[bool] = False
     REFERENCE: ClassVar[bool] = False
+    FOLLOWS: ClassVar[bool] = False
     ALIGNS: ClassVar[bool] = True
 
     def for_robot(self, robot: Robot) -> Self:  # noqa: ARG002 (most do not depend on it)

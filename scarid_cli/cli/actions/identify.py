@@ -44,7 +44,8 @@ def run(
     if initial and not method.INITIAL:
         raise UsageFault(f"--initial: {estimator} has no initial parameters; leave the option out")
     side, place = job.side_table(trace), job.side_text(save)
-    table, arm = job.read_for(file, "motion", robot, torques=True, reference=method.REFERENCE)
+    kind = "trajectory" if method.FOLLOWS else "motion"
+    table, arm = job.read_for(file, kind, robot, torques=True, reference=method.REFERENCE)
     arm, treatment = for_robot(arm, treatment, given)
     solver = method(**values, **_single(given["forgetting"], arm.names))
     start = _initial(job, initial, arm)

@@ -1,0 +1,62 @@
+"""Direct and inverse identification, DIDIM (Gautier, Janot and Vandanjon 2013).
+
+The parameters are those with which the simulated robot needs the logged torques. The robot is
+simulated in closed loop with the previous estimates, and least squares with each joint weighted by
+its residual fits the torques along the simulated motion. The log needs no positions and no soft
+sensor: its torques and the reference that the robot followed (q1_ref, dq1_ref, ddq1_ref, ...) are
+enough, and a measurement is taken as it was recorded. The robot description must have the
+controller of the robot. All rows are held in memory. No settings.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import ClassVar
+
+import numpy as np
+
+from scarid_cli.algorithms.choices.settings import GIVEN
+from scarid_cli.algorithms.estimators import wls
+from scarid_cli.algorithms.plants.following import simulated
+from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator
+from scarid_cli.algorithms.regression.rows import Rows, joined
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.errors import UsageFault
+
+ITERATIONS = 20
+CONVERGED = 1e-3  # standard errors
+
+
+@dataclass(frozen=True)
+class Estimator(HoldingEstimator):
+    robot: Robot | None = field(default=None, metadata=GIVEN)
+
+    REFERENCE: ClassVar[bool] = True
+    FOLLOWS: ClassVar[bool] = True
+    ALIGNS: ClassVar[bool] = False
+
+    def for_robot(self, robot: Robot) -> Estimator:
+        return replace(self, robot=robot)
+
+    def fit(self, state: list[Rows]) -> Estimation:
+        """Start from the motion of the reference, and end with the simulated motion."""
+        assert self.robot is not None
+        logged = joined(state)
+        found = _weighted(logged)
+        for _ in range(ITERATIONS):
+            rows = simulated(self.robot, found.fit.estimates, logged)
+            before, found = found, _weighted(rows)
+            moved = np.abs(found.fit.estimates - before.fit.estimates)
+            if np.all(moved <= CONVERGED * found.fit.standard_errors()):
+                assert found.scores is not None
+                return replace(found, scores=replace(found.scores, rows=rows))
+        raise UsageFault(
+            f"didim does not converge in {ITERATIONS} iterations: with the controller of the "
+            f"description, {self.robot.name} does not follow the reference as the log does; "
+            "correct [control], or use --estimator wls on the measured motion"
+        )
+
+
+def _weighted(rows: Rows) -> Estimation:
+    estimator = wls.Estimator()
+    return estimator.fit(estimator.step(estimator.init(np.zeros(rows.W.shape[2])), rows)[0])
