@@ -34,10 +34,10 @@ class Job:
 
     out: Output
 
-    def __init__(self, *, quiet: bool, verbose: bool, history: bool) -> None:
-        self.quiet = quiet
-        self._verbose = verbose and not quiet
-        self._history = history
+    def __init__(self, options: dict[str, Any]) -> None:
+        self.quiet: bool = options["quiet"]
+        self._verbose = options["verbose"] and not self.quiet
+        self._history = not options.get("no_history")
         self.outputs: list[Output | Document] = []
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
@@ -157,11 +157,7 @@ class Job:
 @contextlib.contextmanager
 def job(options: dict[str, Any]) -> Iterator[Job]:
     """A run of a command, given the options of `common` and `table_output`."""
-    run = Job(
-        quiet=options["quiet"],
-        verbose=options["verbose"],
-        history=not options.get("no_history"),
-    )
+    run = Job(options)
     try:
         with all_or_none(run.outputs):
             yield run

@@ -6,6 +6,7 @@ import csv
 import io
 import re
 from collections.abc import Callable, Iterator, Sequence
+from itertools import chain
 
 import pyarrow as pa
 import pyarrow.csv as pacsv
@@ -130,19 +131,15 @@ def _first_row_end(body: bytes) -> int:
 
 
 def _batches(
-    block: bytes, lines: Iterator[bytes], schema: pa.Schema, name: str
+    body: bytes, lines: Iterator[bytes], schema: pa.Schema, name: str
 ) -> Iterator[pa.RecordBatch]:
     row = 0
-    while True:
+    for block in chain([body], lines):
         if CUT in block:
             raise cut_short(name)
         for batch in _parse(block, schema, name, row):
             yield batch
             row += batch.num_rows
-        more = next(lines, None)
-        if more is None:
-            return
-        block = more
 
 
 def _parse(block: bytes, schema: pa.Schema, name: str, row: int) -> list[pa.RecordBatch]:

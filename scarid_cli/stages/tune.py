@@ -8,7 +8,6 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
@@ -18,7 +17,7 @@ from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, TooShort
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, matrix, segments
+from scarid_cli.io.table import Table, matrix, segments, table_of
 
 Settings = dict[str, list[float]]
 LIKELIHOOD, SMOOTHER, TORQUES = "likelihood", "smoother", "torques"
@@ -167,16 +166,8 @@ def chosen(rows: list[Tried], joints: int) -> tuple[str, dict[str, Settings]]:
 def trials(table: Table, rows: list[Tried]) -> Table:
     """The table of all trials."""
     schema = schemas.load("trials").arrow()
-    losses = [row.trial.loss if isfinite(row.trial.loss) else None for row in rows]
-    batch = pa.RecordBatch.from_arrays(
-        [
-            pa.array([row.name for row in rows], pa.string()),
-            pa.array([row.joint for row in rows], pa.int64()),
-            pa.array([row.settings for row in rows], pa.string()),
-            pa.array([row.judge for row in rows], pa.string()),
-            pa.array(losses, pa.float64()),
-            pa.array([int(row.best) for row in rows], pa.int64()),
-        ],
-        schema=schema,
+    found = (
+        (row.name, row.joint, row.settings, row.judge, float(row.trial.loss), int(row.best))
+        for row in rows
     )
-    return Table("tune", schema, replace(table.meta, kind="trials"), iter([batch]))
+    return table_of("tune", schema, found, replace(table.meta, kind="trials"))

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, number, numbers, segment_field, with_columns
+from scarid_cli.io.table import Table, number, numbers, segment_field, table_of, with_columns
 from scarid_cli.stages import Sink
-from scarid_cli.stages.parameters import Identified, known
+from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.prediction import Tally, predicted
 
 
@@ -51,17 +50,10 @@ def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
 
 def _metrics(table: Table, robot: Robot, qualities: list[Quality], delay: float) -> Table:
     schema = schemas.load("metrics").arrow()
-    batch = pa.RecordBatch.from_arrays(
-        [
-            pa.array(range(1, len(qualities) + 1), pa.int64()),
-            known(np.array([quality.r2 for quality in qualities])),
-            known(np.array([quality.rmse for quality in qualities])),
-            pa.array([joint.torque_unit for joint in robot.joints]),
-            known(np.array([quality.relative_error for quality in qualities])),
-            pa.array([quality.samples for quality in qualities], pa.int64()),
-        ],
-        schema=schema,
+    rows = (
+        (i, q.r2, q.rmse, joint.torque_unit, q.relative_error, q.samples)
+        for i, (q, joint) in enumerate(zip(qualities, robot.joints, strict=True), start=1)
     )
     extra = {**table.meta.extra, **({"delay": delay} if delay else {})}
     meta = replace(table.meta, kind="metrics", robot=robot.name, extra=extra)
-    return Table("validate", schema, meta, iter([batch]))
+    return table_of("validate", schema, rows, meta)
