@@ -11,7 +11,7 @@ from itertools import chain
 import pyarrow as pa
 import pyarrow.csv as pacsv
 
-from scarid_cli.errors import BadData, bad_data, cut_short
+from scarid_cli.errors import BadData, bad_data, bad_row, cut_short
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Metadata, Table
@@ -170,24 +170,12 @@ def _located(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | 
     reader = csv.reader(io.StringIO(block.decode(errors="replace")))
     for number, values in enumerate((v for v in reader if v), start=row + 1):
         if len(values) != len(schema):
-            return bad_data(
-                name,
-                f"{len(values)} values",
-                expected=f"{len(schema)}, one per column of the header",
-                remedy="correct or remove the row",
-                row=number,
-            )
+            expected = f"{len(schema)}, one per column of the header"
+            return bad_row(name, f"{len(values)} values", expected, number)
         for field, value in zip(schema, values, strict=True):
             if not _fits(field.type, value):
                 kind = "an integer" if pa.types.is_integer(field.type) else "a number"
-                return bad_data(
-                    name,
-                    repr(value),
-                    expected=kind,
-                    remedy="correct or remove the row",
-                    row=number,
-                    column=field.name,
-                )
+                return bad_row(name, repr(value), kind, number, field.name)
     return None
 
 

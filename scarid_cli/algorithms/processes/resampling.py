@@ -20,7 +20,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Clock:
-    """Statistics of a log's clock: the number of intervals, their sums and extremes [s].
+    """Statistics of a log's clock: the number of intervals, their sums and the longest [s].
 
     `repeated` counts the rows left out because their time repeats. `gaps` counts the intervals that
     split the record and `missing` is their sum [s]; the other numbers are without them.
@@ -29,7 +29,6 @@ class Clock:
     intervals: int = 0
     total: float = 0.0
     squares: float = 0.0
-    shortest: float = np.inf
     longest: float = 0.0
     repeated: int = 0
     gaps: int = 0
@@ -47,7 +46,6 @@ class Clock:
             # Summed one by one, so that batches do not change a bit.
             total=float(np.cumsum(np.append(self.total, steps))[-1]),
             squares=float(np.cumsum(np.append(self.squares, steps * steps))[-1]),
-            shortest=min(self.shortest, float(steps.min())),
             longest=max(self.longest, float(steps.max())),
         )
 
