@@ -34,10 +34,10 @@ class Estimator(RobotEstimator, HoldingEstimator):
     def fit(self, state: list[Rows]) -> Estimation:
         """Start from the motion of the reference, and end with the simulated motion."""
         logged = joined(state)
-        found = _weighted(logged)
+        found = wls.Estimator().of_rows(logged)
         for _ in range(ITERATIONS):
             rows = simulated(self.robot, found.fit.estimates, logged)
-            before, found = found, _weighted(rows)
+            before, found = found, wls.Estimator().of_rows(rows)
             moved = np.abs(found.fit.estimates - before.fit.estimates)
             if np.all(moved <= CONVERGED * found.fit.standard_errors()):
                 assert found.scores is not None
@@ -47,8 +47,3 @@ class Estimator(RobotEstimator, HoldingEstimator):
             f"description, {self.robot.name} does not follow the reference as the log does; "
             "correct [control], or use --estimator wls on the measured motion"
         )
-
-
-def _weighted(rows: Rows) -> Estimation:
-    estimator = wls.Estimator()
-    return estimator.fit(estimator.step(estimator.init(np.zeros(rows.W.shape[2])), rows)[0])

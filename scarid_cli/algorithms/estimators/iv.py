@@ -52,8 +52,7 @@ class Estimator(RobotEstimator, HoldingEstimator):
 
     def fit(self, state: list[Rows]) -> Estimation:
         rows = joined(state)
-        start = wls.Estimator()
-        plain = start.fit(start.step(start.init(np.zeros(rows.W.shape[2])), rows)[0])
+        plain = wls.Estimator().of_rows(rows)
         theta = plain.fit.estimates
         for _ in range(ITERATIONS):
             instruments = simulated(self.robot, theta, rows).W

@@ -87,6 +87,11 @@ class BaseEstimator(Validated, ABC):
     def fit(self, state: Any) -> Estimation:
         """The result from all rows so far."""
 
+    def of_rows(self, rows: Rows, initial: Array | None = None) -> Estimation:
+        """The result from these rows alone; the initial parameters are zeros by default."""
+        start = np.zeros(rows.W.shape[2]) if initial is None else initial
+        return self.fit(self.step(self.init(start), rows)[0])
+
 
 @dataclass(frozen=True)
 class RobotEstimator(BaseEstimator):

@@ -120,7 +120,7 @@ def _aligned(
     wide = rows
     for _ in range(ALIGNMENTS):
         wide = with_delay(rows, found.fit.estimates)
-        found = estimator.fit(estimator.step(estimator.init(start), wide)[0])
+        found = estimator.of_rows(wide, start)
     return wide, found
 
 

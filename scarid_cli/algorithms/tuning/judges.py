@@ -112,11 +112,8 @@ def motion(methods: list[Any], q: Array, tau: Array, h: float) -> SettledMotion:
 def identified(robot: Robot, motion: SettledMotion, rows: Any) -> Array | None:
     """The least-squares estimates from some rows; None if they leave a parameter undetermined."""
     *kinematics, tau = (np.ascontiguousarray(signal[:, rows]) for signal in motion.signals)
-    ls = Estimator()
-    start = ls.init(np.zeros(len(robot.parameters)))
     regression = plain(robot.regressor(*kinematics), np.ascontiguousarray(tau.T))
-    state, _ = ls.step(start, regression)
     try:
-        return ls.fit(state).fit.estimates
+        return Estimator().of_rows(regression).fit.estimates
     except NotIdentifiableError:
         return None
