@@ -8,12 +8,12 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.prediction import Quality
+from scarid_cli.algorithms.statistics.prediction import Quality, empty
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, number, numbers, segment_field, table_of, with_columns
 from scarid_cli.stages import Sink
 from scarid_cli.stages.parameters import Identified
-from scarid_cli.stages.prediction import Tally, predicted
+from scarid_cli.stages.prediction import added, predicted
 
 
 def validate(
@@ -29,17 +29,17 @@ def validate(
     `predictions` receives the measured and predicted torques of every sample (Fig. 7-8).
     """
     robot = model.robot
-    tally = Tally(len(robot.joints))
+    sums = [empty() for _ in robot.joints]
     schema = _prediction_schema(robot, table)
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
     for batch, rows, (torques,) in predicted(table, [model], treatment or Treatment()):
-        tally.add(rows, torques)
+        sums = added(sums, rows, torques)
         if predictions and batch is not None:
             new = dict(zip(schema.names[1:], (*rows.y.T, *torques), strict=False))
             predictions.write(with_columns(batch, schema, new))
-    return _metrics(table, robot, tally.qualities, model.delay)
+    return _metrics(table, robot, [Quality.of(joint) for joint in sums], model.delay)
 
 
 def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:

@@ -86,14 +86,14 @@ class Resampler:
 
     period: float
 
-    def init(self, t: float, x: Array) -> ResamplerState:
-        """The state at the first sample: its time [s] and values (columns)."""
-        return ResamplerState(np.array([t]), x[:, None], t)
+    def init(self, t: float, x: Array, before: ResamplerState | None = None) -> ResamplerState:
+        """The state at the first sample of a segment: its time [s] and values (columns).
 
-    def after_gap(self, state: ResamplerState, t: float, x: Array) -> ResamplerState:
-        """The state at the first sample after a gap; rows keep the times they would have had."""
-        row = max(state.row, int(np.ceil((t - state.start) / self.period - 1e-9)))
-        return ResamplerState(np.array([t]), x[:, None], state.start, row)
+        Rows keep the times that they would have had without the gap after the state `before`.
+        """
+        start, row = (before.start, before.row) if before else (t, 0)
+        row = max(row, int(np.ceil((t - start) / self.period - 1e-9)))
+        return ResamplerState(np.array([t]), x[:, None], start, row)
 
     def step(
         self, state: ResamplerState, t: Array, x: Array
