@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from scarid_cli.algorithms.robots.chain import Chain, named, serial
+from scarid_cli.algorithms.robots.axes import Chain, named, serial
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.tree import ENDLESS, link, read
 from scarid_cli.arrays import Array
@@ -78,7 +78,7 @@ def _interval(lower: float, upper: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Body:
-    """A serial arm as a URDF describes it; `joints` names its axes, or leaves them to chain.py."""
+    """A serial arm as a URDF describes it; `joints` names its axes, or leaves them to axes.py."""
 
     path: str
     gravity: tuple[float, ...] = GRAVITY
