@@ -3,11 +3,18 @@ against finite differences."""
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
 from scarid_cli.algorithms.robots import newton_euler
-from scarid_cli.algorithms.robots.mechanism import Mechanism
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.mechanism import Mechanism, mechanism
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.robots.rigid import PINOCCHIO
+from scarid_cli.algorithms.robots.terms import AxisTerm
 
 JOINTS, SAMPLES = 5, 4
 
@@ -136,3 +143,62 @@ def test_the_reverse_pass_gives_the_slopes(signal: int) -> None:
         a, b, c, d = values
         numeric[i] = (a - 8.0 * b + 8.0 * c - d) / (12.0 * step)
     np.testing.assert_allclose(slopes, numeric, rtol=0, atol=1e-9 * np.abs(numeric).max())
+
+
+SLIDE = """<robot name="slide"><link name="base"/>
+  <joint name="a" type="revolute"><parent link="base"/><child link="one"/>
+    <origin xyz="0.1 0.2 0.3" rpy="0.4 -0.5 0.6"/><axis xyz="0.6 0 0.8"/>
+    <limit lower="-3" upper="3" effort="9" velocity="9"/></joint>
+  <link name="one"/>
+  <joint name="b" type="prismatic"><parent link="one"/><child link="two"/>
+    <origin xyz="-0.2 0.1 0.5" rpy="0.7 0.2 -0.3"/><axis xyz="0.48 -0.6 0.64"/>
+    <limit lower="-1" upper="1" effort="9" velocity="9"/></joint>
+  <link name="two"/>
+  <joint name="c" type="continuous"><parent link="two"/><child link="three"/>
+    <origin xyz="0.3 -0.1 0.2" rpy="-0.1 0.9 0.5"/><axis xyz="0 -1 0"/></joint>
+  <link name="three"/>
+</robot>"""
+
+
+def by_pinocchio(robot: Robot, q: np.ndarray, dq: np.ndarray, ddq: np.ndarray) -> np.ndarray:
+    """The regressor of the standard parameters, sample by sample."""
+    pinocchio = pytest.importorskip("pinocchio")
+    assert robot.body
+    model = robot.body.model
+    data = model.createData()
+    joints, samples = q.shape
+    W = np.empty((samples, joints, 10 * joints))
+    order = (10 * np.arange(joints)[:, None] + PINOCCHIO).ravel()
+    for k in range(samples):
+        Y = pinocchio.computeJointTorqueRegressor(model, data, q[:, k], dq[:, k], ddq[:, k])
+        W[k] = Y.reshape(joints, -1)[:, order]
+    return W
+
+
+@pytest.mark.parametrize("name", ["ur10", "panda", "xarm7", "so101", "oblique slide"])
+def test_the_regressor_is_that_of_pinocchio(name: str, tmp_path: Path, request: Any) -> None:
+    if name == "oblique slide":
+        path = tmp_path / "slide.urdf"
+        path.write_text(SLIDE)
+    else:
+        path = request.getfixturevalue("real_logs") / "urdf" / f"{name}.urdf"
+    robot = load(str(path))
+    assert robot.body
+    motion = np.random.default_rng(5).uniform(-3.0, 3.0, (3, len(robot.joints), 50))
+    expected = by_pinocchio(robot, *motion)
+    found = robot.body.columns(*motion)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("name", ["scara2", "planar2-gravity", "emps"])
+def test_a_robot_without_a_urdf_has_the_torques_of_its_chain(name: str) -> None:
+    """The links of the chain, with the friction of the robot's own terms."""
+    robot = load(name)
+    chain = mechanism(robot)
+    motion = np.random.default_rng(6).uniform(-3.0, 3.0, (3, len(robot.joints), 50))
+    rigid = newton_euler.regressor(chain.axes, chain.gravity, *motion) @ chain.links.ravel()
+    own = [isinstance(p.term, AxisTerm) for p in robot.parameters]
+    W = robot.regressor(*motion)
+    expected = robot.torques(W, robot.apriori)
+    found = rigid.T + robot.torques(W, np.where(own, robot.apriori, 0.0))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-13 * np.abs(expected).max())

@@ -1,4 +1,4 @@
-"""The rigid-body part of the regressor of a robot with a URDF, by Pinocchio (the extra `urdf`).
+"""The rigid bodies of a robot with a URDF, which Pinocchio reads (the extra `urdf`).
 
 Each link has ten standard parameters, in the order of SYMBOLS: moments and products of inertia in
 the frame of the link [kg m2], first moments [kg m], mass [kg].
@@ -7,13 +7,14 @@ the frame of the link [kg m2], first moments [kg m], mass [kg].
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from math import inf
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
+from scarid_cli.algorithms.robots import newton_euler
 from scarid_cli.algorithms.robots.axes import Chain, named, serial
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.tree import ENDLESS, link, read
@@ -106,7 +107,7 @@ class Body:
             for name, interval, velocity, torque in limits
         ]
 
-    @property
+    @cached_property
     def axes(self) -> Array:
         """The geometry of the axes (joints, 16), as mechanism.Mechanism describes it."""
         model = self.model
@@ -160,14 +161,4 @@ class Body:
 
         q, dq and ddq are (joints, samples), in rad or m, and per s and s2.
         """
-        import pinocchio
-
-        model = self.model
-        data = model.createData()
-        joints, samples = q.shape
-        W = np.empty((samples, joints, 10 * joints))
-        order = (10 * np.arange(joints)[:, None] + PINOCCHIO).ravel()
-        for k in range(samples):
-            Y = pinocchio.computeJointTorqueRegressor(model, data, q[:, k], dq[:, k], ddq[:, k])
-            W[k] = Y.reshape(joints, -1)[:, order]
-        return W
+        return newton_euler.regressor(self.axes, np.array(self.gravity), q, dq, ddq)
