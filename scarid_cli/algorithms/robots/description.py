@@ -9,7 +9,7 @@ import numpy as np
 
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.logs import LogFormat
-from scarid_cli.algorithms.robots.terms import Coulomb, JointMotion, Stribeck, Term
+from scarid_cli.algorithms.robots.terms import Coulomb, JointMotion, StandardTerm, Stribeck, Term
 from scarid_cli.arrays import Array
 
 if TYPE_CHECKING:
@@ -114,10 +114,15 @@ class Robot:
         """
         joints, samples = q.shape
         W = np.zeros((samples, joints, len(self.parameters)))
-        motion = JointMotion(q, dq, ddq, self.body.columns(q, dq, ddq) if self.body else None)
+        motion = JointMotion(q, dq, ddq)
+        rigid = {}
         for index, parameter in enumerate(self.parameters):
+            if isinstance(parameter.term, StandardTerm):
+                rigid[index] = parameter.term.place
             for joint, values in parameter.term.column(motion).items():
                 W[:, joint, index] = values
+        if self.body:  # all its columns at once: one by one they would take longer than themselves
+            W[:, :, list(rigid)] = self.body.columns(q, dq, ddq).take(list(rigid.values()), axis=2)
         return W
 
     def torques(self, W: Array, theta: Array) -> Array:
