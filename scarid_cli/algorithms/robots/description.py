@@ -119,6 +119,7 @@ class Robot:
         for index, parameter in enumerate(self.parameters):
             if isinstance(parameter.term, StandardTerm):
                 rigid[index] = parameter.term.place
+                continue
             for joint, values in parameter.term.column(motion).items():
                 W[:, joint, index] = values
         if self.body:  # all its columns at once: one by one they would take longer than themselves

@@ -66,9 +66,6 @@ class StandardTerm(Term):
     def joints(self) -> tuple[int, ...]:
         return ()
 
-    def column(self, samples: JointMotion) -> Column:
-        return {}
-
 
 # Terms of one axis
 
