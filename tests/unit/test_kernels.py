@@ -165,6 +165,22 @@ def plant(rng: np.random.Generator, *, resolution: float = 1e-5) -> Arguments:
     ]
 
 
+def chain(rng: np.random.Generator) -> Arguments:
+    """Revolute and prismatic axes of any direction."""
+    joints, samples = 4, 5
+    axes = rng.standard_normal((joints, 16))
+    axes[:, 15] = [0.0, 1.0, 0.0, 1.0]
+    W = np.empty((samples * joints, 10 * joints))
+    motion = rng.standard_normal((3, joints, samples))
+    return [axes, rng.standard_normal(3), *motion, W, np.zeros((joints + 1, 21 + 6 * joints))]
+
+
+def chain_gradient(rng: np.random.Generator) -> Arguments:
+    *motion, W, links = chain(rng)
+    slopes = np.empty((3, 4, 5))
+    return [*motion, rng.standard_normal(W.shape), *slopes, links, np.zeros_like(links)]
+
+
 CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = {
     "p2smd": ("p2smd", "differentiate", p2smd),
     "p2smd, literal law": ("p2smd", "differentiate", p2smd_literal),
@@ -200,6 +216,8 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
         lambda rng: information(rng, (0.9, 1.0, 0.97, 0.99, 0.5), trace=True),
     ),
     "moments": ("moments", "accumulate", moments),
+    "chain": ("chain", "regressor", chain),
+    "chain, gradient": ("chain", "gradient", chain_gradient),
     "plant": ("plant", "run", plant),
     "plant, perfect encoder": ("plant", "run", lambda rng: plant(rng, resolution=0.0)),
 }
