@@ -44,6 +44,10 @@ class Number:
         self._check(value)
         return value
 
+    def write(self, value: float) -> str:
+        """The number as a user gives it."""
+        return self.words[int(value)] if self.words else f"{value:g}"
+
     def _check(self, value: float) -> None:
         found = f"{self.what} {value:g}".strip()
         if not isfinite(value):

@@ -76,3 +76,12 @@ def imperfections_of(document: dict[str, Any], joints: int) -> dict[str, tuple[f
         except ValueError as error:
             raise ValueError(f"[imperfections] {name}: {error}") from None
     return given
+
+
+def written(name: str, values: Sequence[float]) -> str:
+    """An imperfection as --with takes it, with its unit."""
+    kind = IMPERFECTIONS[name]
+    numbers = kind.NUMBERS * len(values) if kind.PER_JOINT else kind.NUMBERS
+    text = ",".join(n.write(x) for n, x in zip(numbers, values, strict=True))
+    unit = kind.NUMBERS[0].unit if len(kind.NUMBERS) == 1 else ""
+    return f"{name}={text} {unit}".strip()

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from scarid_cli.algorithms.imperfections import positions, rows, torques
 from scarid_cli.algorithms.imperfections.declared import PerJoint
 from scarid_cli.algorithms.imperfections.registry import Imperfections
+from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.sensors.clock import Clock
 from scarid_cli.algorithms.sensors.faults import Faults, Outliers
 from scarid_cli.algorithms.sensors.instants import Path
@@ -17,6 +20,7 @@ from scarid_cli.algorithms.sensors.torque import TorqueSensor
 from scarid_cli.arrays import Array
 
 ECCENTRICITY = (positions.EncoderEccentricity, positions.EncoderTurns, positions.EncoderPhase)
+COLOURED = (positions.ColouredPositionNoise, positions.PositionNoiseTime)
 
 
 def recorder(given: Imperfections, encoder: Encoder, control_rate: float, keep: int) -> Recorder:
@@ -58,17 +62,33 @@ def recorder(given: Imperfections, encoder: Encoder, control_rate: float, keep: 
     )
 
 
-def eccentricity(given: Imperfections) -> tuple[Array, Array, Array]:
-    """The amplitude, turns and phase of the encoders (see `Encoder`)."""
-    amplitude, turns, phase = (np.array(given.of(kind)) for kind in ECCENTRICITY)
-    return amplitude, turns, phase
+def in_the_loop(
+    given: Imperfections, joints: tuple[Joint, ...], control_rate: float
+) -> dict[str, Any]:
+    """The settings of a `ClosedLoop` for what its controller measures, and for white noise."""
+    deviations, times = (np.array(given.of(kind)) for kind in COLOURED)
+    noise = given.of(torques.TorqueNoise)
+    if not given.has(torques.TorqueNoise):
+        noise = tuple(joint.torque_noise for joint in joints)
+    return {
+        "encoder_resolution": _resolutions(given, joints),
+        "position_noise": np.array(given.of(positions.PositionNoise)),
+        "torque_noise": np.array(noise),
+        "eccentricity": tuple(np.array(given.of(kind)) for kind in ECCENTRICITY),
+        "coloured": GaussMarkov(deviations, times, 1.0 / control_rate)
+        if deviations.any()
+        else None,
+    }
 
 
-def position_noise(given: Imperfections, control_rate: float) -> GaussMarkov | None:
-    """The coloured noise of the positions, if there is any."""
-    deviations = np.array(given.of(positions.ColouredPositionNoise))
-    times = np.array(given.of(positions.PositionNoiseTime))
-    return GaussMarkov(deviations, times, 1.0 / control_rate) if deviations.any() else None
+def _resolutions(given: Imperfections, joints: tuple[Joint, ...]) -> Array:
+    """The resolution of each encoder [rad or m]; 0 for a perfect one."""
+    own = np.array([joint.encoder_resolution for joint in joints])
+    if not given.has(positions.EncoderBits):
+        return own
+    bits = np.array(given.of(positions.EncoderBits))
+    turning = np.array([joint.type == "revolute" for joint in joints])
+    return np.where(turning, np.where(bits > 0.0, 2.0 * np.pi / 2.0**bits, 0.0), own)
 
 
 def jitters(given: Imperfections) -> bool:

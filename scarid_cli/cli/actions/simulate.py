@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from math import pi
 from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.imperfections.positions import EncoderBits, PositionNoise
-from scarid_cli.algorithms.imperfections.registry import Imperfections
-from scarid_cli.algorithms.imperfections.torques import TorqueNoise
 from scarid_cli.algorithms.plants.loop import ClosedLoop
-from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.sensors import building
 from scarid_cli.cli.imperfections import imperfections as chosen
 from scarid_cli.cli.job import Job, per_joint
@@ -53,25 +48,9 @@ def run(
         kd=each(kd, arm.control.kd, "--kd"),
         ki=each(ki, arm.control.ki, "--ki"),
         velocity_cutoff=arm.control.velocity_cutoff,
-        encoder_resolution=_resolutions(given, joints),
-        position_noise=np.array(given.of(PositionNoise)),
-        torque_noise=np.array(
-            given.of(TorqueNoise) if given.has(TorqueNoise) else [j.torque_noise for j in joints]
-        ),
         seed=seed,
         control_rate=control_rate,
         substeps=substeps,
-        eccentricity=building.eccentricity(given),
-        coloured=building.position_noise(given, control_rate),
+        **building.in_the_loop(given, joints, control_rate),
     )
     job.write(stage.simulate(job.recorded(table), loop, log_rate, truth=truth, given=given))
-
-
-def _resolutions(given: Imperfections, joints: tuple[Joint, ...]) -> Any:
-    """The resolution of each encoder [rad or m]; 0 for a perfect one."""
-    own = np.array([joint.encoder_resolution for joint in joints])
-    if not given.has(EncoderBits):
-        return own
-    bits = np.array(given.of(EncoderBits))
-    turning = np.array([joint.type == "revolute" for joint in joints])
-    return np.where(turning, np.where(bits > 0.0, 2.0 * pi / 2.0**bits, 0.0), own)
