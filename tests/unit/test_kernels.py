@@ -153,13 +153,14 @@ def plant(rng: np.random.Generator, *, resolution: float = 1e-5) -> Arguments:
     reference = np.zeros((ticks, 4))
     reference[:, :2] = np.repeat(rng.uniform(-0.3, 0.3, (2, 2)), 1000, axis=0)
     gains = [800.0, 25.0, 100.0, 2.5, 5.0, 0.5, 30.0, 2.0, resolution, resolution, 0.7]
+    eccentricity = [0.0, 1e-3, 1.0, 50.0, 0.0, 0.3]
     return [
         reference,
         1e-6 * rng.standard_normal((ticks, 2)),
         np.empty((ticks, 10)),
         np.concatenate((0.1 * rng.standard_normal(4), np.zeros(6))),
         mechanism(load("scara2")),
-        np.array(gains),
+        np.array(gains + eccentricity),
         0.001,
         4,
     ]

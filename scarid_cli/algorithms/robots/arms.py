@@ -24,6 +24,7 @@ from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
+from scarid_cli.algorithms.imperfections.registry import imperfections_of
 from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.base import with_base_parameters
 from scarid_cli.algorithms.robots.capsules import capsule_of
@@ -47,7 +48,7 @@ TERMS: dict[str, type[AxisTerm]] = {
     if _complete(term)
 }
 DEFAULT_TERMS = ("inertia", "viscous", "coulomb", "offset")
-KEYS = ("title", "urdf", "gravity", "joint", "coupling", "capsule", "log")
+KEYS = ("title", "urdf", "gravity", "joint", "coupling", "capsule", "log", "imperfections")
 
 
 def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
@@ -85,6 +86,7 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
             control=None,
             body=body,
             log=log_of(document, len(found)),
+            imperfections=imperfections_of(document, len(found)),
         )
     )
 

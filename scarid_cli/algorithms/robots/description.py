@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -67,6 +67,7 @@ class Robot:
     control: Control | None
     body: Body | None = None
     log: LogFormat | None = None
+    imperfections: dict[str, tuple[float, ...]] = field(default_factory=dict)  # see simulate
 
     @property
     def names(self) -> list[str]:
