@@ -103,20 +103,20 @@ def regressions() -> dict[str, tuple[ModuleType, KernelRun]]:
 
 
 def chains() -> dict[str, tuple[ModuleType, KernelRun]]:
-    """The regressor of six axes, 500 samples at a time, and its derivatives."""
+    """The regressor of six axes, 20 samples at a time, and its derivatives."""
     axes = np.random.default_rng(0).standard_normal((6, 16))
     axes[:, 15] = 0.0
-    q = np.random.default_rng(1).standard_normal((6, 500))
-    W, links, back = np.ones((3000, 60)), np.empty((7, 57)), np.empty((7, 57))
-    slopes = np.empty((3, 6, 500))
+    q = np.random.default_rng(1).standard_normal((6, 20))
+    W, links, back = np.ones((120, 60)), np.empty((7, 57)), np.empty((7, 57))
+    slopes = np.empty((3, 6, 20))
     arguments = (axes, np.ones(3), q, q, q, W)
 
     def gradient(module: ModuleType, k: int) -> None:
-        for _ in range(k // 500):
+        for _ in range(k // 20):
             module.gradient(*arguments, *slopes, links, back)
 
     def regressor(module: ModuleType, k: int) -> None:
-        for _ in range(k // 500):
+        for _ in range(k // 20):
             module.regressor(*arguments, links)
 
     return {
