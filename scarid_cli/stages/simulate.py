@@ -8,9 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, LoopState
-from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.plants.loop import (
+    ClosedLoop,
+    DivergedError,
+    IndefiniteError,
+    LoopLog,
+    LoopState,
+)
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
+from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, doubles, matrix, motion_fields, number, numbers
@@ -22,12 +28,13 @@ def simulate(table: Table, loop: ClosedLoop, log_rate: float, *, truth: bool) ->
     """The log, at the log rate [Hz], of a robot that follows a trajectory in closed loop.
 
     The robot starts at rest at the first position of the trajectory. The log has measured signals
-    and the reference; `truth` adds the true signals.
+    and the reference; `truth` adds the true signals, with the friction torques and the motion of
+    the motors where imperfections of the robot change them.
     """
     period = table.period
     ratio = _whole(loop.control_rate * period, "the trajectory's rate")
     keep = _whole(loop.control_rate / log_rate, "the log rate")
-    schema = _schema(loop.robot, truth=truth)
+    schema = _schema(loop, truth=truth)
     meta = replace(table.meta, kind="measurement", robot=loop.robot.name, period=1.0 / log_rate)
     return Table(table.name, schema, meta, _rows(table, loop, ratio, keep, schema))
 
@@ -39,13 +46,18 @@ def _whole(ratio: float, what: str) -> int:
     return whole
 
 
-def _schema(robot: Robot, *, truth: bool) -> pa.Schema:
-    torque = [joint.torque_unit for joint in robot.joints]
-    units = [joint.unit for joint in robot.joints]
+def _schema(loop: ClosedLoop, *, truth: bool) -> pa.Schema:
+    torque = [joint.torque_unit for joint in loop.robot.joints]
+    units = [joint.unit for joint in loop.robot.joints]
     fields = [number("t", "s"), *numbers("q{i}", units), *numbers("tau{i}", torque)]
     fields += motion_fields(units, "_ref")
     if truth:
         fields += [*motion_fields(units, "_true"), *numbers("tau{i}_true", torque)]
+        if loop.imperfections.rub:
+            fields += numbers("friction{i}_true", torque)
+        if loop.imperfections.bend:
+            fields += numbers("q{i}_motor_true", units)
+            fields += numbers("dq{i}_motor_true", [f"{unit}/s" for unit in units])
     return pa.schema(fields)
 
 
@@ -58,20 +70,35 @@ def _rows(
         if state is None:
             state = loop.init(reference[0][:, 0])
         try:
-            state, log = loop.step(state, reference[0], reference[1])
+            state, log = loop.step(state, *reference)
         except DivergedError as error:
-            when = start + (tick + error.tick) / loop.control_rate
+            when = start + error.tick / loop.control_rate
             raise BadData(
                 f"the closed loop became unstable at t = {when:.4g} s; lower the gains or raise "
                 "the control rate"
             ) from None
+        except IndefiniteError:
+            raise UsageFault(
+                f"robot {loop.robot.name} cannot be simulated: its inertia matrix is not positive "
+                "definite; give its links and motors inertias (`scarid robot check` shows them)"
+            ) from None
         ticks = np.arange(-tick % keep, log.q.shape[1], keep)
         t = start + (tick + ticks) / loop.control_rate
-        signals = (log.q, log.tau, *reference, log.q_true, log.dq_true, log.ddq_true, log.tau_true)
+        signals = [log.q, log.tau, *reference, *_truth(loop, log)]
         columns = [t, *(row[ticks] for signal in signals for row in signal)]
         arrays = [doubles(column) for column in columns[: len(schema)]]
         yield pa.RecordBatch.from_arrays(arrays, schema=schema)
         tick += log.q.shape[1]
+
+
+def _truth(loop: ClosedLoop, log: LoopLog) -> list[Array]:
+    """The true signals, in the order of the schema."""
+    signals = [log.q_true, log.dq_true, log.ddq_true, log.tau_true]
+    if loop.imperfections.rub:
+        signals.append(log.friction_true)
+    if loop.imperfections.bend:
+        signals += [log.q_motor_true, log.dq_motor_true]
+    return signals
 
 
 def _references(table: Table, joints: int, ratio: int) -> Iterator[tuple[float, Motion]]:

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.cli.job import Job, per_joint
-from scarid_cli.errors import UsageFault
 from scarid_cli.stages import simulate as stage
 
 
@@ -18,6 +18,8 @@ def run(
     *,
     file: str,
     robot: str | None,
+    control: str | None,
+    bandwidth: float | None,
     kp: tuple[float, ...] | None,
     kd: tuple[float, ...] | None,
     ki: tuple[float, ...] | None,
@@ -33,10 +35,6 @@ def run(
     """Write what the simulated sensors measure."""
     table, arm = job.read_for(file, "trajectory", robot)
     joints = arm.joints
-    if arm.control is None:
-        raise UsageFault(
-            f"robot {arm.name} cannot be simulated: its description has no [control]; add one"
-        )
 
     def each(given: tuple[float, ...] | None, own: Any, option: str) -> Any:
         return np.array(per_joint(given, len(joints), option) if given else own, dtype=float)
@@ -49,10 +47,15 @@ def run(
     ]
     loop = ClosedLoop(
         robot=arm,
-        kp=each(kp, arm.control.kp, "--kp"),
-        kd=each(kd, arm.control.kd, "--kd"),
-        ki=each(ki, arm.control.ki, "--ki"),
-        velocity_cutoff=arm.control.velocity_cutoff,
+        law=law(
+            arm,
+            control,
+            bandwidth,
+            **{
+                name: each(given, None, f"--{name}") if given else None
+                for name, given in (("kp", kp), ("kd", kd), ("ki", ki))
+            },
+        ),
         encoder_resolution=np.array(resolutions),
         position_noise=each(position_noise, None, "--position-noise"),
         torque_noise=each(torque_noise, [j.torque_noise for j in joints], "--torque-noise"),
