@@ -2,9 +2,9 @@
 
 The instruments are the regressor along a noise-free simulation of the robot in closed loop with the
 previous estimates, so noise of the measured motion cannot bias the estimates. The log must have the
-reference (q1_ref, ...), and the robot description must have the controller. Joints are weighted by
-their residuals. The Durbin-Wu-Hausman test against weighted least squares is reported. All rows are
-held in memory. No settings.
+reference (q1_ref, ...). The controller is that of the robot description, or else the default one of
+`simulate`. Joints are weighted by their residuals. The Durbin-Wu-Hausman test against weighted
+least squares is reported. All rows are held in memory. No settings.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.estimators import wls
-from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError
+from scarid_cli.algorithms.plants.controllers import law
+from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, IndefiniteError
 from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, joined, runs
@@ -39,11 +40,6 @@ class Estimator(HoldingEstimator):
     ALIGNS: ClassVar[bool] = False
 
     def for_robot(self, robot: Robot) -> Estimator:
-        if robot.control is None:
-            raise UsageFault(
-                f"iv: robot {robot.name} has no controller to simulate it with; add [control] to "
-                "its description"
-            )
         return replace(self, robot=robot)
 
     def step(
@@ -90,31 +86,32 @@ class Estimator(HoldingEstimator):
 
 def _followed(robot: Robot, theta: Array, reference: Array, h: float) -> list[Array]:
     """The closed-loop position, velocity and acceleration of a robot with these parameters."""
-    control = robot.control
-    assert control is not None
     joints = len(robot.joints)
     ratio = max(1, round(h * CONTROL_RATE))
     parameters = zip(robot.parameters, theta.tolist(), strict=True)
     own = replace(robot, parameters=tuple(replace(p, apriori=x) for p, x in parameters))
     loop = ClosedLoop(
         robot=own,
-        kp=np.array(control.kp),
-        kd=np.array(control.kd),
-        ki=np.array(control.ki),
-        velocity_cutoff=control.velocity_cutoff,
+        law=law(robot),
         encoder_resolution=np.zeros(joints),
         position_noise=np.zeros(joints),
         torque_noise=np.zeros(joints),
         seed=0,
         control_rate=ratio / h,
+        apriori=robot,
     )
     q, dq = reference
-    fine, speed, _ = refine(q, dq, np.gradient(dq, h, axis=1), h, ratio)
+    fine = refine(q, dq, np.gradient(dq, h, axis=1), h, ratio)
     try:
-        log = loop.step(loop.init(fine[:, 0]), fine, speed)[1]
+        log = loop.step(loop.init(fine[0][:, 0]), *fine)[1]
     except DivergedError:
         raise UsageFault(
             "iv: the simulated robot diverges with the estimates of least squares; use wls"
+        ) from None
+    except IndefiniteError:
+        raise UsageFault(
+            "iv: the inertia matrix of the estimates of least squares is not positive definite, so "
+            "they cannot be simulated; use wls"
         ) from None
     signals = (log.q_true, log.dq_true, log.ddq_true)
     # The simulation ends one sample early, since nothing follows the last reference.
