@@ -41,6 +41,7 @@ def simulate(
     ratio = _whole(loop.control_rate * table.period, "the trajectory's rate")
     keep = _whole(loop.control_rate / log_rate, "the log rate")
     recorder = building.recorder(given, loop, keep)
+    _ = loop.plant  # refuses what cannot be simulated before anything is written
     schema = _schema(loop, truth=truth, jitter=building.jitters(given))
     meta = replace(table.meta, kind="measurement", robot=loop.robot.name, period=1.0 / log_rate)
     references = _references(table, len(loop.robot.joints), ratio)

@@ -109,6 +109,15 @@ def test_a_mistake_is_reported_in_one_line(given: str, reported: str, simulate: 
     refused(simulate("--with", given), 2, reported)
 
 
+def test_a_robot_that_cannot_have_an_imperfection_is_refused_before_anything_is_written(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    arm, reference = samples / "arm.toml", tmp_path / "arm.csv"
+    assert scarid("trajgen", "-q", "--robot", arm, "--duration", 2, "-o", reference).status == 0
+    result = scarid("simulate", "--robot", arm, "--with", "flexibility=10", reference)
+    refused(result, 2, "flexible joints with couplings cannot be simulated")
+
+
 def test_a_mistake_in_a_description_is_reported_in_one_line(simulate: Run, tmp_path: Path) -> None:
     robot = description(tmp_path, "torque-delay = -1")
     refused(simulate("--robot", robot), 2, "mine.toml: not a robot description: [imperfections] to")
