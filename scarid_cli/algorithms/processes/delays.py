@@ -106,14 +106,16 @@ def delays(method: MeasuredMethod, h: float) -> tuple[float, float]:
     """The delays [s] of velocity and acceleration on the reference motion of the method.
 
     The motion is measured by an encoder of 16 bit: without its noise most of these methods would
-    have no delay. Each delay is that of the least squared error. The delay of the velocity is not
-    allowed to exceed that of the acceleration.
+    have no delay. Each delay is that of the least squared error over the second half of the motion,
+    when a method that adapts has done so. The delay of the velocity is not allowed to exceed that
+    of the acceleration.
     """
     q, v, a = reference(h, method.bounds())
     q = RESOLUTION * np.round(q / RESOLUTION)
     _, (got_v, got_a) = method.step(method.init(float(q[0]), h), q)
-    late = lateness(got_a, a, h)
-    return min(lateness(got_v, v, h), late), late
+    half = slice(len(q) // 2, None)
+    late = lateness(got_a[half], a[half], h)
+    return min(lateness(got_v[half], v[half], h), late), late
 
 
 def reference(h: float, bounds: Bounds = ()) -> tuple[Array, Array, Array]:
