@@ -6,7 +6,7 @@ states after each update, brought back to the present sample.
 Delay: that of the sampling if eta2 exceeds the largest jerk of the motion, otherwise tens of
 milliseconds.
 Matched by measured delays: position, velocity and torque are delayed by as much as the method
-delays moves of 1 rad in 0.8 s or more, within its bounds, behind an encoder of 16 bit.
+delays moves of 1 rad in 0.8 s or more, within its bounds, behind an encoder of 18 bit.
 Rule: for the largest jerk L [1/s3], take eta0 = 2 L^(1/3), eta1 = 1.5 L^(1/2) and eta2 = 1.1 L.
 eta0 = 10: first gain, as in Table 1 of the paper.
 eta1 = 12, eta2 = 70: second and third gain, by the rule for L = 64 rad/s3, which moves of 1 rad in

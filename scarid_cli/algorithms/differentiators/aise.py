@@ -9,7 +9,7 @@ The bandwidth is not found online: the weight of the squared acceleration in the
 With an order of 8 or more it diverges on many motions.
 Delay: some milliseconds, once the coefficients have adapted (a few moves).
 Matched by measured delays: position, velocity and torque are delayed by as much as the method
-delays quintic moves of 1 rad in 0.8 to 2 s behind an encoder of 16 bit.
+delays quintic moves of 1 rad in 0.8 to 2 s behind an encoder of 18 bit.
 Rule: choose the bandwidth by the noise, as for high-gain.
 bandwidth = 90 [rad/s]: the weight of the squared acceleration is bandwidth^-4.
 order = 1: number of past accelerations, and of past errors besides the present one.

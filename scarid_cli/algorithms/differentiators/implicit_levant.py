@@ -6,7 +6,7 @@ treats the states as backward differences, which they are (compare Seeber, arXiv
 Without noise the error converges to that of the sampling if the bound holds.
 Delay: with noise, tens of milliseconds at the default.
 Matched by measured delays: position, velocity and torque are delayed by as much as the method
-delays moves of 1 rad in 0.8 s or more, within its bounds, behind an encoder of 16 bit.
+delays moves of 1 rad in 0.8 s or more, within its bounds, behind an encoder of 18 bit.
 Rule: the bound is the largest derivative of order + 1 of the motion (see levant).
 bound = 400 [1/s^(order+1)]: the largest snap for order 3.
 order = 3: the order of differentiation, 2 to 5.

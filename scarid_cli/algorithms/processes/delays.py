@@ -20,7 +20,7 @@ Bounds = tuple[tuple[int, float], ...]
 
 DURATIONS = (0.8, 1.2, 1.6, 2.0)  # of the moves of the reference motion [s]
 SLOWEST = 10.0  # times these durations, however low a bound is
-RESOLUTION = 2.0 * np.pi / 2**16  # of the encoder that sees the reference motion [rad]
+RESOLUTION = 2.0 * np.pi / 2**18  # of the encoder that sees the reference motion [rad]
 
 
 class MeasuredMethod(Causal, Method):
@@ -105,7 +105,7 @@ class AccelerationDelay(Causal):
 def delays(method: MeasuredMethod, h: float) -> tuple[float, float]:
     """The delays [s] of velocity and acceleration on the reference motion of the method.
 
-    The motion is measured by an encoder of 16 bit: without its noise most of these methods would
+    The motion is measured by an encoder of 18 bit: without its noise most of these methods would
     have no delay. Each delay is that of the least squared error over the second half of the motion,
     when a method that adapts has done so. The delay of the velocity is not allowed to exceed that
     of the acceleration.
