@@ -149,7 +149,7 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     names = DIFFERENTIATORS.names
-    parser.add_argument("methods", nargs="*", help="methods of scarid (default: all of them)")
+    parser.add_argument("methods", nargs="*", help="of scarid, for a table alone (default: all)")
     parser.add_argument("--no-peers", action="store_true", help="leave out other packages")
     parser.add_argument(
         "--output", type=Path, default=Path("build/differentiators"), help="folder of the figures"
@@ -163,6 +163,8 @@ def main() -> None:
         scores += ours(known, bits, options.methods or names)
         scores += [] if options.no_peers else others(known, bits)
     summary.tables(scores)
+    if options.methods:
+        return
     summary.claims(scores)
     summary.draw(scores, options.output)
     print(f"\nFigures: {options.output}")

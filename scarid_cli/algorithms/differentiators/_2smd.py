@@ -7,6 +7,8 @@ Delay: that of the sampling if eta2 exceeds the largest jerk of the motion, othe
 milliseconds.
 Matched by measured delays: position, velocity and torque are delayed by as much as the method
 delays moves of 1 rad in 0.8 s or more, within its bounds, behind an encoder of 18 bit.
+Within the bound of its gains the match is right to 3 degrees; motions beyond it are not followed:
+99 degrees at 1 Hz and 0.5 rad with the default.
 Rule: for the largest jerk L [1/s3], take eta0 = 2 L^(1/3), eta1 = 1.5 L^(1/2) and eta2 = 1.1 L.
 eta0 = 10: first gain, as in Table 1 of the paper.
 eta1 = 12, eta2 = 70: second and third gain, by the rule for L = 64 rad/s3, which moves of 1 rad in

@@ -5,12 +5,14 @@ acceleration. A Kalman filter, whose two variances follow from the errors of its
 the velocity. The acceleration is a combination of past accelerations and past errors, whose
 coefficients recursive least squares adapts so that the errors would have been least (retrospective
 cost). See docs/theory.md, section "Adaptive input and state estimation".
-The bandwidth is not found online: the weight of the squared acceleration in the cost sets it.
-With an order of 8 or more it diverges on many motions.
-Delay: some milliseconds, once the coefficients have adapted (a few moves).
+It finds its bandwidth only in part: the weight of the squared acceleration in the cost limits it.
+It is 3 to 4.5 times less accurate than kalman, and high orders diverge: 3 of 12 test records with an
+order of 8, 11 of 12 with 25.
+Delay: 10 to 20 ms at 100 and 200 Hz, once the coefficients have adapted (a few moves); 94 ms at
+1 kHz.
 Matched by measured delays: position, velocity and torque are delayed by as much as the method
 delays quintic moves of 1 rad in 0.8 to 2 s behind an encoder of 18 bit.
-Rule: choose the bandwidth by the noise, as for high-gain.
+Rule: choose the bandwidth by the noise, and double it at 1 kHz.
 bandwidth = 90 [rad/s]: the weight of the squared acceleration is bandwidth^-4.
 order = 1: number of past accelerations, and of past errors besides the present one.
 window = 0.1 [s]: time over which past accelerations are corrected in retrospect.

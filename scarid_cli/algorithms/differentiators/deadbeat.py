@@ -1,6 +1,6 @@
 """Kernel-based deadbeat differentiator of Volterra operators.
 
-Causal. Li, Pin, Fedele and Parisini, Int. J. Control 91 (2018) 2090, in discrete time: one filter
+Causal. Li, Pin, Fedele and Parisini, Int. J. Control (2018), in discrete time: one filter
 of one pole for each state, whose input is weighted by a function that rises from the start. From
 the outputs of the filters follow the derivatives that explain them without any initial condition:
 they are exact for polynomials of lower degree than the number of states, from the first estimate

@@ -6,6 +6,8 @@ to that of the sampling if the bounds hold; the acceleration chatters.
 Delay: with noise, tens of milliseconds.
 Matched by measured delays: position, velocity and torque are delayed by as much as the method
 delays moves of 1 rad in 0.8 s or more, within its bounds, behind an encoder of 18 bit.
+Within the bounds the match is right to 4 degrees; motions beyond them are not followed: 115 degrees
+at 1 Hz and 1 rad with the default.
 Rule: the bounds are those of the motion. A quintic move of d in the time T has an acceleration of
 5.8 d / T^2 and a jerk of 60 d / T^3.
 acceleration = 20 [1/s2], jerk = 150 [1/s3]: the largest of the motion, from which Levant's gains
