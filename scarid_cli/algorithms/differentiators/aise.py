@@ -6,8 +6,8 @@ the velocity. The acceleration is a combination of past accelerations and past e
 coefficients recursive least squares adapts so that the errors would have been least (retrospective
 cost). See docs/theory.md, section "Adaptive input and state estimation".
 It finds its bandwidth only in part: the weight of the squared acceleration in the cost limits it.
-It is 3 to 4.5 times less accurate than kalman, and high orders diverge: 3 of 12 test records with an
-order of 8, 11 of 12 with 25.
+It is 3 to 4.5 times less accurate than kalman, and high orders diverge: 3 of 12 test records with
+an order of 8, 11 of 12 with 25.
 Delay: 10 to 20 ms at 100 and 200 Hz, once the coefficients have adapted (a few moves); 94 ms at
 1 kHz.
 Matched by measured delays: position, velocity and torque are delayed by as much as the method

@@ -7,7 +7,7 @@ they are exact for polynomials of lower degree than the number of states, from t
 on. It does not choose its bandwidth: after the start it is a linear observer with constant poles.
 See docs/theory.md, section "The deadbeat differentiator".
 Delay: none at constant jerk (4 states). On quintic moves of 0.8 to 2 s the acceleration lags by
-15 ms at the default.
+20 ms at the default.
 Matched (exact): position and torque pass the low-pass between position and highest derivative of
 the observer after the start.
 Rule: choose the bandwidth by the delay or the noise, as for high-gain.
