@@ -73,6 +73,21 @@ def tracking(rng: np.random.Generator) -> Arguments:
     return [q, np.empty_like(q), np.empty_like(q), rng.random(2), np.array([30.0, 0.02]), 0.005]
 
 
+def aise(rng: np.random.Generator, order: int = 2) -> Arguments:
+    q, size, window = motion(rng), 2 * order + 1, 7
+    return [
+        *(q, np.empty_like(q), np.empty_like(q)),
+        rng.random(8),
+        rng.standard_normal(size),
+        1e6 * np.eye(size),
+        1e-3 * rng.standard_normal((2, order + window + 1)),
+        rng.random((window + 1, 2)),
+        np.empty((3, size)),
+        np.array([1e-10, 1e-4, 0.5, 1e-7]),
+        0.005,
+    ]
+
+
 def kalman(rng: np.random.Generator) -> Arguments:
     """A glitch now and then, and a step that stays."""
     q = motion(rng)
@@ -216,6 +231,8 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
         lambda rng: implicit_levant(rng, 5),
     ),
     "tracking": ("tracking", "follow", tracking),
+    "aise": ("aise", "differentiate", aise),
+    "aise, order 1": ("aise", "differentiate", lambda rng: aise(rng, 1)),
     "kalman": ("kalman", "filtered", kalman),
     "kalman, records": ("kalman", "recorded", kalman_records),
     "kalman, lagged": ("kalman", "lagged", lagged),
