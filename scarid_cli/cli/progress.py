@@ -15,7 +15,7 @@ SHOWN_AFTER = 1.0  # seconds before anything is shown
 
 
 @contextlib.contextmanager
-def steps(*, quiet: bool) -> Iterator[Callable[[], None]]:
+def steps(*, quiet: bool, of: str = "settings tried") -> Iterator[Callable[[], None]]:
     """A function to call at each step of a search, counted where a person waits."""
     if quiet or not sys.stderr.isatty():
         yield lambda: None
@@ -23,7 +23,7 @@ def steps(*, quiet: bool) -> Iterator[Callable[[], None]]:
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    columns = (SpinnerColumn(), TextColumn("{task.completed} settings tried"), TimeElapsedColumn())
+    columns = (SpinnerColumn(), TextColumn(f"{{task.completed}} {of}"), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("", total=None)
         yield lambda: progress.advance(task)

@@ -2,8 +2,8 @@
 
 All joints move together, without coming to rest on the way. The limits hold at every instant.
 
-interval = 0 [s]: time from one knot to the next. 0 takes the time in which the joints can cross their
-position limits, sqrt(half the interval of q / limit of ddq), but at most 200 knots.
+interval = 0 [s]: time from one knot to the next. 0 takes the time in which the joints can cross
+their position limits, sqrt(half the interval of q / limit of ddq), but at most 200 intervals.
 """
 
 from __future__ import annotations
