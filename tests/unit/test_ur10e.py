@@ -66,7 +66,7 @@ def test_tool_and_centres_of_mass_are_where_the_published_parameters_put_them(
 
 
 def test_it_has_58_base_parameters(samples: Path) -> None:
-    """36 of its links (two of which include motor inertias), four motor inertias, 18 of friction."""
+    """36 of its links (two with the inertia of a motor), four motor inertias, 18 of friction."""
     robot = load(str(samples / "robots" / "ur10e.toml"))
     bodies = [p for p in robot.parameters if isinstance(p.term, StandardTerm)]
     axes = [p for p in robot.parameters if isinstance(p.term, AxisTerm)]

@@ -15,6 +15,8 @@ from scarid_cli.arrays import Array
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.rigid import Body
 
+BLOCK = 512  # samples whose columns are written together, so that they stay in the cache
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -114,7 +116,13 @@ class Robot:
         """
         joints, samples = q.shape
         W = np.zeros((samples, joints, len(self.parameters)))
-        motion = JointMotion(q, dq, ddq)
+        for start in range(0, samples, BLOCK):
+            part = slice(start, start + BLOCK)
+            self._fill(W[part], JointMotion(q[:, part], dq[:, part], ddq[:, part]))
+        return W
+
+    def _fill(self, W: Array, motion: JointMotion) -> None:
+        """Write the columns of all parameters to W, which is zero."""
         rigid = {}
         for index, parameter in enumerate(self.parameters):
             if isinstance(parameter.term, StandardTerm):
@@ -122,9 +130,9 @@ class Robot:
                 continue
             for joint, values in parameter.term.column(motion).items():
                 W[:, joint, index] = values
-        if self.body:  # all its columns at once: one by one they would take longer than themselves
-            W[:, :, list(rigid)] = self.body.columns(q, dq, ddq).take(list(rigid.values()), axis=2)
-        return W
+        if self.body:
+            columns = self.body.columns(motion.q, motion.dq, motion.ddq)
+            W[:, :, list(rigid)] = columns.take(list(rigid.values()), axis=2)
 
     def torques(self, W: Array, theta: Array) -> Array:
         """The torques W theta (joints, samples) [N m or N].
