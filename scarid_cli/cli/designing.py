@@ -71,11 +71,14 @@ def optimised(
     """The best motion of several starts."""
     if not hasattr(excitation, "basis"):
         raise UsageFault("--optimise: the excitation must be spline or fourier")
+    from scarid_cli.algorithms.design.criteria import goal
     from scarid_cli.algorithms.design.model import Model
     from scarid_cli.algorithms.design.problem import Wanted, margins
     from scarid_cli.algorithms.design.search import search
 
     some = _indices(robot, given["wanted"])
+    criterion = given["criterion"] or ("d" if some else BALANCED)
+    goal(criterion, np.ones(len(robot.parameters)), some)  # refused before other processes start
     laws = stage.laws(robot, home, _box(given["workspace"]))
     wanted = Wanted(
         Model.of(robot),
@@ -83,7 +86,7 @@ def optimised(
         home,
         limits,
         laws,
-        given["criterion"] or ("d" if some else BALANCED),
+        criterion,
         np.ones(len(home)) if wish.noise is None else wish.noise,
         given["rate"] * given["repeat"],
         wish.known,

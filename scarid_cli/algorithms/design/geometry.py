@@ -13,7 +13,7 @@ from scarid_cli.algorithms.robots.pose import Points, Pose
 from scarid_cli.algorithms.robots.rigid import Body
 from scarid_cli.arrays import Array
 
-LENGTH = 0.5  # m: violations are relative to it
+LENGTH = 0.2  # m: violations are relative to it
 WALLS = ("x", "y", "z")
 
 

@@ -66,8 +66,9 @@ def standard_errors(information: Array) -> Array:
     weak = values < UNDETERMINED * values[-1]
     known = (vectors[:, weak] ** 2).sum(axis=1) < SHARE
     variances = (vectors[:, ~weak] ** 2 / values[~weak]).sum(axis=1)
-    with np.errstate(divide="ignore"):
-        errors: Array = np.where(known & (lengths > 0.0), np.sqrt(variances) / lengths, np.inf)
+    known &= lengths > 0.0
+    errors = np.full(len(information), np.inf)
+    errors[known] = np.sqrt(variances[known]) / lengths[known]
     return errors
 
 

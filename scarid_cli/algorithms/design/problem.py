@@ -24,10 +24,11 @@ PENALTIES = (3.0, 30.0, 300.0, 1000.0)
 ITERATIONS = 100  # with each penalty
 REFINED = 200  # iterations, twice, with the last penalty, for the best of the starts
 INFORMED = 5  # samples of the information in the time scale of a basis
-CHECKED = 50  # and of the limits
+CHECKED = 50  # of the limits of positions, velocities and accelerations
+WATCHED = 10  # and of the laws, which change as slowly as positions do
 SHRINK = 1e-3  # of a curve towards home, at first
 TINY = 1e-12  # of a column that is zero all over the limits
-BATCH = 4096
+BATCH = 1024
 
 
 @dataclass(frozen=True)
@@ -62,12 +63,12 @@ class Problem:
 
     @classmethod
     def of(cls, wanted: Wanted) -> Problem:
-        informed, checked = (
+        informed, checked, watched = (
             Samples.of(wanted.basis, wanted.home, _grid(wanted.basis, per))
-            for per in (INFORMED, CHECKED)
+            for per in (INFORMED, CHECKED, WATCHED)
         )
         constraints: list[Constraint] = [Kinematic(checked, wanted.limits)]
-        constraints += [Along.of(checked, law) for law in wanted.laws]
+        constraints += [Along.of(watched, law) for law in wanted.laws]
         experiment = _experiment(wanted, informed.values.shape[2])
         return cls(wanted, experiment, informed, tuple(constraints))
 
