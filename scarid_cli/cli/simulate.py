@@ -86,7 +86,7 @@ def command() -> None:
 
     where dq is the differentiated and smoothed reading of the encoder, and gravity, M, h (gravity,
     centrifugal and Coriolis torques) and the friction at dq_ref are those of the description. Gains
-    that the description does not give are found from --bandwidth: two equal poles for the largest
+    that the description does not give are found from --bandwidth: two equal poles for the typical
     inertia of each joint. Coulomb friction holds joints at rest. The motion is integrated by the
     Runge-Kutta method of fourth order, whose steps end where a joint stops or begins to slide.
     """

@@ -19,7 +19,7 @@ DESCRIBED_KIND = "pid"  # of a [control] that names none (paper eq. 29)
 BANDWIDTH = 5.0  # Hz
 DAMPING = 1.0
 INTEGRAL = 0.1  # rate of the integral action of `pid`, per natural frequency
-CUTOFF = 10.0  # of the velocity estimate, per bandwidth
+CUTOFF = 4.0  # of the velocity estimate, per bandwidth
 POSTURES = 200
 
 
@@ -67,12 +67,12 @@ def law(
 
 
 def gains_of(robot: Robot, kind: str, bandwidth: float) -> dict[str, Any]:
-    """Gains of two equal poles at the bandwidth [Hz], for the largest inertia of each joint."""
+    """Gains of two equal poles at the bandwidth [Hz], for the typical inertia of each joint."""
     if not bandwidth > 0.0:
         raise UsageFault("--bandwidth: must be positive")
     omega = 2.0 * np.pi * bandwidth
     ones = np.ones(len(robot.joints))
-    size = ones if kind == "computed-torque" else largest_inertia(model(robot), robot)
+    size = ones if kind == "computed-torque" else typical_inertia(model(robot), robot)
     kp = omega * omega * size
     ki = INTEGRAL * omega * kp if kind == "pid" else 0.0 * ones
     return {
@@ -83,11 +83,15 @@ def gains_of(robot: Robot, kind: str, bandwidth: float) -> dict[str, Any]:
     }
 
 
-def largest_inertia(arm: Model, robot: Robot) -> Array:
-    """The largest inertia of each joint (joints) over random postures within its limits."""
+def typical_inertia(arm: Model, robot: Robot) -> Array:
+    """The median inertia of each joint (joints) over random postures within its limits.
+
+    It is the one that a torque finds while the other joints are free, 1 / (M^-1)_ii. Gains for the
+    diagonal of M let the joints of light wrists oscillate.
+    """
     limits = Limits.of(robot.joints)
     lower = np.where(np.isfinite(limits.lower), limits.lower, -np.pi)
     upper = np.where(np.isfinite(limits.upper), limits.upper, np.pi)
     postures = np.random.default_rng(0).uniform(lower, upper, (POSTURES, len(lower)))
-    sizes = [np.diag(inertia(arm, q)) for q in postures]
-    return np.asarray(np.max(sizes, axis=0), dtype=np.float64)
+    sizes = [1.0 / np.diag(np.linalg.inv(inertia(arm, q))) for q in postures]
+    return np.asarray(np.median(sizes, axis=0), dtype=np.float64)
