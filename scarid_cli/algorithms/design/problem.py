@@ -24,7 +24,7 @@ PENALTIES = (3.0, 30.0, 300.0, 1000.0)
 ITERATIONS = 100  # with each penalty
 REFINED = 200  # iterations, twice, with the last penalty, for the best of the starts
 INFORMED = 5  # samples of the information in the time scale of a basis
-CHECKED = 50  # of the limits of positions, velocities and accelerations
+CHECKED = 25  # of the limits of positions, velocities and accelerations
 WATCHED = 10  # and of the laws, which change as slowly as positions do
 SHRINK = 1e-3  # of a curve towards home, at first
 TINY = 1e-12  # of a column that is zero all over the limits
@@ -124,10 +124,11 @@ def _grid(basis: Basis, per_scale: int) -> Array:
 
 def kept(curve: Curve, limits: Limits, laws: tuple[Law, ...]) -> Curve:
     """The curve, shrunk towards home by as little as makes it keep its limits at every instant."""
-    curve = curve.scaled(min(1.0, float(room(curve, limits).min())))
+    curve = curve.scaled(np.minimum(1.0, room(curve, limits)))
     smaller = SHRINK
     while smaller < 1.0 and max((m.max() for m in margins(curve, laws)), default=0.0) > 0.0:
-        curve, smaller = curve.scaled(1.0 - smaller), 2.0 * smaller
+        curve = curve.scaled(np.full(len(limits.dq), 1.0 - smaller))
+        smaller *= 2.0
     return curve
 
 
