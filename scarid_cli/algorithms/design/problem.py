@@ -7,13 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.design.constraints import Along, Constraint, Kinematic, Law
-from scarid_cli.algorithms.design.criteria import goal
-from scarid_cli.algorithms.design.information import (
-    NEGLIGIBLE,
-    Experiment,
-    Samples,
-    typical_lengths,
-)
+from scarid_cli.algorithms.design.criteria import NEGLIGIBLE, TINY, goal
+from scarid_cli.algorithms.design.information import Experiment, Samples, typical_moments
 from scarid_cli.algorithms.design.lagrangian import minimised
 from scarid_cli.algorithms.design.model import Model
 from scarid_cli.algorithms.trajectories.curve import Basis, Curve, instants, random_curve, room
@@ -27,7 +22,6 @@ INFORMED = 5  # samples of the information in the time scale of a basis
 CHECKED = 25  # of the limits of positions, velocities and accelerations
 WATCHED = 10  # and of the laws, which change as slowly as positions do
 SHRINK = 1e-3  # of a curve towards home, at first
-TINY = 1e-12  # of a column that is zero all over the limits
 BATCH = 1024
 
 
@@ -104,16 +98,17 @@ class Problem:
 def _experiment(wanted: Wanted, count: int) -> Experiment:
     """The experiment that so many samples of the motion stand for."""
     model = wanted.model
-    lengths = typical_lengths(model, wanted.limits)
+    typical = typical_moments(model, wanted.limits)
+    squares = np.diag(typical)
     weights = wanted.rate * wanted.basis.duration / (count * wanted.noise**2)
     usual = float(weights.mean())
     floor = NEGLIGIBLE**2 * count
     return Experiment(
         model,
-        goal(wanted.criterion, lengths, wanted.some),
+        goal(wanted.criterion, typical, wanted.some),
         weights,
-        wanted.known + floor * usual * np.diag(np.maximum(lengths, TINY) ** 2),
-        wanted.known / usual + floor * float((lengths**2).max()) * np.eye(len(lengths)),
+        wanted.known + floor * usual * np.diag(np.maximum(squares, TINY * squares.max())),
+        wanted.known / usual + floor * float(squares.max()) * np.eye(len(squares)),
     )
 
 
