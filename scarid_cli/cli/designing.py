@@ -78,7 +78,7 @@ def optimised(
 
     some = _indices(robot, given["wanted"])
     criterion = given["criterion"] or ("d" if some else BALANCED)
-    goal(criterion, np.ones(len(robot.parameters)), some)  # refused before other processes start
+    goal(criterion, np.eye(len(robot.parameters)), some)  # refused before other processes start
     laws = stage.laws(robot, home, _box(given["workspace"]))
     wanted = Wanted(
         Model.of(robot),

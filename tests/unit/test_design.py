@@ -116,11 +116,11 @@ def matrices(count: int = 6) -> Array:
 SCALES = np.array([1.0, 2.0, 0.5, 1.5, 3.0, 0.7])
 CRITERIA: dict[str, Callable[[Array], tuple[float, Array]]] = {
     "d": criteria.determinant,
-    "c": criteria.condition,
-    "scaled-c": criteria.scaled_condition,
-    "a": lambda M: criteria.goal("a", SCALES).of(M, M)[::2],  # type: ignore[return-value]
-    "d of some": lambda M: criteria.goal("d", SCALES, (1, 4)).of(M, M)[::2],  # type: ignore[return-value]
-    "a of some": lambda M: criteria.goal("a", SCALES, (1, 4)).of(M, M)[::2],  # type: ignore[return-value]
+    "c": lambda M: criteria.condition(M, np.eye(6)),
+    "scaled-c": lambda M: criteria.scaled_condition(M, np.eye(6)),
+    "a": lambda M: criteria.goal("a", np.diag(SCALES**2)).of(M, M)[::2],  # type: ignore[return-value]
+    "d of some": lambda M: criteria.goal("d", np.diag(SCALES**2), (1, 4)).of(M, M)[::2],  # type: ignore[return-value]
+    "a of some": lambda M: criteria.goal("a", np.diag(SCALES**2), (1, 4)).of(M, M)[::2],  # type: ignore[return-value]
 }
 
 
@@ -150,6 +150,14 @@ def test_criteria_are_what_textbooks_say() -> None:
     for name, matrix in (("c", M), ("scaled-c", M / np.outer(lengths, lengths))):
         exact = 0.5 * np.log(np.linalg.cond(matrix))
         assert exact <= values[name] <= exact + np.log(6.0) / criteria.POWER
+
+
+def test_what_no_motion_excites_has_no_say_in_the_condition_number() -> None:
+    typical = np.diag([1.0, 4.0, 1e-12])
+    M = np.diag([9.0, 1.0, 1e-10])
+    value, slope = criteria.goal("c", typical).of(M, M)[:2]
+    assert value == pytest.approx(np.log(3.0), rel=1e-6)
+    assert slope[2, 2] == pytest.approx(0.0, abs=1e-12)
 
 
 def boxed(robot: str) -> tuple[Samples, Limits]:

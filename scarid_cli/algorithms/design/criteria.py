@@ -17,17 +17,22 @@ from scarid_cli.errors import UsageFault
 
 # The mean over so high a power of the eigenvalues stands for the largest, and is smooth.
 POWER = 16
+# Directions whose torques are so small beside the largest, wherever the robot is within its limits,
+# have no say in the condition number: no motion can tell what they are.
+NEGLIGIBLE = 1e-3
+TINY = 1e-24  # of the largest square of a length: a column that is zero
 
 Valued = tuple[float, Array]
 
 
 @dataclass(frozen=True)
 class Goal:
-    """A criterion of both matrices: `of(moments, information)` gives its value and gradients."""
+    """A weighted sum of criteria: (weight, whether it is one of the information, criterion)."""
 
     parts: tuple[tuple[float, bool, Callable[[Array], Valued]], ...]
 
     def of(self, moments: Array, information: Array) -> tuple[float, Array, Array]:
+        """The value, and its gradients by both matrices."""
         value, by_moments, by_information = 0.0, np.zeros_like(moments), np.zeros_like(moments)
         for weight, weighted, criterion in self.parts:
             own, slope = criterion(information if weighted else moments)
@@ -42,12 +47,14 @@ class Goal:
 NAMES = ("balanced", "d", "a", "c", "scaled-c")
 
 
-def goal(name: str, scales: Array, wanted: Sequence[int] = ()) -> Goal:
+def goal(name: str, typical: Array, wanted: Sequence[int] = ()) -> Goal:
     """The criterion of this name.
 
-    `scales` (parameters) are typical lengths of columns of W. With `wanted` parameters (indices),
-    the others are nuisance parameters, and the criterion is that of the covariance of the former.
+    `typical` (parameters, parameters) are mean moments of states within the limits. With `wanted`
+    parameters (indices), the others are nuisance parameters, and the criterion is that of the
+    covariance of the former.
     """
+    scales = np.sqrt(np.diag(typical))
     if wanted:
         chosen = {"d": _d_of, "a": _a_of}
         if name not in chosen:
@@ -55,14 +62,17 @@ def goal(name: str, scales: Array, wanted: Sequence[int] = ()) -> Goal:
         some = np.array(wanted)
         return Goal(((1.0, True, lambda M: chosen[name](M, some, scales)),))
     every = np.arange(len(scales))
-    d = (1.0, True, determinant)
-    c = (1.0, False, condition)
+    raw, scaled = excitable(typical), excitable(_scaled(typical))
+
+    def c(M: Array) -> Valued:
+        return condition(M, raw)
+
     return {
-        "balanced": Goal(((0.5, *d[1:]), (0.5, *c[1:]))),
-        "d": Goal((d,)),
+        "balanced": Goal(((0.5, True, determinant), (0.5, False, c))),
+        "d": Goal(((1.0, True, determinant),)),
         "a": Goal(((1.0, True, lambda M: _a_of(M, every, scales)),)),
-        "c": Goal((c,)),
-        "scaled-c": Goal(((1.0, False, scaled_condition),)),
+        "c": Goal(((1.0, False, c),)),
+        "scaled-c": Goal(((1.0, False, lambda M: scaled_condition(M, scaled)),)),
     }[name]
 
 
@@ -72,9 +82,26 @@ def determinant(M: Array) -> Valued:
     return -0.5 * logarithm / len(M), -0.5 * np.linalg.inv(M) / len(M)
 
 
-def condition(M: Array) -> Valued:
-    """C: the logarithm of the condition number of W, where M = W'W; smooth (POWER)."""
-    values, vectors = np.linalg.eigh(M)
+def excitable(typical: Array) -> Array:
+    """The directions (parameters, directions) that motions within the limits can excite."""
+    values, vectors = np.linalg.eigh(typical)
+    found: Array = vectors[:, values > NEGLIGIBLE**2 * values[-1]]
+    return found
+
+
+def _scaled(M: Array) -> Array:
+    lengths = np.sqrt(np.maximum(np.diag(M), TINY * np.diag(M).max()))
+    scaled: Array = M / np.outer(lengths, lengths)
+    return scaled
+
+
+def condition(M: Array, within: Array) -> Valued:
+    """C: the logarithm of the condition number of W, where M = W'W; smooth (POWER).
+
+    It is that of the directions `within` (parameters, directions).
+    """
+    values, vectors = np.linalg.eigh(within.T @ M @ within)
+    vectors = within @ vectors
     largest, smallest = values[-1], values[0]
     high, low = (values / largest) ** POWER, (smallest / values) ** POWER
     value = 0.5 * np.log(largest / smallest) + 0.5 * np.log(high.sum() * low.sum()) / POWER
@@ -82,11 +109,11 @@ def condition(M: Array) -> Valued:
     return float(value), (vectors * slopes) @ vectors.T
 
 
-def scaled_condition(M: Array) -> Valued:
+def scaled_condition(M: Array, within: Array) -> Valued:
     """C of the columns of W divided by their lengths."""
     lengths = np.sqrt(np.diag(M))
     both = np.outer(lengths, lengths)
-    value, slopes = condition(M / both)
+    value, slopes = condition(M / both, within)
     found = slopes / both
     found[np.diag_indices_from(found)] -= (found * M).sum(axis=1) / lengths**2
     return value, found

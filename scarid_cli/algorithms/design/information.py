@@ -12,10 +12,7 @@ from scarid_cli.algorithms.trajectories.curve import Basis
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.arrays import Array
 
-# Torques so small beside those of the strongest column, or of a column's own usual size, do not
-# count: what no motion can tell apart has no say in how to move.
-NEGLIGIBLE = 1e-3
-STATES = 400  # random states from which typical lengths of columns are computed
+STATES = 400  # all over the limits
 
 
 @dataclass(frozen=True)
@@ -69,15 +66,16 @@ class Experiment:
         return value, samples.pulled(self.model.gradient(motion, G.reshape(W.shape)))
 
 
-def typical_lengths(model: Model, limits: Limits) -> Array:
-    """The root-mean-square columns of W for states all over the limits (parameters).
+def typical_moments(model: Model, limits: Limits) -> Array:
+    """The mean of W'W over random states within the limits (parameters, parameters).
 
-    The states are always the same. A sample counts as one row, over all joints.
+    The states are always the same.
     """
     rng = np.random.default_rng(0)
     shape = (len(limits.dq), STATES)
     q = rng.uniform(limits.lower[:, None], limits.upper[:, None], shape)
     dq, ddq = (x[:, None] * rng.uniform(-1.0, 1.0, shape) for x in (limits.dq, limits.ddq))
     W = model.regressor((q, dq, ddq))
-    lengths: Array = np.sqrt((W**2).sum(axis=(0, 1)) / STATES)
-    return lengths
+    rows = W.reshape(-1, W.shape[2])
+    moments: Array = rows.T @ rows / STATES
+    return moments

@@ -7,13 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.design.constraints import Along, Constraint, Kinematic, Law
-from scarid_cli.algorithms.design.criteria import goal
-from scarid_cli.algorithms.design.information import (
-    NEGLIGIBLE,
-    Experiment,
-    Samples,
-    typical_lengths,
-)
+from scarid_cli.algorithms.design.criteria import NEGLIGIBLE, TINY, goal
+from scarid_cli.algorithms.design.information import Experiment, Samples, typical_moments
 from scarid_cli.algorithms.design.lagrangian import minimised
 from scarid_cli.algorithms.design.model import Model
 from scarid_cli.algorithms.trajectories.curve import Basis, Curve, instants, random_curve, room
@@ -24,10 +19,9 @@ PENALTIES = (3.0, 30.0, 300.0, 1000.0)
 ITERATIONS = 100  # with each penalty
 REFINED = 200  # iterations, twice, with the last penalty, for the best of the starts
 INFORMED = 5  # samples of the information in the time scale of a basis
-CHECKED = 50  # of the limits of positions, velocities and accelerations
+CHECKED = 25  # of the limits of positions, velocities and accelerations
 WATCHED = 10  # and of the laws, which change as slowly as positions do
 SHRINK = 1e-3  # of a curve towards home, at first
-TINY = 1e-12  # of a column that is zero all over the limits
 BATCH = 1024
 
 
@@ -104,16 +98,17 @@ class Problem:
 def _experiment(wanted: Wanted, count: int) -> Experiment:
     """The experiment that so many samples of the motion stand for."""
     model = wanted.model
-    lengths = typical_lengths(model, wanted.limits)
+    typical = typical_moments(model, wanted.limits)
+    squares = np.diag(typical)
     weights = wanted.rate * wanted.basis.duration / (count * wanted.noise**2)
     usual = float(weights.mean())
     floor = NEGLIGIBLE**2 * count
     return Experiment(
         model,
-        goal(wanted.criterion, lengths, wanted.some),
+        goal(wanted.criterion, typical, wanted.some),
         weights,
-        wanted.known + floor * usual * np.diag(np.maximum(lengths, TINY) ** 2),
-        wanted.known / usual + floor * float((lengths**2).max()) * np.eye(len(lengths)),
+        wanted.known + floor * usual * np.diag(np.maximum(squares, TINY * squares.max())),
+        wanted.known / usual + floor * float(squares.max()) * np.eye(len(squares)),
     )
 
 
@@ -124,10 +119,11 @@ def _grid(basis: Basis, per_scale: int) -> Array:
 
 def kept(curve: Curve, limits: Limits, laws: tuple[Law, ...]) -> Curve:
     """The curve, shrunk towards home by as little as makes it keep its limits at every instant."""
-    curve = curve.scaled(min(1.0, float(room(curve, limits).min())))
+    curve = curve.scaled(np.minimum(1.0, room(curve, limits)))
     smaller = SHRINK
     while smaller < 1.0 and max((m.max() for m in margins(curve, laws)), default=0.0) > 0.0:
-        curve, smaller = curve.scaled(1.0 - smaller), 2.0 * smaller
+        curve = curve.scaled(np.full(len(limits.dq), 1.0 - smaller))
+        smaller *= 2.0
     return curve
 
 

@@ -66,9 +66,9 @@ class Curve:
         q, dq, ddq = (self._derivative(t, order) for order in range(3))
         return self.home[:, None] + q, dq, ddq
 
-    def scaled(self, factor: float) -> Curve:
-        """The curve shrunk towards home by this factor, the same for all joints."""
-        return replace(self, coefficients=factor * self.coefficients)
+    def scaled(self, factors: Array) -> Curve:
+        """The curve with each joint nearer to home by its factor (joints)."""
+        return replace(self, coefficients=factors[:, None] * self.coefficients)
 
     def largest(self) -> tuple[Array, Array, Array, Array]:
         """How far each joint goes below home and above it, its largest |dq| and |ddq| (joints).
@@ -105,7 +105,7 @@ def instants(duration: float) -> Array:
 def random_curve(basis: Basis, home: Array, limits: Limits, rng: np.random.Generator) -> Curve:
     """A curve with normal coefficients, each joint as far as its limits allow."""
     curve = Curve(basis, home, rng.standard_normal((len(home), basis.size)))
-    return replace(curve, coefficients=room(curve, limits)[:, None] * curve.coefficients)
+    return curve.scaled(room(curve, limits))
 
 
 def room(curve: Curve, limits: Limits) -> Array:
