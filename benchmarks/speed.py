@@ -21,7 +21,7 @@ from scarid_cli.algorithms.plants.model import model
 from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
-from scarid_cli.kernels import arm, fir, information, moments, p2smd, sos
+from scarid_cli.kernels import arm, chain, fir, information, moments, p2smd, sos
 
 FOLDER = Path(scarid_cli.kernels.__file__).parent
 
@@ -65,7 +65,7 @@ def kernels() -> None:
     """Each kernel compiled and interpreted."""
     print("\nKernels, ns per sample and joint (or per row of a regressor, or per control period)")
     print(f"  {'':30} {'compiled':>9} {'interpreted':>12}")
-    for name, (module, run) in {**signals(), **regressions(), **simulation()}.items():
+    for name, (module, run) in {**signals(), **regressions(), **chains(), **simulation()}.items():
         there = not str(module.__file__).endswith(".py")
         fast = f"{timed(run, module, SAMPLES):.1f}" if there else "none"
         stem = module.__name__.rpartition(".")[2]
@@ -115,6 +115,29 @@ def regressions() -> dict[str, tuple[ModuleType, KernelRun]]:
     }
 
 
+def chains() -> dict[str, tuple[ModuleType, KernelRun]]:
+    """The regressor of six axes, 20 samples at a time, and its derivatives."""
+    axes = np.random.default_rng(0).standard_normal((6, 16))
+    axes[:, 15] = 0.0
+    q = np.random.default_rng(1).standard_normal((6, 20))
+    W, links, back = np.ones((120, 60)), np.empty((7, 57)), np.empty((7, 57))
+    slopes = np.empty((3, 6, 20))
+    arguments = (axes, np.ones(3), q, q, q, W)
+
+    def gradient(module: ModuleType, k: int) -> None:
+        for _ in range(k // 20):
+            module.gradient(*arguments, *slopes, links, back)
+
+    def regressor(module: ModuleType, k: int) -> None:
+        for _ in range(k // 20):
+            module.regressor(*arguments, links)
+
+    return {
+        "gradient of six axes, sample": (chain, gradient),
+        "regressor of six axes, sample": (chain, regressor),
+    }
+
+
 def simulation() -> dict[str, tuple[ModuleType, KernelRun]]:
     """Simulated robots in their control loops."""
     return {
@@ -129,7 +152,9 @@ def period_of(name: str) -> KernelRun:
     q = np.tile(encoded(SAMPLES)[:, None], n)
     reference, noise = np.hstack([q, np.zeros((SAMPLES, 2 * n))]), np.zeros((SAMPLES, n))
     own = law(robot)
-    gains = np.column_stack((own.kp, own.kd, own.ki, np.full(n, 1e9), np.full(n, 1e-4)))
+    gains = np.column_stack(
+        (own.kp, own.kd, own.ki, np.full(n, 1e9), np.full(n, 1e-4), np.zeros((n, 3)))
+    )
     setup = np.array([1e-3, 0.9, 0.0, 0.0, 0.0, 0.0])
 
     def run(module: ModuleType, k: int) -> None:

@@ -1,5 +1,5 @@
 cimport cython
-from scarid_cli.kernels.control cimport Controller, quantised
+from scarid_cli.kernels.control cimport Controller, eccentric, quantised
 from scarid_cli.kernels.mechanics cimport Mechanics
 
 @cython.final

@@ -7,7 +7,7 @@ and the step ends there.
 
 import numpy as np
 
-from scarid_cli.kernels.control import Controller, quantised
+from scarid_cli.kernels.control import Controller, eccentric, quantised
 from scarid_cli.kernels.mechanics import Mechanics
 
 
@@ -218,8 +218,9 @@ def run(reference, noise, log, state, lag, memory, plant, model, gains, setup, s
         mechanics.start = (float(setup[4]) + k) * h
         for i in range(n):
             place = mechanics.drive[i] if setup[3] != 0.0 else i
-            q = float(arm.state[0, place]) + float(noise[k, i])
-            reading[i] = quantised(q, float(gains[i, 4]))
+            q = float(arm.state[0, place])
+            q = eccentric(q, float(gains[i, 5]), float(gains[i, 6]), float(gains[i, 7]))
+            reading[i] = quantised(q + float(noise[k, i]), float(gains[i, 4]))
         controller.command(reference, k, reading, mechanics.command)
         if arm.begin(0.0) != 0:
             setup[5] = 1.0

@@ -4,7 +4,9 @@ from scarid_cli.kernels.rigid cimport Chain
 
 cdef extern from "math.h" nogil:
     cpdef double floor(double x)
+    cpdef double sin(double x)
 
+cpdef double eccentric(double q, double amplitude, double turns, double phase) noexcept nogil
 cpdef double quantised(double x, double resolution) noexcept nogil
 
 @cython.final

@@ -1,6 +1,6 @@
 """The sampled controller of a simulated arm (paper eq. 29, and laws with an a priori model)."""
 
-from math import floor
+from math import floor, sin
 
 import numpy as np
 
@@ -15,10 +15,18 @@ def quantised(x, resolution):
     return x
 
 
+def eccentric(q, amplitude, turns, phase):
+    """The position that an eccentric encoder sees: q + amplitude sin(turns q + phase)."""
+    if amplitude != 0.0:
+        return q + amplitude * sin(turns * q + phase)
+    return q
+
+
 class Controller:
     """A controller with its a priori model.
 
-    gains (joints, 5): Kp, Kd, Ki, torque limit, resolution of the encoder. body, motors, joints,
+    gains (joints, 8): Kp, Kd, Ki, torque limit; resolution of the encoder, and the amplitude,
+    turns and phase of its eccentricity. body, motors, joints,
     couplings, world: the a priori model, as mechanics.py has them. memory (3, joints): last
     readings, velocity estimates and integrals; changed in place. setup (6): period [s], smoothing
     of the velocity estimate per tick (0: none), kind of control (0: PD or PID, 1: with gravity, 2:
@@ -31,7 +39,7 @@ class Controller:
             raise ValueError("control: lengths differ")
         if motors.shape[0] != n or motors.shape[1] != n or len(world) != 7:
             raise ValueError("control: lengths differ")
-        if gains.shape[1] != 5 or body.shape[1] != 23 or joints.shape[1] != 20:
+        if gains.shape[1] != 8 or body.shape[1] != 23 or joints.shape[1] != 20:
             raise ValueError("control: numbers of columns are wrong")
         if couplings.shape[1] != 6 or memory.shape[0] != 3 or len(setup) != 6:
             raise ValueError("control: sizes are wrong")

@@ -8,15 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.plants.loop import (
-    ClosedLoop,
-    DivergedError,
-    IndefiniteError,
-    LoopLog,
-    LoopState,
-)
+from scarid_cli.algorithms.imperfections.registry import Imperfections
+from scarid_cli.algorithms.imperfections.rows import StandstillAfter, StandstillBefore
+from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, IndefiniteError, LoopState
+from scarid_cli.algorithms.sensors import building
+from scarid_cli.algorithms.sensors.recorder import Recorder, Rows
+from scarid_cli.algorithms.sensors.standstill import with_standstill
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
-from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, doubles, matrix, motion_fields, number, numbers
@@ -24,19 +22,34 @@ from scarid_cli.io.table import Table, doubles, matrix, motion_fields, number, n
 SIGNALS = ("q", "dq", "ddq")
 
 
-def simulate(table: Table, loop: ClosedLoop, log_rate: float, *, truth: bool) -> Table:
+def simulate(
+    table: Table,
+    loop: ClosedLoop,
+    log_rate: float,
+    *,
+    truth: bool,
+    given: Imperfections | None = None,
+) -> Table:
     """The log, at the log rate [Hz], of a robot that follows a trajectory in closed loop.
 
-    The robot starts at rest at the first position of the trajectory. The log has measured signals
-    and the reference; `truth` adds the true signals, with the friction torques and the motion of
-    the motors where imperfections of the robot change them.
+    The robot starts at rest at the first position of the trajectory. The log has measured signals,
+    with the imperfections that are given, and the reference. `truth` adds the true signals; the
+    friction torques and the motion of the motors where imperfections of the robot change them; and
+    the time of the truth where that is not the time of the row.
     """
-    period = table.period
-    ratio = _whole(loop.control_rate * period, "the trajectory's rate")
+    given = given or Imperfections(len(loop.robot.joints))
+    ratio = _whole(loop.control_rate * table.period, "the trajectory's rate")
     keep = _whole(loop.control_rate / log_rate, "the log rate")
-    schema = _schema(loop, truth=truth)
+    recorder = building.recorder(given, loop, keep)
+    _ = loop.plant  # refuses what cannot be simulated before anything is written
+    schema = _schema(loop, truth=truth, jitter=building.jitters(given))
     meta = replace(table.meta, kind="measurement", robot=loop.robot.name, period=1.0 / log_rate)
-    return Table(table.name, schema, meta, _rows(table, loop, ratio, keep, schema))
+    references = _references(table, len(loop.robot.joints), ratio)
+    before, after = (
+        round(given.one(kind) * loop.control_rate) for kind in (StandstillBefore, StandstillAfter)
+    )
+    rows = _rows(with_standstill(references, before, after), loop, recorder)
+    return Table(table.name, schema, meta, _batches(rows, schema, len(loop.robot.joints)))
 
 
 def _whole(ratio: float, what: str) -> int:
@@ -46,7 +59,7 @@ def _whole(ratio: float, what: str) -> int:
     return whole
 
 
-def _schema(loop: ClosedLoop, *, truth: bool) -> pa.Schema:
+def _schema(loop: ClosedLoop, *, truth: bool, jitter: bool) -> pa.Schema:
     torque = [joint.torque_unit for joint in loop.robot.joints]
     units = [joint.unit for joint in loop.robot.joints]
     fields = [number("t", "s"), *numbers("q{i}", units), *numbers("tau{i}", torque)]
@@ -58,15 +71,35 @@ def _schema(loop: ClosedLoop, *, truth: bool) -> pa.Schema:
         if loop.imperfections.bend:
             fields += numbers("q{i}_motor_true", units)
             fields += numbers("dq{i}_motor_true", [f"{unit}/s" for unit in units])
+        fields += [number("t_true", "s")] if jitter else []
     return pa.schema(fields)
 
 
+LOGGED = ("q{i}", "tau{i}", "q{i}_ref", "dq{i}_ref", "ddq{i}_ref")
+MOTION = ("q{i}_true", "dq{i}_true", "ddq{i}_true")
+TRUE = (*MOTION, "tau{i}_true", "friction{i}_true", "q{i}_motor_true", "dq{i}_motor_true")
+Timed = tuple[float, Rows]  # rows, and the time of the first tick [s]
+
+
+def _batches(rows: Iterator[Timed], schema: pa.Schema, joints: int) -> Iterator[pa.RecordBatch]:
+    """The rows as batches with the columns of the schema."""
+    names = of_joints(joints, *LOGGED, *TRUE)
+    for start, part in rows:
+        signals = (row for signal in (*part.logged, *part.true) for row in signal)
+        columns = dict(zip(names, signals, strict=True))
+        columns |= {"t": start + part.t, "t_true": start + part.t_true}
+        if len(part.t):
+            arrays = [doubles(columns[name]) for name in schema.names]
+            yield pa.RecordBatch.from_arrays(arrays, schema=schema)
+
+
 def _rows(
-    table: Table, loop: ClosedLoop, ratio: int, keep: int, schema: pa.Schema
-) -> Iterator[pa.RecordBatch]:
+    references: Iterator[tuple[float, Motion]], loop: ClosedLoop, recorder: Recorder
+) -> Iterator[Timed]:
     state: LoopState | None = None
-    tick = 0
-    for start, reference in _references(table, len(loop.robot.joints), ratio):
+    recording = recorder.init(loop.seed)
+    start = 0.0
+    for start, reference in references:
         if state is None:
             state = loop.init(reference[0][:, 0])
         try:
@@ -82,23 +115,9 @@ def _rows(
                 f"robot {loop.robot.name} cannot be simulated: its inertia matrix is not positive "
                 "definite; give its links and motors inertias (`scarid robot check` shows them)"
             ) from None
-        ticks = np.arange(-tick % keep, log.q.shape[1], keep)
-        t = start + (tick + ticks) / loop.control_rate
-        signals = [log.q, log.tau, *reference, *_truth(loop, log)]
-        columns = [t, *(row[ticks] for signal in signals for row in signal)]
-        arrays = [doubles(column) for column in columns[: len(schema)]]
-        yield pa.RecordBatch.from_arrays(arrays, schema=schema)
-        tick += log.q.shape[1]
-
-
-def _truth(loop: ClosedLoop, log: LoopLog) -> list[Array]:
-    """The true signals, in the order of the schema."""
-    signals = [log.q_true, log.dq_true, log.ddq_true, log.tau_true]
-    if loop.imperfections.rub:
-        signals.append(log.friction_true)
-    if loop.imperfections.bend:
-        signals += [log.q_motor_true, log.dq_motor_true]
-    return signals
+        recording, rows = recorder.step(recording, log, reference)
+        yield start, rows
+    yield start, recorder.finish(recording)
 
 
 def _references(table: Table, joints: int, ratio: int) -> Iterator[tuple[float, Motion]]:

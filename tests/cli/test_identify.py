@@ -106,6 +106,17 @@ def test_instruments_of_the_simulated_robot_agree_with_least_squares_on_a_clean_
     assert "Durbin-Wu-Hausman p" in shell(pipe.replace("NAME", "iv")).err
 
 
+def test_didim_needs_no_measured_positions(shell: Shell) -> None:
+    """Only the time, the torques and the reference are left of the log."""
+    pipe = (
+        "scarid trajgen -q --seed 2 | scarid simulate --seed 2 | FILTER |"
+        " scarid identify --estimator didim"
+    )
+    whole = rows_of(shell(pipe.replace("FILTER", "cat")))
+    assert rows_of(shell(pipe.replace("FILTER", "cut -d, -f1,4-"))) == whole
+    assert whole["ZZ1R"]["estimate"].startswith("3.4")
+
+
 def test_stribeck_friction_goes_on_to_validate(shell: Shell) -> None:
     result = shell(
         f"{MOTION} && scarid identify -q --estimator separable motion.csv -o p.csv &&"

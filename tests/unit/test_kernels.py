@@ -73,6 +73,21 @@ def tracking(rng: np.random.Generator) -> Arguments:
     return [q, np.empty_like(q), np.empty_like(q), rng.random(2), np.array([30.0, 0.02]), 0.005]
 
 
+def aise(rng: np.random.Generator, order: int = 2) -> Arguments:
+    q, size, window = motion(rng), 2 * order + 1, 7
+    return [
+        *(q, np.empty_like(q), np.empty_like(q)),
+        rng.random(8),
+        rng.standard_normal(size),
+        1e6 * np.eye(size),
+        1e-3 * rng.standard_normal((2, order + window + 1)),
+        rng.random((window + 1, 2)),
+        np.empty((3, size)),
+        np.array([1e-10, 1e-4, 0.5, 1e-7]),
+        0.005,
+    ]
+
+
 def kalman(rng: np.random.Generator) -> Arguments:
     """A glitch now and then, and a step that stays."""
     q = motion(rng)
@@ -141,7 +156,10 @@ def arm(rng: np.random.Generator, *, resolution: float = 1e-5, kind: float = 0.0
     reference = np.zeros((ticks, 6))
     reference[:, :2] = np.repeat(rng.uniform(-0.1, 0.1, (2, 2)), ticks // 2, axis=0)
     reference[:20] = 0.0
-    gains = np.array([[800.0, 100.0, 5.0, 60.0, resolution], [25.0, 2.5, 0.5, 4.0, resolution]])
+    gains = np.zeros((2, 8))
+    gains[:, :4] = [[800.0, 100.0, 5.0, 60.0], [25.0, 2.5, 0.5, 4.0]]
+    gains[:, 4] = resolution
+    gains[1, 5:] = 1e-5, 50.0, 0.3  # eccentricity of the encoder
     table = model(robot)
     joints = table.joints.copy()
     joints[:, [4, 9, 10]] = 0.1  # Stribeck, load and drift
@@ -161,6 +179,22 @@ def arm(rng: np.random.Generator, *, resolution: float = 1e-5, kind: float = 0.0
         np.array([0.001, 0.7, kind, 0.0, 3.0, 0.0]),
         2,
     ]
+
+
+def chain(rng: np.random.Generator) -> Arguments:
+    """Revolute and prismatic axes of any direction."""
+    joints, samples = 4, 5
+    axes = rng.standard_normal((joints, 16))
+    axes[:, 15] = [0.0, 1.0, 0.0, 1.0]
+    W = np.empty((samples * joints, 10 * joints))
+    motion = rng.standard_normal((3, joints, samples))
+    return [axes, rng.standard_normal(3), *motion, W, np.zeros((joints + 1, 21 + 6 * joints))]
+
+
+def chain_gradient(rng: np.random.Generator) -> Arguments:
+    *motion, W, links = chain(rng)
+    slopes = np.empty((3, 4, 5))
+    return [*motion, rng.standard_normal(W.shape), *slopes, links, np.zeros_like(links)]
 
 
 COUPLING = np.array([[0.0, 1.0, 0.5, 1.0, 0.01, 0.05]])
@@ -197,6 +231,8 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
         lambda rng: implicit_levant(rng, 5),
     ),
     "tracking": ("tracking", "follow", tracking),
+    "aise": ("aise", "differentiate", aise),
+    "aise, order 1": ("aise", "differentiate", lambda rng: aise(rng, 1)),
     "kalman": ("kalman", "filtered", kalman),
     "kalman, records": ("kalman", "recorded", kalman_records),
     "kalman, lagged": ("kalman", "lagged", lagged),
@@ -216,10 +252,13 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
         lambda rng: information(rng, (0.9, 1.0, 0.97, 0.99, 0.5), trace=True),
     ),
     "moments": ("moments", "accumulate", moments),
+    "chain": ("chain", "regressor", chain),
+    "chain, gradient": ("chain", "gradient", chain_gradient),
     "rigid": ("rigid", "dynamics", rigid),
     "friction, release": ("friction", "release", release),
     "friction, sign": ("friction", "sign", lambda rng: [rng.standard_normal()]),
     "control, encoder": ("control", "quantised", lambda rng: [rng.standard_normal(), 0.1]),
+    "control, eccentric": ("control", "eccentric", lambda rng: list(rng.standard_normal(4))),
     "arm": ("arm", "run", arm),
     "arm, perfect encoder": ("arm", "run", lambda rng: arm(rng, resolution=0.0)),
     "arm, computed torque": ("arm", "run", lambda rng: arm(rng, kind=2.0)),

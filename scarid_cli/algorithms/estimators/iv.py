@@ -9,38 +9,27 @@ least squares is reported. All rows are held in memory. No settings.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.estimators import wls
-from scarid_cli.algorithms.plants.controllers import law
-from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, IndefiniteError
-from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator
+from scarid_cli.algorithms.plants.following import simulated
+from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, RobotEstimator
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
-from scarid_cli.algorithms.regression.rows import Rows, joined, runs
-from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.algorithms.statistics.jackknife import shifts
-from scarid_cli.algorithms.trajectories.hermite import refine
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
 ITERATIONS = 10
-CONTROL_RATE = 1000.0  # Hz
-SIMULATION_SETTLING = 0.5  # s: until a simulation that starts at rest follows its reference
 
 
 @dataclass(frozen=True)
-class Estimator(HoldingEstimator):
-    robot: Robot | None = field(default=None, metadata=GIVEN)
-
+class Estimator(RobotEstimator, HoldingEstimator):
     REFERENCE: ClassVar[bool] = True
     ALIGNS: ClassVar[bool] = False
-
-    def for_robot(self, robot: Robot) -> Estimator:
-        return replace(self, robot=robot)
 
     def step(
         self, state: list[Rows], rows: Rows, *, trace: bool = False
@@ -54,11 +43,10 @@ class Estimator(HoldingEstimator):
 
     def fit(self, state: list[Rows]) -> Estimation:
         rows = joined(state)
-        start = wls.Estimator()
-        plain = start.fit(start.step(start.init(np.zeros(rows.W.shape[2])), rows)[0])
+        plain = wls.Estimator().of_rows(rows)
         theta = plain.fit.estimates
         for _ in range(ITERATIONS):
-            instruments = self._simulated(rows, theta)
+            instruments = simulated(self.robot, theta, rows).W
             found = solved(rows, instruments, plain)
             moved = np.abs(found.fit.estimates - theta)
             theta = found.fit.estimates
@@ -68,54 +56,6 @@ class Estimator(HoldingEstimator):
         return replace(
             found, extra={"durbin_wu_hausman": {"statistic": statistic, "p_value": chance}}
         )
-
-    def _simulated(self, rows: Rows, theta: Array) -> Array:
-        """The regressor along the simulated motion, zero until the simulation has settled."""
-        assert self.robot is not None
-        assert rows.reference is not None
-        instruments = np.zeros_like(rows.W)
-        settling = round(SIMULATION_SETTLING / rows.h)
-        for run in runs(rows.at):
-            reference = rows.reference[:, :, run]
-            if reference.shape[2] > 2 * settling:
-                motion = _followed(self.robot, theta, reference, rows.h)
-                instruments[run] = self.robot.regressor(*motion)
-                instruments[run][:settling] = 0.0
-        return instruments
-
-
-def _followed(robot: Robot, theta: Array, reference: Array, h: float) -> list[Array]:
-    """The closed-loop position, velocity and acceleration of a robot with these parameters."""
-    joints = len(robot.joints)
-    ratio = max(1, round(h * CONTROL_RATE))
-    parameters = zip(robot.parameters, theta.tolist(), strict=True)
-    own = replace(robot, parameters=tuple(replace(p, apriori=x) for p, x in parameters))
-    loop = ClosedLoop(
-        robot=own,
-        law=law(robot),
-        encoder_resolution=np.zeros(joints),
-        position_noise=np.zeros(joints),
-        torque_noise=np.zeros(joints),
-        seed=0,
-        control_rate=ratio / h,
-        apriori=robot,
-    )
-    q, dq = reference
-    fine = refine(q, dq, np.gradient(dq, h, axis=1), h, ratio)
-    try:
-        log = loop.step(loop.init(fine[0][:, 0]), *fine)[1]
-    except DivergedError:
-        raise UsageFault(
-            "iv: the simulated robot diverges with the estimates of least squares; use wls"
-        ) from None
-    except IndefiniteError:
-        raise UsageFault(
-            "iv: the inertia matrix of the estimates of least squares is not positive definite, so "
-            "they cannot be simulated; use wls"
-        ) from None
-    signals = (log.q_true, log.dq_true, log.ddq_true)
-    # The simulation ends one sample early, since nothing follows the last reference.
-    return [np.ascontiguousarray(np.pad(x[:, ::ratio], ((0, 0), (0, 1)), "edge")) for x in signals]
 
 
 def solved(rows: Rows, instruments: Array, plain: Estimation) -> Estimation:

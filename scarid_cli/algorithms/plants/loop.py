@@ -18,6 +18,8 @@ from scarid_cli.algorithms.plants.imperfect import at_rest, carrying, imperfect
 from scarid_cli.algorithms.plants.imperfections import PlantImperfections
 from scarid_cli.algorithms.plants.model import Model, model
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.sensors.motion import Encoder
+from scarid_cli.algorithms.sensors.noise import GaussMarkov, NoiseState, Source
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.kernels import arm
@@ -40,14 +42,16 @@ class LoopState:
     tick: int
     position_noise: np.random.Generator
     torque_noise: np.random.Generator
+    coloured: NoiseState | None = None
 
 
 @dataclass(frozen=True)
 class LoopLog:
     """The signals at each tick of the controller: arrays (joints, ticks), in SI units.
 
-    `tau` is the command, with the noise of its measurement; `tau_true` is the torque that acts, and
-    `friction_true` what of it friction takes. `q_motor_true` and `dq_motor_true` differ from
+    `q` and `tau` are measured: the readings of the encoders, with `q_noise` in them, and the
+    `command` plus `tau_noise`. `tau_true` is the torque that acts, and `friction_true` what of it
+    friction takes. `q_motor_true` and `dq_motor_true` differ from
     `q_true` and `dq_true` for flexible joints.
     """
 
@@ -60,6 +64,9 @@ class LoopLog:
     friction_true: Array
     q_motor_true: Array
     dq_motor_true: Array
+    command: Array
+    q_noise: Array
+    tau_noise: Array
 
 
 class DivergedError(ValueError):
@@ -79,8 +86,9 @@ class ClosedLoop:
     """A robot with its controller and sensors; arrays have one value per joint.
 
     Rates [Hz], resolution [rad or m], and noise as standard deviations [rad or m, N m or N].
-    `apriori` is the robot of the controller's model, by default the simulated one without its
-    imperfections.
+    `eccentricity` has the amplitude [rad or m], turns and phase [rad] of the encoders (see
+    `Encoder`), and `coloured` is noise of the positions beside the white one. `apriori` is the
+    robot of the controller's model, by default the simulated one without its imperfections.
     """
 
     robot: Robot
@@ -93,6 +101,8 @@ class ClosedLoop:
     substeps: int = 2
     imperfections: PlantImperfections = field(default_factory=PlantImperfections)
     apriori: Robot | None = None
+    eccentricity: tuple[Array, Array, Array] | None = None
+    coloured: GaussMarkov | None = None
 
     def __post_init__(self) -> None:
         if not self.control_rate > 0.0 or self.substeps < 1:
@@ -120,9 +130,9 @@ class ClosedLoop:
     def init(self, q: Array) -> LoopState:
         """The state at rest at q (joints) [rad or m], which is what the encoders see."""
         position_seed, torque_seed = np.random.SeedSequence(self.seed).spawn(2)
-        steps = np.where(self.encoder_resolution > 0.0, self.encoder_resolution, 1.0)
         # Rounded as the kernel does, or the first velocity would be that of a jump.
-        reading = np.where(self.encoder_resolution > 0.0, np.floor(q / steps + 0.5) * steps, q)
+        reading = self.encoder.reading(q[:, None], np.zeros((len(q), 1)))[:, 0]
+        source = Source.named(self.seed, "coloured-position-noise")
         positions, lag = at_rest(self.plant, q, on_motor=self.on_motor)
         return LoopState(
             np.array([positions, np.zeros_like(positions)]),
@@ -131,7 +141,14 @@ class ClosedLoop:
             0,
             np.random.default_rng(position_seed),
             np.random.default_rng(torque_seed),
+            self.coloured.init(source) if self.coloured else None,
         )
+
+    @property
+    def encoder(self) -> Encoder:
+        """The encoders of the joints."""
+        none = np.zeros_like(self.encoder_resolution)
+        return Encoder(self.encoder_resolution, *(self.eccentricity or (none, none, none)))
 
     def step(
         self, state: LoopState, q_ref: Array, dq_ref: Array, ddq_ref: Array
@@ -141,6 +158,9 @@ class ClosedLoop:
         joints, ticks = q_ref.shape
         reference = np.ascontiguousarray(np.concatenate((q_ref, dq_ref, ddq_ref)).T)
         noise = state.position_noise.standard_normal((ticks, joints)) * self.position_noise
+        if self.coloured and state.coloured:
+            after, coloured = self.coloured.step(state.coloured, ticks)
+            state, noise = replace(state, coloured=after), noise + coloured.T
         torque_noise = state.torque_noise.standard_normal((ticks, joints)) * self.torque_noise
         log = np.empty((ticks, 9 * joints))
         begin = self._payload_tick - state.tick
@@ -149,8 +169,9 @@ class ClosedLoop:
             if reference[piece].size:
                 state = self._run(state, plant, reference[piece], noise[piece], log[piece])
         signals = log.reshape(ticks, 9, joints).transpose(1, 2, 0)
-        q, tau, *truth = (np.ascontiguousarray(signal) for signal in signals)
-        return state, LoopLog(q, tau + torque_noise.T, *truth)
+        q, command, *truth = signals
+        parts = (q, command + torque_noise.T, *truth, command, noise.T, torque_noise.T)
+        return state, LoopLog(*(np.ascontiguousarray(signal) for signal in parts))
 
     @property
     def _payload_tick(self) -> int:
@@ -198,4 +219,6 @@ class ClosedLoop:
     def _gains(self) -> Array:
         law = self.law
         limits = np.array([min(joint.torque_limit, LARGE) for joint in self.robot.joints])
-        return np.column_stack((law.kp, law.kd, law.ki, limits, self.encoder_resolution))
+        own = self.encoder
+        encoder = (own.resolution, own.amplitude, own.turns, own.phase)
+        return np.column_stack((law.kp, law.kd, law.ki, limits, *encoder))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.settings import Validated
+from scarid_cli.algorithms.choices.settings import GIVEN, Validated
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
@@ -56,13 +56,15 @@ class BaseEstimator(Validated, ABC):
 
     RECURSIVE: the estimator gives estimates after every sample. HOLDS: it keeps all rows in memory.
     INITIAL: it starts from initial parameters. REFERENCE: it needs the reference that the robot
-    followed. ALIGNS: the delay of the torques can be fitted as one more parameter.
+    followed. FOLLOWS: its rows are those of the reference, and it needs no measured motion. ALIGNS:
+    the delay of the torques can be fitted as one more parameter.
     """
 
     RECURSIVE: ClassVar[bool] = False
     HOLDS: ClassVar[bool] = False
     INITIAL: ClassVar[bool] = False
     REFERENCE: ClassVar[bool] = False
+    FOLLOWS: ClassVar[bool] = False
     ALIGNS: ClassVar[bool] = True
 
     def for_robot(self, robot: Robot) -> Self:  # noqa: ARG002 (most do not depend on it)
@@ -84,6 +86,27 @@ class BaseEstimator(Validated, ABC):
     @abstractmethod
     def fit(self, state: Any) -> Estimation:
         """The result from all rows so far."""
+
+    def of_rows(self, rows: Rows, initial: Array | None = None) -> Estimation:
+        """The result from these rows alone; the initial parameters are zeros by default."""
+        start = np.zeros(rows.W.shape[2]) if initial is None else initial
+        return self.fit(self.step(self.init(start), rows)[0])
+
+
+@dataclass(frozen=True)
+class RobotEstimator(BaseEstimator):
+    """An estimator that needs the robot itself, which `for_robot` gives it."""
+
+    given: Robot | None = field(default=None, metadata=GIVEN)
+
+    def for_robot(self, robot: Robot) -> Self:
+        return replace(self, given=robot)
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that was given."""
+        assert self.given is not None
+        return self.given
 
 
 class HoldingEstimator(BaseEstimator):
