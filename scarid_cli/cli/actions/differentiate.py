@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.methods import configured
 from scarid_cli.cli.settings import read
+from scarid_cli.errors import UsageFault
 from scarid_cli.io.schemas import joints_of, numbered
 from scarid_cli.stages import differentiate as stage
 
@@ -19,6 +23,7 @@ def run(
     settings: str | None,
     preset: str | None,
     match: bool | None,
+    per_joint: bool,
 ) -> None:
     """Write the motion."""
     signals = ("q",) if match is False else ("q", "tau")
@@ -34,5 +39,21 @@ def run(
     )
     if match is None:
         match = joints_of(table.columns, "tau") > 0
-    estimated = stage.matched if match else stage.differentiate
-    job.write(estimated(job.recorded(table), methods, job.left_out))
+    if not match:
+        job.write(stage.differentiate(job.recorded(table), methods, job.left_out))
+        return
+    if not per_joint:
+        _require_alike(methods)
+    motion = stage.matched(job.recorded(table), methods, job.left_out, per_joint=per_joint)
+    job.write(motion)
+
+
+def _require_alike(methods: list[Any]) -> None:
+    """Refuse settings that differ between joints, whose signals belong into one equation."""
+    names = [n for n in names_of(methods[0]) if len({getattr(m, n) for m in methods}) > 1]
+    if names:
+        raise UsageFault(
+            f"the joints have different settings ({', '.join(names)}), but a torque contains the "
+            "accelerations of all joints, which --match must pass through the same low-pass; give "
+            "one value for all joints, or --per-joint if they move independently"
+        )
