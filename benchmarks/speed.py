@@ -108,7 +108,7 @@ def simulation() -> dict[str, tuple[ModuleType, KernelRun]]:
     reference = np.column_stack([q, q, np.zeros(SAMPLES), np.zeros(SAMPLES)])
     noise, log = np.zeros((SAMPLES, 2)), np.empty((SAMPLES, 10))
     model = np.array([3.42, 0.064, 0.131, 0.0, 0.07, 0.015, 0.58, 0.156, 0.0, 0.0])
-    control = np.array([800, 25, 100, 2.5, 0, 0, 1e9, 1e9, 1e-4, 1e-4, 0.9])
+    control = np.array([800, 25, 100, 2.5, 0, 0, 1e9, 1e9, 1e-4, 1e-4, 0.9, *np.zeros(6)])
 
     def run(module: ModuleType, k: int) -> None:
         module.run(reference[:k], noise[:k], log[:k], np.zeros(10), model, control, 1e-3, 4)

@@ -23,16 +23,11 @@ TORQUE = ("N m", "N")
 
 @dataclass(frozen=True)
 class JointMotion:
-    """Positions, velocities and accelerations, each (joints, samples) in rad or m, s.
-
-    `rigid` is the regressor of the standard parameters (samples, joints, standard parameters), for
-    robots with a URDF.
-    """
+    """Positions, velocities and accelerations, each (joints, samples) in rad or m, s."""
 
     q: Array
     dq: Array
     ddq: Array
-    rigid: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -59,7 +54,10 @@ class Term:
 
 @dataclass(frozen=True)
 class StandardTerm(Term):
-    """One of the ten standard parameters of each link of a URDF, at its place among all of them."""
+    """One of the ten standard parameters of each link of a URDF, at its place among all of them.
+
+    Its column is that of Body.columns.
+    """
 
     NAME = "standard"
     place: int
@@ -67,10 +65,6 @@ class StandardTerm(Term):
     @property
     def joints(self) -> tuple[int, ...]:
         return ()
-
-    def column(self, samples: JointMotion) -> Column:
-        assert samples.rigid is not None
-        return dict(enumerate(samples.rigid[:, :, self.place].T))
 
 
 # Terms of one axis
