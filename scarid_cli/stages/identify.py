@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows
@@ -80,6 +81,7 @@ def identify(
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
+    left_out = LeftOut()
     for batch, rows in treated(
         table,
         robot,
@@ -87,6 +89,7 @@ def identify(
         checkpoint.seen,
         reference=estimator.REFERENCE,
         follows=estimator.FOLLOWS,
+        left_out=left_out,
     ):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
@@ -98,7 +101,11 @@ def identify(
         keep(checkpoint)
     meta = replace(table.meta, kind="parameters", robot=robot.name)
     in_use = InUse(treatment.slow, treatment.align, found.found.weighted, treatment.essential)
-    return parameters(found, robot, meta, in_use, variance=variance)
+    result = parameters(found, robot, meta, in_use, variance=variance)
+    if not treatment.counting:
+        return result
+    extra = {**result.meta.extra, "left_out": asdict(left_out)}
+    return replace(result, meta=replace(result.meta, extra=extra))
 
 
 def _check_enough(table: Table, robot: Robot, counted: int) -> None:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, without_slow
+from scarid_cli.algorithms.regression.counting import Counting, LeftOut, counted
+from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, runs, without_slow
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
@@ -25,14 +26,15 @@ class Treatment:
 
     `skip` rows at the start and at the end of the table are left out. W and the torques are
     decimated by each factor of `decimate` in turn. Rows of a joint that is slower than `slow`
-    (joints) [rad/s or m/s] are left out. Two more options concern the fit: `align` also fits the
-    time by which the torques lead the motion, and `essential` drops parameters that are not
-    essential.
+    (joints) [rad/s or m/s] are left out, and those near a reversal or standstill as `counting`
+    says; it is None if all rows count. Two more options concern the fit: `align` also fits the time
+    by which the torques lead the motion, and `essential` drops parameters that are not essential.
     """
 
     skip: tuple[int, int] = (0, 0)
     decimate: tuple[int, ...] = ()
     slow: tuple[float, ...] = ()
+    counting: Counting | None = None
     align: bool = False
     essential: bool = False
 
@@ -90,19 +92,22 @@ def treated(
     *,
     reference: bool = False,
     follows: bool = False,
+    left_out: LeftOut | None = None,
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     """The rows of the settled samples, each part with the batch that it comes from.
+
+    `left_out` counts the rows that are left out near reversals and standstill.
 
     A treatment that needs all rows at once gives a single part, without a batch. `seen` is the
     number of the first sample. With `reference`, the rows include the reference of the robot; if
     the estimator `follows` it, they are those of the reference.
     """
-    counted = 0
+    fitted = 0
     columns = Columns(robot, table.period, reference, follows)
-    for batch, rows in _treated(table, columns, treatment, seen):
-        counted += int(np.count_nonzero(rows.scales))
+    for batch, rows in _treated(table, columns, treatment, seen, left_out or LeftOut()):
+        fitted += int(np.count_nonzero(rows.scales))
         yield batch, rows
-    if not counted:
+    if not fitted:
         raise bad_data(
             table.name,
             "no rows to fit",
@@ -112,20 +117,28 @@ def treated(
 
 
 def _treated(
-    table: Table, columns: Columns, treatment: Treatment, seen: int
+    table: Table, columns: Columns, treatment: Treatment, seen: int, left_out: LeftOut
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
-    slow = np.array(treatment.slow) if treatment.slow else None
-    late = None if treatment.decimate else slow
-    held, gaps = [], Gaps(table.period)
+    parts = _parts(table, columns, treatment, seen)
+    if treatment.counting and not treatment.decimate:
+        parts = counted(parts, treatment.counting, left_out)
+    if not treatment.holds:
+        yield from parts
+        return
+    held = [rows for _, rows in parts]
+    if held:
+        yield None, _decimated(joined(held), treatment, left_out)
+
+
+def _parts(
+    table: Table, columns: Columns, treatment: Treatment, seen: int
+) -> Iterator[tuple[pa.RecordBatch, Rows]]:
+    """The rows of consecutive parts of the table; what is decimated keeps its slow rows."""
+    slow = np.array(treatment.slow) if treatment.slow and not treatment.decimate else None
+    gaps = Gaps(table.period)
     start, end = treatment.skip
     for first, kept in _after(start, settled_runs(_without_last(end, table.batches))):
-        rows = columns.rows(table.columns, kept, seen + first + gaps.before(kept), late)
-        if treatment.holds:
-            held.append(rows)
-        else:
-            yield kept, rows
-    if held:
-        yield None, _decimated(joined(held), treatment.decimate, slow)
+        yield kept, columns.rows(table.columns, kept, seen + first + gaps.before(kept), slow)
 
 
 class Gaps:
@@ -169,11 +182,18 @@ def _after(
             yield first + skipped, batch.slice(skipped)
 
 
-def _decimated(rows: Rows, factors: tuple[int, ...], slow: Array | None) -> Rows:
-    if not factors:
+def _decimated(rows: Rows, treatment: Treatment, left_out: LeftOut) -> Rows:
+    """The rows after all decimations, of which some may then be left out."""
+    if not treatment.decimate:
         return rows
     from scarid_cli.algorithms.regression.decimation import decimated  # scipy.signal takes a second
 
-    for factor in factors:
+    for factor in treatment.decimate:
         rows = decimated(rows, factor)
-    return rows if slow is None else without_slow(rows, slow)
+    if treatment.slow:
+        rows = without_slow(rows, np.array(treatment.slow))
+    if not treatment.counting:
+        return rows
+    parts = ((None, rows.part(run)) for run in runs(rows.at))
+    counting = treatment.counting.decimated(rows.h)
+    return joined([part for _, part in counted(parts, counting, left_out)])

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.io import schemas
@@ -35,12 +37,16 @@ def validate(
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    for batch, rows, (torques,) in predicted(table, [model], treatment or Treatment()):
+    treatment, left_out = treatment or Treatment(), LeftOut()
+    for batch, rows, (torques,) in predicted(table, [model], treatment, left_out):
         tally.add(rows, torques)
         if predictions and batch is not None:
             new = dict(zip(schema.names[1:], (*rows.y.T, *torques), strict=False))
             predictions.write(with_columns(batch, schema, new))
-    return _metrics(table, robot, tally.qualities, model.delay)
+    extra: dict[str, Any] = {"left_out": asdict(left_out)} if treatment.counting else {}
+    if model.delay:
+        extra["delay"] = model.delay
+    return _metrics(table, robot, tally.qualities, extra)
 
 
 def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
@@ -49,7 +55,7 @@ def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
     return pa.schema([number("t", "s"), *torques, *segment_field(table)])
 
 
-def _metrics(table: Table, robot: Robot, qualities: list[Quality], delay: float) -> Table:
+def _metrics(table: Table, robot: Robot, qualities: list[Quality], extra: dict[str, Any]) -> Table:
     schema = schemas.load("metrics").arrow()
     batch = pa.RecordBatch.from_arrays(
         [
@@ -62,6 +68,6 @@ def _metrics(table: Table, robot: Robot, qualities: list[Quality], delay: float)
         ],
         schema=schema,
     )
-    extra = {**table.meta.extra, **({"delay": delay} if delay else {})}
+    extra = {**table.meta.extra, **extra}
     meta = replace(table.meta, kind="metrics", robot=robot.name, extra=extra)
     return Table("validate", schema, meta, iter([batch]))

@@ -22,6 +22,8 @@ SLOW = 0.02  # share of the root-mean-square velocity so far
 NOISES = 3.0  # standard deviations of the noise of the velocity
 REVERSAL = 0.5  # periods of the bandwidth, before and after a reversal
 
+CUTOFF_OF_NYQUIST = 0.8  # the cut-off of a decimation, of the new Nyquist frequency
+
 T = TypeVar("T")
 
 
@@ -41,9 +43,15 @@ class Counting:
         """The number of samples left out before and after a reversal, sampled every h [s]."""
         return int(REVERSAL / self.bandwidth / h) if self.bandwidth else 0
 
+    def decimated(self, h: float) -> Counting:
+        """The same behind the low-pass of a decimation to the period h [s]."""
+        highest = CUTOFF_OF_NYQUIST * 0.5 / h
+        return replace(self, bandwidth=min(self.bandwidth or highest, highest))
+
     def floor(self, joints: int) -> Array:
         """The velocity (joints) [rad/s or m/s] above which it is not noise."""
-        return NOISES * np.array(self.velocity_noise or np.zeros(joints))
+        known = len(self.velocity_noise) == joints
+        return NOISES * np.array(self.velocity_noise if known else np.zeros(joints))
 
 
 @dataclass
@@ -53,6 +61,13 @@ class LeftOut:
     rows: int = 0
     reversal: int = 0
     standstill: int = 0
+
+    @property
+    def text(self) -> str:
+        """Which shares of the rows were left out."""
+        near = [(self.reversal, "near reversals"), (self.standstill, "near standstill")]
+        rows = max(self.rows, 1)
+        return " and ".join(f"{100.0 * n / rows:.1f} % of the rows {why}" for n, why in near if n)
 
     def add(self, moving: Numbers, away: Numbers) -> None:
         """Count rows (joints, samples) that are `moving`, and those `away` from a reversal."""

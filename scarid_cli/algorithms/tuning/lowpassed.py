@@ -25,7 +25,8 @@ from scarid_cli.kernels import sos
 ORDER = 4
 TWO_SIDED = (2.0**0.5 - 1.0) ** (0.5 / ORDER)  # the bandwidth of both passes, over the cut-off
 PADDING = 3.0  # periods of the cut-off by which a record is extended oddly at both ends
-RATE = 10.0  # rows kept per period of the cut-off
+RATE, LEAST_RATE = 10.0, 4.0  # rows kept per period of the cut-off, of a short record and of any
+MANY = 8192  # samples of a record, from which on fewer rows are kept
 END = 1.0  # periods of the cut-off left out at both ends
 # Central differences of order 6
 FIRST = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
@@ -66,7 +67,7 @@ def lowpassed(segment: Segment, h: float, cutoff: float) -> Lowpassed | None:
     q, tau = (_both_ways(x, sections, padding) for x in (segment.q, segment.tau))
     inner = slice(end, q.shape[1] - end)
     dq, ddq = (_differences(q, taps) for taps in (FIRST / h, SECOND / h**2))
-    every = slice(None, None, max(1, int(1.0 / (RATE * cutoff * h))))
+    every = slice(None, None, _stride(q.shape[1], h, cutoff))
     counts = _counts(dq[:, inner], segment.noise, TWO_SIDED * cutoff, h)
     motion = (np.ascontiguousarray(x[:, inner][:, every]) for x in (q, dq, ddq, tau))
     return Lowpassed(tuple(motion), counts[:, every])  # type: ignore[arg-type]  # four of them
@@ -76,6 +77,12 @@ def removed(segment: Segment, h: float, cutoff: float) -> Array:
     """The positions (joints, samples) less the low-passed ones: noise, vibration, resolution."""
     sections = Butterworth(cutoff, ORDER).sections(h)
     return segment.q - _both_ways(segment.q, sections, _padding(segment, h, cutoff))
+
+
+def _stride(samples: int, h: float, cutoff: float) -> int:
+    """Every how many samples a row is kept."""
+    rate = min(RATE * cutoff, max(LEAST_RATE * cutoff, MANY / (samples * h)))
+    return max(1, int(1.0 / (rate * h)))
 
 
 def _padding(segment: Segment, h: float, cutoff: float) -> int:

@@ -30,7 +30,8 @@ ENOUGH = 2.0  # times the least scatter, at which the sequence ends
 FEWEST = 8  # cut-offs before it may end
 PLATEAU = 1.5  # times the least scatter, up to which a cut-off is as good as the best
 WIDTH = 4  # cut-offs of a plateau
-SINGULAR = 1e-12  # share of the largest eigenvalue below which a direction is undetermined
+RIDGE = 1e-10  # added to the squares of columns of unit length
+EXACT = 1e-12  # share of the torques' squares that counts as no residual
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ def _jackknife(sums: Array, rows: Numbers, variances: Array) -> float:
     total = sums.sum(axis=0)
     weighted = np.tensordot(_inverse_variances(total, rows), sums, (0, 1))
     whole = weighted.sum(axis=0)
-    estimates = np.array([_solved(whole - part) for part in weighted])
+    estimates = _solved(whole - weighted)
     off = estimates - estimates.mean(axis=0)
     driven = variances > 0.0
     shares = total[driven, :p, :p] / (rows * variances)[driven, None, None]
@@ -140,19 +141,21 @@ def _jackknife(sums: Array, rows: Numbers, variances: Array) -> float:
 
 def _inverse_variances(total: Array, rows: Numbers) -> Array:
     """The weight of each joint: one over the variance of its residual in a fit of its own rows."""
-    residuals = np.empty(len(total))
-    for j, own in enumerate(total):
-        squares = own[-1, -1] - _solved(own) @ own[:-1, -1]
-        residuals[j] = np.sqrt(max(squares, 1e-12 * own[-1, -1]) / rows[j])
+    explained = (_solved(total) * total[:, :-1, -1]).sum(axis=1)
+    squares = np.maximum(total[:, -1, -1] - explained, EXACT * total[:, -1, -1])
+    residuals = np.sqrt(squares / rows)
     return np.asarray(inverse_deviations(residuals) ** 2)
 
 
 def _solved(sums: Array) -> Array:
-    """The solution of the normal equations in [W y]'[W y]; 0 in undetermined directions."""
-    A, b = sums[:-1, :-1], sums[:-1, -1]
-    size = np.sqrt(np.diag(A))
-    size[size == 0.0] = 1.0
-    values, vectors = np.linalg.eigh(A / np.outer(size, size))
-    kept = vectors[:, values > SINGULAR * values[-1]]
-    solution: Array = kept @ ((kept.T @ (b / size)) / values[values > SINGULAR * values[-1]]) / size
-    return solution
+    """The solution of the normal equations in [W y]'[W y], or of a stack of them.
+
+    In units of the columns, a little is added to the diagonal, so that undetermined directions
+    remain near 0.
+    """
+    A, b = sums[..., :-1, :-1], sums[..., :-1, -1]
+    size = np.sqrt(np.diagonal(A, axis1=-2, axis2=-1))
+    size = np.where(size > 0.0, size, 1.0)
+    scaled = A / (size[..., :, None] * size[..., None, :])
+    scaled[..., np.arange(b.shape[-1]), np.arange(b.shape[-1])] += RIDGE
+    return np.asarray(np.linalg.solve(scaled, (b / size)[..., None])[..., 0] / size)
