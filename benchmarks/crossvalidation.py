@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 from defaults import PERIOD, RATIO, ROBOT, experiment
+from matched import SettledMotion, motion
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.regression.rows import plain
-from scarid_cli.algorithms.tuning.judges import SettledMotion, motion
 from scarid_cli.arrays import Array
 
 Experiment = tuple[Array, Array]  # positions [rad] and torques [N m], each (joints, rows)

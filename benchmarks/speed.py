@@ -107,7 +107,9 @@ def regressions() -> dict[str, tuple[ModuleType, KernelRun]]:
         out = np.empty((k if trace else 0, 8))
         factors = np.full(8, 0.999 if trace else 1.0)
         work, sums, scales = np.empty(9), np.zeros(3), np.ones((k, 2))
-        module.update(W[:k], y[:k], scales, triangle, work, sums, out, factors, 1e-12)
+        running = np.zeros((2 if trace else 0, 4))
+        arrays = (W[:k], y[:k], scales, triangle, work, sums, out, factors)
+        module.update(*arrays, 1e-12, running)
 
     return {
         "ls, row of 8": (information, lambda m, k: update(m, k // 2, trace=False)),

@@ -37,6 +37,12 @@ from scarid_cli.cli.described import describing
     "of a row belong to the same instant, and mark the settling rows.  [default: --match if the "
     "table has torques; the paper's procedure is --no-match]",
 )
+@click.option(
+    "--per-joint",
+    is_flag=True,
+    help="Allow settings that differ between joints together with --match. A torque contains the "
+    "accelerations of all joints of an arm, so this suits only joints that move independently.",
+)
 @options.table_output
 @options.common
 def command() -> None:
@@ -44,9 +50,10 @@ def command() -> None:
 
     \b
       scarid differentiate log.csv | scarid identify
-      scarid tune log.csv --save kalman.toml; scarid differentiate --settings kalman.toml log.csv
+      scarid tune --robot scara2 log.csv --save log.toml
+      scarid differentiate --settings log.toml log.csv
       scarid differentiate --method p2smd --preset table1 --no-match log.csv
-      scarid differentiate --method p2smd --set gamma0=25,40 --set gamma1=20,35 log.csv
+      scarid differentiate --method p2smd --set gamma0=25 --set gamma1=20 log.csv
       scarid filter --zero-phase --cutoff 20 log.csv | scarid differentiate --method central
 
     Adds the columns dq1, dq2, ... and ddq1, ddq2, ... for the positions q1, q2, ... The default

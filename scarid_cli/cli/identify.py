@@ -16,9 +16,7 @@ from scarid_cli.cli.described import describing
 @click.option(
     "--estimator",
     type=click.Choice(ESTIMATORS.names),
-    default="rls",
-    show_default=True,
-    help="The estimator; see below.",
+    help="The estimator; see below.  [default: rls; wls for a measurement]",
 )
 @options.settings_of("estimator")
 @click.option(
@@ -37,9 +35,10 @@ from scarid_cli.cli.described import describing
 )
 @options.treatment
 @click.option(
-    "--align",
-    is_flag=True,
-    help="Also fit the time by which the torques lead the motion. Holds the whole log in memory.",
+    "--align/--no-align",
+    default=None,
+    help="Also fit the time by which the torques lead the motion. Holds the whole log in memory.  "
+    "[default: --align for a measurement only]",
 )
 @click.option(
     "--essential",
@@ -70,11 +69,18 @@ def command() -> None:
     """Estimate a robot's dynamic parameters from a motion, and judge their reliability.
 
     \b
-      scarid identify motion.csv
+      scarid identify --robot arm.toml log.csv
+      scarid differentiate log.csv --format arrow | scarid identify --robot arm.toml
       scarid identify --estimator wls --drop-slow 0.1 --align motion.csv
       scarid identify --estimator ls --robot emps --skip 49 --decimate 10 motion.parquet
       scarid identify --forgetting 0.999,Fv1=0.99 --trace trace.parquet motion.csv
       scarid identify --save state.npz monday.csv; scarid identify --from state.npz tuesday.csv
+
+    A measurement, which has positions and torques but no derivatives, is identified by the whole
+    recommended procedure in one process: the bandwidth is chosen as by `scarid tune --robot`,
+    positions and torques of all joints pass a smoother of this bandwidth, and the parameters are
+    estimated with --estimator wls --align. The pipe of two commands that gives the same parameters
+    is reported. The measurement is held in memory.
 
     Solves tau = W(q, dq, ddq) theta (paper eq. 25), where W is the robot's regressor. Each estimate
     has two standard errors: one that holds for white residuals, s (diag (W'W)^-1)^1/2 (eq. 32-34),

@@ -90,12 +90,17 @@ class Job:
         *,
         torques: bool = False,
         reference: bool = False,
+        without_derivatives: str | None = None,
     ) -> tuple[Table, Robot]:
         """Open a table that has every column of this kind for each of the robot's joints.
 
-        The command also reads its `torques`, which must be there, or the `reference`, if it is.
+        The command also reads its `torques`, which must be there, or the `reference`, if it is. If
+        the command can do `without_derivatives`, this is the kind of a table that has none.
         """
-        table = conforming(self._opened_table(path), kind)
+        opened = self._opened_table(path)
+        if without_derivatives and not schemas.numbered(opened.columns, "dq", "ddq"):
+            kind = without_derivatives
+        table = conforming(opened, kind)
         arm = robot_of(robot, table)
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
@@ -181,18 +186,25 @@ def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:
     return list(values) * (joints // len(values))
 
 
-def command_line() -> str:
-    """The command line, in a fixed order, without the options that change nothing in the table."""
+def command_line(*, without: str = "") -> str:
+    """The command line, in a fixed order, without the options that change nothing in the table.
+
+    One more parameter may be left out, by its name.
+    """
     context = click.get_current_context()
     words = [context.info_name or ""]
     for parameter in context.command.params:
         name = parameter.name or ""
-        source = context.get_parameter_source(name)
-        given = source is not None and source.name == "COMMANDLINE"
-        if isinstance(parameter, Unrecorded) or not given:
+        if isinstance(parameter, Unrecorded) or not was_given(name) or name == without:
             continue
         words += _words(parameter, context.params[name])
     return " ".join(["scarid", *words])
+
+
+def was_given(name: str) -> bool:
+    """Whether a parameter of the command is on its command line."""
+    source = click.get_current_context().get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def _words(parameter: click.Parameter, value: Any) -> list[str]:

@@ -164,6 +164,17 @@ def treatment(function: F) -> F:
             "for all joints or one per joint, because near rest Coulomb friction is not sign(dq).",
         ),
         click.option(
+            "--all-rows", is_flag=True,
+            help="Use the rows near reversals and near standstill as well. By default rows are "
+            "left out where a joint reverses within half a period of the motion's bandwidth, or "
+            "is slower than 2 % of its root-mean-square velocity so far or than its noise.",
+        ),
+        click.option(
+            "--bandwidth", type=click.FloatRange(min=0.0, min_open=True), metavar="HZ",
+            help="Bandwidth of the motion.  [default: that in the metadata, which "
+            "differentiate --match writes and CSV cannot hold]",
+        ),
+        click.option(
             "--smooth-sign", type=float, metavar="V",
             help="Model Coulomb friction by tanh(dq / V) instead of sign(dq) [rad/s or m/s].",
         ),

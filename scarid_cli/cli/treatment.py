@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from scarid_cli.algorithms.regression.counting import Counting, LeftOut
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.job import per_joint
+from scarid_cli.cli.job import Job, per_joint
 from scarid_cli.errors import UsageFault
+from scarid_cli.io.table import Metadata, Table
 
 
 def treatment_of(given: dict[str, Any]) -> Treatment:
@@ -29,7 +31,7 @@ def treatment_of(given: dict[str, Any]) -> Treatment:
         skip=(int(skip[0]), int(skip[1])),
         decimate=tuple(map(int, factors)),
         slow=tuple(slow),
-        align=given.get("align", False),
+        align=bool(given.get("align")),
         essential=given.get("essential", False),
     )
 
@@ -40,3 +42,26 @@ def for_robot(robot: Robot, treatment: Treatment, given: dict[str, Any]) -> tupl
     if slow:
         slow = tuple(per_joint(slow, len(robot.joints), "--drop-slow"))
     return robot.smoothed(smooth) if smooth else robot, replace(treatment, slow=slow)
+
+
+def for_motion(motion: Metadata, treatment: Treatment, given: dict[str, Any]) -> Treatment:
+    """The treatment, with the rows of this motion that count."""
+    if given["all_rows"]:
+        return treatment
+    noise = tuple(motion.extra.get("velocity_noise") or ())
+    bandwidth = given["bandwidth"] or motion.extra.get("bandwidth")
+    return replace(treatment, counting=Counting(bandwidth, noise))
+
+
+def report(job: Job, table: Table, counting: Counting | None, left_out: dict[str, int]) -> None:
+    """Report which rows were left out, and what could not be known about them."""
+    if not counting:
+        return
+    text = LeftOut(**left_out).text
+    if text:
+        job.say(f"left out {text} (--all-rows keeps them)")
+    if not counting.bandwidth and "settled" in table.columns:
+        job.say(
+            "rows near reversals are used, because the bandwidth of the motion is not known: give "
+            "--bandwidth HZ, or keep the motion in a format with metadata (--format arrow)"
+        )

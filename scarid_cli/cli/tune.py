@@ -13,39 +13,55 @@ from scarid_cli.cli.declare import declare
 @options.table_input
 @click.option(
     "--method",
+    "methods",
+    multiple=True,
     type=click.Choice(["all", *DIFFERENTIATORS.names]),
-    default="kalman",
-    show_default=True,
-    help="The differentiator to tune; `all` tunes every causal one.",
+    help="A differentiator to tune, repeatable; `all` stands for every causal one. The first is "
+    "what differentiate --settings uses.  [default: rts and kalman with --robot, else kalman]",
 )
 @click.option(
     "--robot",
     type=options.ROBOT,
     metavar="NAME|FILE",
-    help="Judge settings by the predicted torques of this robot (see identify --robot).",
+    help="Choose the bandwidth at which the parameters of this robot scatter least (see identify "
+    "--robot).",
 )
 @click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the search."
+    "--to-time",
+    type=click.FloatRange(min=0.0, min_open=True),
+    metavar="SECONDS",
+    help="Use only the first seconds of the log, as for settings of an online identification.",
 )
-@options.side_output("--save", help="Write the best settings, for differentiate --settings.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of a search."
+)
+@options.side_output("--save", help="Write the chosen settings, for differentiate --settings.")
 @options.table_output
 @options.common
 def command() -> None:
     """Find the settings of differentiators from a log, without knowing the truth.
 
     \b
+      scarid tune --robot scara2 log.csv --save log.toml
+      scarid differentiate --settings log.toml log.csv
+      scarid tune --robot scara2 --to-time 10 --method kalman log.csv --save online.toml
       scarid tune log.csv --save kalman.toml
-      scarid differentiate --settings kalman.toml log.csv
-      scarid tune --method all log.csv | sort -t, -k5 -g | column -s, -t
-      scarid tune --method p2smd --robot scara2 log.csv --save p2smd.toml
+      scarid tune --method all log.csv | sort -t, -k4 -g | column -s, -t
 
-    For the Kalman methods, the noise, the intensity and the acceleration process of each joint are
-    found by maximum likelihood. The other methods get the settings whose derivatives come closest
-    to those of a Kalman smoother that is tuned in this way; it serves as the reference because it
-    also uses the samples after each row. With --robot, all joints share their settings, which are
-    judged by how well they predict the torques of held-out segments of the log, with parameters
-    identified from the remaining segments.
+    With --robot, positions and torques of all joints pass one zero-phase low-pass after another,
+    from low to high cut-offs, and parameters are identified behind each. The cut-off is chosen in
+    the middle of the range in which the parameters of the parts of the log scatter least. Each
+    method then gets the settings that have this bandwidth. A method without a bandwidth, such as a
+    sliding-mode differentiator, gets the settings whose derivatives come closest to those of the
+    smoother with this bandwidth.
 
+    Without a robot only the positions are used. For the Kalman methods, the noise, the intensity
+    and the acceleration process are found by maximum likelihood, the noise being at least that of
+    the encoder's resolution. The other methods get the settings whose derivatives come closest to
+    those of Kalman smoothers that tune themselves. Vibrations of the arm count as motion here, so
+    that a robot with torques is better tuned with --robot.
+
+    All joints get the same settings, because a torque contains the accelerations of all joints.
     Writes the table of all settings that were tried. The same seed gives the same settings. Holds
-    the whole log in memory; if the log has gaps, only its longest segment is used.
+    the log in memory. Without a robot, only the longest segment of a log with gaps is used.
     """

@@ -11,8 +11,10 @@ least squares.
 
 from math import sqrt
 
+LEAST = 1e-6  # of the largest deviation of a residual
 
-def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor):
+
+def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor, residuals):
     """Take in the rows of W and y sample by sample, and write theta after each to estimates.
 
     W (samples, joints, parameters), y (samples, joints). scales (samples, joints): what each row is
@@ -20,28 +22,26 @@ def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor):
     of the ones. row (parameters + 1): work space. sums: [0] the residual sum of squares, [1] the
     number of rows, both subject to forgetting, [2] the number of samples. estimates (samples or 0,
     parameters). All but W, y, scales and forgetting are changed in place. forgetting (parameters):
-    factors per sample; the residual forgets by the first of them. floor: see `forget`.
+    factors per sample; the residual forgets by the first of them. floor: see `forget`. residuals
+    (joints or 0, 4): if not empty, rows are weighted by the running residual of their joint, see
+    `weigh`; changed in place.
     """
     p = triangle.shape[0]
     samples = W.shape[0]
     joints = W.shape[1]
-    if W.shape[2] != p or triangle.shape[1] != p + 1 or estimates.shape[1] != p:
-        raise ValueError("information: numbers of parameters differ")
-    if y.shape[0] != samples or y.shape[1] != joints or len(row) != p + 1 or len(sums) != 3:
-        raise ValueError("information: numbers of samples or joints differ")
-    if scales.shape[0] != samples or scales.shape[1] != joints or len(forgetting) != p:
-        raise ValueError("information: numbers of scales or factors differ")
+    check(W, y, scales, triangle, row, sums, estimates, forgetting, residuals)
+    weighs = residuals.shape[0] > 0
     traced = estimates.shape[0] > 0
-    if traced and estimates.shape[0] != samples:
-        raise ValueError("information: numbers of samples and estimates differ")
     forgets = differs(forgetting, 1.0, p)
     for k in range(samples):
         if forgets:
             sums[0] = float(sums[0]) * float(forgetting[0])
             sums[1] = float(sums[1]) * float(forgetting[0])
             forget(triangle, row, forgetting, floor, int(float(sums[2])) % p, p)
+        if weighs:
+            weigh(residuals, joints, p)
         for n in range(joints):
-            take(W, y, scales, triangle, row, sums, k, n, p)
+            take(W, y, scales, triangle, row, sums, residuals, float(forgetting[0]), k, n, p)
         sums[2] = float(sums[2]) + 1.0
         if traced:
             solve(triangle, row, p)
@@ -49,17 +49,71 @@ def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor):
                 estimates[k, j] = float(row[j])
 
 
-def take(W, y, scales, triangle, row, sums, k, n, p):
-    """Take in the row of joint n at sample k, times its scale."""
+def check(W, y, scales, triangle, row, sums, estimates, forgetting, residuals):
+    """Refuse arrays whose sizes do not fit each other."""
+    p = triangle.shape[0]
+    n = W.shape[0]
+    if W.shape[2] != p or triangle.shape[1] != p + 1 or estimates.shape[1] != p:
+        raise ValueError("information: numbers of parameters differ")
+    if y.shape[0] != n or y.shape[1] != W.shape[1] or len(row) != p + 1 or len(sums) != 3:
+        raise ValueError("information: numbers of samples or joints differ")
+    if scales.shape[0] != n or scales.shape[1] != W.shape[1] or len(forgetting) != p:
+        raise ValueError("information: numbers of scales or factors differ")
+    if estimates.shape[0] != 0 and estimates.shape[0] != n:
+        raise ValueError("information: numbers of samples and estimates differ")
+    if residuals.shape[1] != 4 or (residuals.shape[0] != 0 and residuals.shape[0] != W.shape[1]):
+        raise ValueError("information: numbers of joints and residuals differ")
+
+
+def take(W, y, scales, triangle, row, sums, residuals, forgetting, k, n, p):
+    """Take in the row of joint n at sample k, times its scale and the weight of the joint."""
     scale = float(scales[k, n])
     if scale == 0.0:
         return
+    weighs = residuals.shape[0] > 0
+    if weighs:
+        scale *= float(residuals[n, 3])
     for j in range(p):
         row[j] = float(W[k, n, j])
     row[p] = float(y[k, n])
     weight = rotate(triangle, row, scale * scale, p)
-    sums[0] = float(sums[0]) + weight * float(row[p]) * float(row[p])
+    square = weight * float(row[p]) * float(row[p])
+    sums[0] = float(sums[0]) + square
     sums[1] = float(sums[1]) + 1.0
+    tau = float(y[k, n])
+    if weighs and tau != 0.0:
+        residuals[n, 0] = float(residuals[n, 0]) * forgetting + square / (scale * scale)
+        residuals[n, 1] = float(residuals[n, 1]) * forgetting + 1.0
+        residuals[n, 2] = float(residuals[n, 2]) * forgetting + tau * tau
+
+
+def weigh(residuals, joints, p):
+    """Write the weight of each joint: the largest deviation of a residual over that of the joint.
+
+    residuals (joints, 4): [0] the sum of squares of the recursive residuals so far (Brown, Durbin
+    and Evans 1975: each is what its row leaves of the fit of the rows before it, over the square
+    root of 1 + x' P x), [1] the number of rows, [2] the sum of squares of the torques, all subject
+    to forgetting and without rows whose torque is 0, [3] the weight. The residual of n rows counts
+    as at least the share p / n of the torque, because few rows are fitted by p parameters anyhow. A
+    joint without torque so far weighs as much as the least certain one, and no joint outweighs
+    another by more than a factor of a million.
+    """
+    largest = 0.0
+    for n in range(joints):
+        largest = max(largest, variance(residuals, n, p))
+    for n in range(joints):
+        own = variance(residuals, n, p)
+        least = LEAST * LEAST * largest
+        residuals[n, 3] = sqrt(largest / max(own, least)) if own > 0.0 else 1.0
+
+
+def variance(residuals, n, p):
+    """The variance of the residual of joint n; 0 before its first row."""
+    rows = float(residuals[n, 1])
+    if rows == 0.0:
+        return 0.0
+    share = p / rows
+    return (float(residuals[n, 0]) + share * share * float(residuals[n, 2])) / rows
 
 
 def differs(factors, value, p):

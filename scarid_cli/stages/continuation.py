@@ -11,6 +11,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from scarid_cli.algorithms.estimators.ekf import FilterState
+from scarid_cli.algorithms.estimators.rls import WeightedInformation
 from scarid_cli.algorithms.regression.information import Information
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
@@ -19,7 +20,16 @@ from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.errors import BadData, UsageFault
 
 KNOWN = {
-    kind.__name__: kind for kind in (Blocks, Information, Checkpoint, FilterState, Rows, Subsample)
+    kind.__name__: kind
+    for kind in (
+        Blocks,
+        Information,
+        Checkpoint,
+        FilterState,
+        Rows,
+        Subsample,
+        WeightedInformation,
+    )
 }
 
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from math import inf
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.filters.kalman_method import KalmanMethod
+from scarid_cli.algorithms.processes.bandwidth import bandwidth_of, velocity_noise
 from scarid_cli.algorithms.processes.matching import settling_rows
 from scarid_cli.algorithms.processes.method import MatchedForm, Method
 from scarid_cli.errors import TooShort
@@ -27,12 +30,20 @@ def differentiate(
     return _motion(table, methods, _plain, left_out, marked=SEGMENT in table.columns)
 
 
-def matched(table: Table, methods: list[Method], left_out: list[TooShort] | None = None) -> Table:
+def matched(
+    table: Table,
+    methods: list[Method],
+    left_out: list[TooShort] | None = None,
+    *,
+    per_joint: bool = False,
+) -> Table:
     """A motion whose positions and torques belong to the same instant as the derivatives.
 
-    The column `settled` is 0 in the settling rows at both ends of the record or segment.
+    The column `settled` is 0 in the settling rows at both ends of the record or segment. Methods
+    that tune themselves get one setting for all joints, unless each is tuned `per_joint`.
     """
-    return _motion(table, methods, _matching, left_out, marked=True)
+    together = not per_joint and len(set(methods)) == 1
+    return _motion(table, methods, _matching, left_out, marked=True, together=together)
 
 
 Planner = Callable[[Table, list[Method]], Plan]
@@ -45,25 +56,27 @@ def _motion(
     left_out: list[TooShort] | None,
     *,
     marked: bool,
+    together: bool = False,
 ) -> Table:
-    """The table as a motion, with the lag of its rows [s] in the metadata."""
+    """The table as a motion, with the lag of its rows [s] and the bandwidth in the metadata."""
     period = table.period
+    extra = dict(table.meta.extra)
     schema = _schema(table, len(methods), [pa.field("settled", pa.int64())] if marked else [])
-    if any(method.TUNES_ITSELF for method in methods):  # these need the whole record first
+    if not all(method.is_fitted for method in methods):  # the others need the whole record first
         rows = inf
 
         def planned(segment: Table) -> tuple[Table, Plan]:
-            segment, fitted = _fitted(segment, methods)
+            segment, fitted = _fitted(segment, methods, together=together)
             return segment, planner(segment, fitted)
     else:
         plan = planner(table, methods)
         plan.check(period)
         rows = plan.lag(period)
+        extra |= _passed(methods, period) if planner is _matching else {}
 
         def planned(segment: Table) -> tuple[Table, Plan]:
             return segment, plan
 
-    extra = dict(table.meta.extra)
     if rows:
         extra["lag"] = "whole record" if rows == inf else rows * period
     if marked and "settled" in table.columns:
@@ -92,6 +105,20 @@ def _matching(table: Table, methods: list[Method]) -> Plan:
     return Plan(tasks, _edges(forms, table.period))
 
 
+def _passed(methods: list[Method], period: float) -> dict[str, Any]:
+    """The bandwidth [Hz] of the motion, and the noise of each velocity, as far as they are known.
+
+    The noise is that of the positions which the settings state, within the bandwidth.
+    """
+    found = [bandwidth_of(method, period) for method in methods]
+    known = [hertz for hertz in found if hertz is not None]
+    if len(known) < len(found) or not known:
+        return {}
+    stated = [m.noise if isinstance(m, KalmanMethod) else 0.0 for m in methods]
+    noise = [velocity_noise(x, hertz, period) for x, hertz in zip(stated, known, strict=True)]
+    return {"bandwidth": min(known), "velocity_noise": noise}
+
+
 def _edges(forms: list[MatchedForm], period: float) -> Edges:
     settling = [(0, 0)]
     for form in forms:
@@ -102,13 +129,19 @@ def _edges(forms: list[MatchedForm], period: float) -> Edges:
     return Edges(after, before)
 
 
-def _fitted(table: Table, methods: list[Method]) -> tuple[Table, list[Method]]:
-    """The table and the methods; those that tune themselves are tuned on the whole record."""
+def _fitted(table: Table, methods: list[Method], *, together: bool) -> tuple[Table, list[Method]]:
+    """The table and the methods; those that tune themselves are tuned on the whole record.
+
+    `together`: all joints have the same method, which is tuned on the positions of all.
+    """
     batches = list(table.batches)
     columns = [f"q{i}" for i in range(1, len(methods) + 1)]
     positions = np.concatenate([matrix(batch, columns) for batch in batches], axis=1)
     period = table.period
-    fitted = [method.fitted(q, period) for method, q in zip(methods, positions, strict=True)]
+    if together and methods[0].TUNES_TOGETHER:
+        fitted = [methods[0].fitted(positions, period)] * len(methods)
+    else:
+        fitted = [method.fitted(q, period) for method, q in zip(methods, positions, strict=True)]
     return replace(table, batches=iter(batches)), fitted
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows
@@ -51,7 +52,10 @@ def identify(
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
-    for batch, rows in treated(table, robot, treatment, checkpoint.seen, estimator):
+    left_out = LeftOut()
+    for batch, rows in treated(
+        table, robot, treatment, checkpoint.seen, estimator, left_out=left_out
+    ):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))
@@ -64,7 +68,11 @@ def identify(
     if keep:
         keep(checkpoint)
     meta = replace(table.meta, kind="parameters", robot=robot.name)
-    return parameters(found, robot, meta, treatment, variance=variance)
+    result = parameters(found, robot, meta, treatment, variance=variance)
+    if not treatment.counting:
+        return result
+    extra = {**result.meta.extra, "left_out": asdict(left_out)}
+    return replace(result, meta=replace(result.meta, extra=extra))
 
 
 def _check_enough(table: Table, robot: Robot, counted: int) -> None:

@@ -8,6 +8,7 @@ from itertools import chain
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.rows import Rows, delay_column, joined
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
@@ -20,14 +21,18 @@ Part = tuple[pa.RecordBatch | None, Rows]
 
 
 def predicted(
-    table: Table, models: Sequence[Identified], treatment: Treatment
+    table: Table,
+    models: Sequence[Identified],
+    treatment: Treatment,
+    left_out: LeftOut | None = None,
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows, list[Array]]]:
     """Each part of a motion, with the torques (joints, samples) that each model predicts.
 
     All models have the same robot and the same delay, by which the predicted torques lead.
+    `left_out` counts the rows that are left out.
     """
     delay = models[0].delay
-    parts = treated(table, models[0].robot, treatment)
+    parts = treated(table, models[0].robot, treatment, left_out=left_out)
     for (batch, rows), around, own in _surrounded(parts) if delay else _alone(parts):
         torques = [model.robot.torques(around.W, model.theta) for model in models]
         if delay:

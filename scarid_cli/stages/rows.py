@@ -8,8 +8,9 @@ from collections.abc import Iterator
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.counting import LeftOut, counted
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
-from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, without_slow
+from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, runs, without_slow
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
@@ -29,19 +30,24 @@ def treated(
     treatment: Treatment,
     seen: int = 0,
     estimator: BaseEstimator | None = None,
+    *,
+    left_out: LeftOut | None = None,
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     """The rows of the settled samples, each part with the batch that it comes from.
+
+    `left_out` counts the rows that are left out near reversals and standstill.
 
     A treatment that needs all rows at once gives a single part, without a batch. `seen` is the
     number of the first sample. The rows include the reference position and velocity if the
     estimator needs them and the table has them; for one that follows the reference, the rows are
     those of the reference.
     """
-    counted = 0
-    for batch, rows in _treated(table, robot, treatment, seen, estimator):
-        counted += int(np.count_nonzero(rows.scales))
+    fitted = 0
+    parts = _treated(table, robot, treatment, seen, estimator, left_out or LeftOut())
+    for batch, rows in parts:
+        fitted += int(np.count_nonzero(rows.scales))
         yield batch, rows
-    if not counted:
+    if not fitted:
         raise bad_data(
             table.name,
             "no rows to fit",
@@ -51,11 +57,30 @@ def treated(
 
 
 def _treated(
-    table: Table, robot: Robot, treatment: Treatment, seen: int, estimator: BaseEstimator | None
+    table: Table,
+    robot: Robot,
+    treatment: Treatment,
+    seen: int,
+    estimator: BaseEstimator | None,
+    left_out: LeftOut,
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
-    slow = np.array(treatment.slow) if treatment.slow else None
-    late = None if treatment.decimate else slow
-    held, gaps = [], Gaps(table.period)
+    parts = _parts(table, robot, treatment, seen, estimator)
+    if treatment.counting and not treatment.decimate:
+        parts = counted(parts, treatment.counting, left_out)
+    if not treatment.holds:
+        yield from parts
+        return
+    held = [rows for _, rows in parts]
+    if held:
+        yield None, _decimated(joined(held), treatment, left_out)
+
+
+def _parts(
+    table: Table, robot: Robot, treatment: Treatment, seen: int, estimator: BaseEstimator | None
+) -> Iterator[tuple[pa.RecordBatch, Rows]]:
+    """The rows of consecutive parts of the table; what is decimated keeps its slow rows."""
+    slow = np.array(treatment.slow) if treatment.slow and not treatment.decimate else None
+    gaps = Gaps(table.period)
     signals = FOLLOWED if estimator and estimator.FOLLOWS else MEASURED
     known = set(of_joints(len(robot.joints), *REFERENCE)) <= set(table.columns)
     start, end = treatment.skip
@@ -65,13 +90,7 @@ def _treated(
         reference = None
         if known and estimator and estimator.REFERENCE:
             reference = _signals(robot, kept, *REFERENCE)
-        rows = rows_of(robot, motion, at, table.period, slow=late, reference=reference)
-        if treatment.holds:
-            held.append(rows)
-        else:
-            yield kept, rows
-    if held:
-        yield None, _decimated(joined(held), treatment.decimate, slow)
+        yield kept, rows_of(robot, motion, at, table.period, slow=slow, reference=reference)
 
 
 def _signals(robot: Robot, batch: pa.RecordBatch, *names: str) -> Array:
@@ -121,11 +140,18 @@ def _after(
             yield first + skipped, batch.slice(skipped)
 
 
-def _decimated(rows: Rows, factors: tuple[int, ...], slow: Array | None) -> Rows:
-    if not factors:
+def _decimated(rows: Rows, treatment: Treatment, left_out: LeftOut) -> Rows:
+    """The rows after all decimations, of which some may then be left out."""
+    if not treatment.decimate:
         return rows
     from scarid_cli.algorithms.regression.decimation import decimated  # scipy.signal takes a second
 
-    for factor in factors:
+    for factor in treatment.decimate:
         rows = decimated(rows, factor)
-    return rows if slow is None else without_slow(rows, slow)
+    if treatment.slow:
+        rows = without_slow(rows, np.array(treatment.slow))
+    if not treatment.counting:
+        return rows
+    parts = ((None, rows.part(run)) for run in runs(rows.at))
+    counting = treatment.counting.decimated(rows.h)
+    return joined([part for _, part in counted(parts, counting, left_out)])

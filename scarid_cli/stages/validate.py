@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
+from typing import Any
 
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.prediction import Quality, empty
@@ -34,12 +36,16 @@ def validate(
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    for batch, rows, (torques,) in predicted(table, [model], treatment or Treatment()):
+    treatment, left_out = treatment or Treatment(), LeftOut()
+    for batch, rows, (torques,) in predicted(table, [model], treatment, left_out):
         sums = added(sums, rows, torques)
         if predictions and batch is not None:
             new = dict(zip(schema.names[1:], (*rows.y.T, *torques), strict=False))
             predictions.write(with_columns(batch, schema, new))
-    return _metrics(table, robot, [Quality.of(joint) for joint in sums], model.delay)
+    extra: dict[str, Any] = {"left_out": asdict(left_out)} if treatment.counting else {}
+    if model.delay:
+        extra["delay"] = model.delay
+    return _metrics(table, robot, [Quality.of(joint) for joint in sums], extra)
 
 
 def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
@@ -48,12 +54,12 @@ def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
     return pa.schema([number("t", "s"), *torques, *segment_field(table)])
 
 
-def _metrics(table: Table, robot: Robot, qualities: list[Quality], delay: float) -> Table:
+def _metrics(table: Table, robot: Robot, qualities: list[Quality], extra: dict[str, Any]) -> Table:
     schema = schemas.load("metrics").arrow()
     rows = (
         (i, q.r2, q.rmse, joint.torque_unit, q.relative_error, q.samples)
         for i, (q, joint) in enumerate(zip(qualities, robot.joints, strict=True), start=1)
     )
-    extra = {**table.meta.extra, **({"delay": delay} if delay else {})}
+    extra = {**table.meta.extra, **extra}
     meta = replace(table.meta, kind="metrics", robot=robot.name, extra=extra)
     return table_of("validate", schema, rows, meta)

@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.regression.estimation import Estimation
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, plain, rows_of
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.tuning import judges
-from scarid_cli.arrays import Array
 
 EMPS = load("emps")
 
@@ -64,9 +62,3 @@ def test_weights_of_joints_without_any_residual_are_equal(torque: float, estimat
     y = np.array([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]]) * torque
     found = estimated(estimator, plain(W, y))
     np.testing.assert_allclose(found.fit.estimates, y.mean(axis=0), rtol=1e-9, atol=1e-300)
-
-
-def test_a_record_that_never_settles_has_no_error_of_torques() -> None:
-    q: Array = 0.1 * np.linspace(0.0, 20.0, 4001)[None, :]
-    judge = judges.error_of_torques(EMPS, q, np.ones_like(q), 0.005)
-    assert judge(DIFFERENTIATORS.load("kalman")()) == np.inf

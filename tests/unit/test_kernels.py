@@ -134,6 +134,7 @@ def information(
     forgetting: float | tuple[float, ...] = 1.0,
     *,
     trace: bool = False,
+    weights: bool = False,
 ) -> Arguments:
     samples, joints, p = 60, 2, 5
     W = rng.standard_normal((samples, joints, p))
@@ -143,7 +144,9 @@ def information(
     triangle = np.column_stack((0.1 * np.eye(p), rng.standard_normal(p)))
     estimates = np.empty((samples if trace else 0, p))
     factors = np.resize(forgetting, p).astype(float)
-    return [W, y, scales, triangle, np.empty(p + 1), rng.random(3), estimates, factors, 0.05]
+    residuals = np.zeros((joints if weights else 0, 4))
+    work, sums = np.empty(p + 1), rng.random(3)
+    return [W, y, scales, triangle, work, sums, estimates, factors, 0.05, residuals]
 
 
 def moments(rng: np.random.Generator) -> Arguments:
@@ -241,6 +244,11 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
     "sos": ("sos", "filtered", sos),
     "information": ("information", "update", information),
     "information, trace": ("information", "update", lambda rng: information(rng, trace=True)),
+    "information, weights": (
+        "information",
+        "update",
+        lambda rng: information(rng, 0.97, trace=True, weights=True),
+    ),
     "information, forgetting": (
         "information",
         "update",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from unit.regressions import THETA, P, data, fitted
 
-from scarid_cli.algorithms.estimators import ls, rls
+from scarid_cli.algorithms.estimators import ls, rls, wls
 from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -31,7 +33,7 @@ def textbook(W: Array, y: Array, forgetting: float, prior: Array, p0: float) -> 
 def test_rls_is_the_recursion_of_the_textbook(joints: int, forgetting: float) -> None:
     W, y = data(300, joints)
     prior = np.array([1.0, 0.0, -1.0, 2.0])
-    estimator = rls.Estimator(forgetting, p0=100.0)
+    estimator = rls.Estimator(forgetting, p0=100.0, weights=0)
     state, trace = estimator.step(estimator.init(prior), plain(W, y), trace=True)
     expected, covariance = textbook(W, y, forgetting, prior, p0=100.0)
     fit = estimator.fit(state).fit
@@ -44,7 +46,7 @@ def test_rls_is_the_recursion_of_the_textbook(joints: int, forgetting: float) ->
 
 def test_rls_that_knows_and_forgets_nothing_is_ls() -> None:
     W, y = data(500)
-    recursive = fitted(rls.Estimator(forgetting=1.0, p0=1e12), W, y)
+    recursive = fitted(rls.Estimator(forgetting=1.0, p0=1e12, weights=0), W, y)
     plain = fitted(ls.Estimator(), W, y)
     np.testing.assert_allclose(recursive.estimates, plain.estimates, rtol=1e-9)
     np.testing.assert_allclose(recursive.unit_covariance, plain.unit_covariance, rtol=1e-9)
@@ -132,7 +134,7 @@ def test_rls_forgets_each_parameter_at_its_own_rate() -> None:
         moment = information @ theta
         information += rows.T @ rows
         moment += rows.T @ torques
-    fit = fitted(rls.Estimator(tuple(factors.tolist())), W, y)
+    fit = fitted(rls.Estimator(tuple(factors.tolist()), weights=0), W, y)
     np.testing.assert_allclose(fit.estimates, np.linalg.solve(information, moment), rtol=1e-9)
     covariance = np.linalg.inv(information)
     np.testing.assert_allclose(fit.unit_covariance, covariance, rtol=1e-8, atol=1e-12)
@@ -164,7 +166,7 @@ def test_forgetting_weights_the_residual_and_the_rows_alike() -> None:
     root = np.repeat(np.sqrt(0.98 ** np.arange(200)[::-1]), 2)
     A, b = W.reshape(-1, P) * root[:, None], y.ravel() * root
     theta, squares, *_ = np.linalg.lstsq(A, b, rcond=None)
-    estimator = rls.Estimator(forgetting=0.98, p0=1e12)
+    estimator = rls.Estimator(forgetting=0.98, p0=1e12, weights=0)
     fit = estimator.fit(
         estimator.step(estimator.init(np.zeros(P)), plain(W, y), trace=False)[0]
     ).fit
@@ -178,3 +180,77 @@ def test_long_standstill_leaves_the_estimates_alone() -> None:
     estimator = rls.Estimator(forgetting=0.95)
     _, trace = estimator.step(estimator.init(THETA), plain(W, y), trace=True)
     np.testing.assert_allclose(trace[-1], THETA, rtol=1e-12)
+
+
+def unequal(samples: int) -> tuple[Array, Array]:
+    """Rows of two joints, of which the second has a hundredth of the torque and of the noise."""
+    rng = np.random.default_rng(3)
+    W = rng.standard_normal((samples, 2, P)) * np.array([1.0, 0.01])[:, None]
+    W[:, 0, 2:] = 0.0  # these parameters act on the second joint only
+    y = W @ THETA + 0.1 * rng.standard_normal((samples, 2)) * np.array([1.0, 0.01])
+    return np.ascontiguousarray(W), np.ascontiguousarray(y)
+
+
+@pytest.mark.parametrize("forgetting", [1.0, 0.98])
+def test_rls_weights_joints_by_their_recursive_residuals(forgetting: float) -> None:
+    """By definition, in the covariance form: e^2 / (1 + w' P w) of each row, in torque units."""
+    W, y = unequal(300)
+    theta, covariance = np.zeros(P), 100.0 * np.eye(P)
+    squares, rows, torques = (np.zeros(2) for _ in range(3))
+    for w_sample, y_sample in zip(W, y, strict=True):
+        covariance = covariance / forgetting
+        weights = np.ones(2)
+        if rows.all():
+            variances = (squares + (P / rows) ** 2 * torques) / rows
+            weights = variances.max() / variances
+        for j, (w, tau) in enumerate(zip(w_sample, y_sample, strict=True)):
+            spread = 1.0 / weights[j] + w @ covariance @ w
+            gain, error = covariance @ w / spread, tau - w @ theta
+            theta = theta + gain * error
+            squares[j] = forgetting * squares[j] + error**2 / (weights[j] * spread)
+            rows[j] = forgetting * rows[j] + 1.0
+            torques[j] = forgetting * torques[j] + tau**2
+            covariance = covariance - np.outer(gain, w @ covariance)
+    fit = fitted(rls.Estimator(forgetting, p0=100.0), W, y)
+    # A little information is given back when it forgets.
+    np.testing.assert_allclose(fit.estimates, theta, rtol=1e-9 if forgetting == 1.0 else 1e-6)
+
+
+def test_rls_comes_to_the_weights_of_wls() -> None:
+    W, y = unequal(5000)
+    weighted = fitted(rls.Estimator(p0=1e9), W, y)
+    reference = fitted(wls.Estimator(), W, y)
+    alike = fitted(rls.Estimator(p0=1e9, weights=0), W, y)
+    errors = reference.standard_errors()
+    assert np.abs(weighted.estimates - reference.estimates).max() < 0.3 * errors.max()
+    assert np.abs(alike.estimates - reference.estimates).max() > 0.3 * errors.max()
+
+
+def test_one_joint_is_not_weighted() -> None:
+    W, y = data(300)
+    W, y = W[:, :1], y[:, :1]
+    assert fitted(rls.Estimator(), W, y).estimates.tolist() == (
+        fitted(rls.Estimator(weights=0), W, y).estimates.tolist()
+    )
+
+
+def test_a_joint_that_comes_late_does_not_drown_out_the_others() -> None:
+    """Its first torque is that of rest; it must not count for more than what follows."""
+    W, y = unequal(2000)
+    rows = replace(plain(W, y), scales=np.ones(y.shape))
+    rows.scales[:1000, 1] = 0.0
+    rows.y[1000:1100, 1] = 0.0
+    estimator = rls.Estimator(p0=1e9)
+    state, _ = estimator.step(estimator.init(np.zeros(P)), rows)
+    found = estimator.fit(state).fit.estimates
+    rows.scales[1000:1100, 1] = 0.0
+    state, _ = estimator.step(estimator.init(np.zeros(P)), rows)
+    assert found == pytest.approx(estimator.fit(state).fit.estimates, abs=1.5)
+
+
+def test_a_joint_without_torque_does_not_drown_out_the_others() -> None:
+    W, y = unequal(400)
+    W[:, 1], y[:, 1] = 0.0, 0.0
+    W[:, 0] = np.random.default_rng(0).standard_normal((400, P))
+    y[:, 0] = W[:, 0] @ THETA
+    np.testing.assert_allclose(fitted(rls.Estimator(p0=1e9), W, y).estimates, THETA, rtol=1e-6)

@@ -34,7 +34,7 @@ class Differentiator(FirMethod):
     beta: float = 4.0
     degree: int = 0
 
-    TUNED: ClassVar = {"window": Range(0.02, 1.0)}
+    TUNED: ClassVar = {"window": Range(0.02, 1.0, narrows=True)}
 
     def check(self) -> None:
         require_positive(self, "window")

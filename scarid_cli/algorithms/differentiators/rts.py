@@ -39,12 +39,17 @@ class Differentiator(KalmanMethod, RecordMethod):
 
     MATCHING = Matching.SECOND_ORDER
     TUNES_ITSELF = True
+    TUNES_TOGETHER = True
 
     def check_noise(self) -> None:
         require_not_negative(self, "noise", "intensity")
 
+    @property
+    def is_fitted(self) -> bool:
+        return bool(self.noise and self.intensity)
+
     def fitted(self, x: Array, h: float) -> Differentiator:
-        if self.noise and self.intensity:
+        if self.is_fitted:
             return self
         return best_smoothing(best_model(self, x, h), x, h)
 

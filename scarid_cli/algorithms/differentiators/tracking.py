@@ -34,7 +34,7 @@ class Differentiator(LinearisedMethod):
     limit: float = 1000.0
     jerk: float = 100000.0
 
-    TUNED: ClassVar = {"smoothing": Range(0.005, 0.3)}
+    TUNED: ClassVar = {"smoothing": Range(0.005, 0.3, narrows=True)}
 
     def check(self) -> None:
         require_positive(self, "smoothing", "limit", "jerk")

@@ -56,8 +56,15 @@ class Method(Validated, Process):
     MATCHING: ClassVar[Matching]
     # Whether `fitted` chooses settings from the record; then a stage needs the whole record.
     TUNES_ITSELF: ClassVar[bool] = False
+    # Whether `fitted` can choose one setting for the positions of several joints (joints, rows).
+    TUNES_TOGETHER: ClassVar[bool] = False
     # Whether the method is a Kalman filter or smoother, whose settings have a likelihood.
     HAS_LIKELIHOOD: ClassVar[bool] = False
+
+    @property
+    def is_fitted(self) -> bool:
+        """Whether the settings are known without a record."""
+        return not self.TUNES_ITSELF
 
     def fitted(self, x: Array, h: float) -> Method:  # noqa: ARG002 (for those that tune themselves)
         """The method with settings chosen from the positions x of a whole record."""

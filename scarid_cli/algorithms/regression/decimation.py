@@ -10,12 +10,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import cheby1, sosfiltfilt
 
+from scarid_cli.algorithms.regression.counting import CUTOFF_OF_NYQUIST
 from scarid_cli.algorithms.regression.rows import Rows, joined, runs
 from scarid_cli.arrays import Array
 
 ORDER = 8
 RIPPLE = 0.05  # dB
-CUTOFF_OF_NYQUIST = 0.8  # of the new Nyquist frequency
 PADDING = 3 * ORDER
 
 

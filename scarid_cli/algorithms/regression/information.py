@@ -13,6 +13,7 @@ from scarid_cli.kernels import information
 # Variance of the residual: with r - c degrees of freedom, 1 as printed in eq. 32-33, with r - 1.
 RESIDUAL, UNIT, SAMPLE = "residual", "unit", "sample"
 ROUNDING = 1e-15  # the relative error of the largest eigenvalue of a matrix
+RUNNING = 4  # numbers of the running residual of a joint, see the kernel
 NOTHING = 1e-150  # a standard deviation whose square is not a number any more
 
 
@@ -101,13 +102,15 @@ def absorb(
     *,
     forgetting: Array | None = None,
     floor: float = 0.0,
+    residuals: Array | None = None,
     trace: bool = False,
 ) -> tuple[Information, Array]:
     """The information after these rows, each multiplied by its scale.
 
     With `trace` the estimates after each sample (samples, parameters) are returned as well.
     `forgetting` (parameters) are factors per sample; `floor` is the information on each parameter
-    that forgetting leaves in the long run.
+    that forgetting leaves in the long run. `residuals` (joints, RUNNING), if given, are the running
+    residuals by which joints are weighted, and are changed in place.
     """
     samples, _, parameters = W.shape
     weighted = state.weighted.copy()
@@ -123,6 +126,7 @@ def absorb(
         estimates,
         np.ones(parameters) if forgetting is None else forgetting,
         floor,
+        np.empty((0, RUNNING)) if residuals is None else residuals,
     )
     return Information(weighted, *map(float, sums)), estimates
 

@@ -39,6 +39,18 @@ def noise_of(x: Array) -> float:
     return float(max(np.sqrt(np.mean(np.diff(x, DIFFERENCES) ** 2)) / gain, floor))
 
 
+def resolution_of(x: Array) -> float:
+    """The resolution of an encoder as its positions x show it: their smallest step; 0 at rest."""
+    steps = np.abs(np.diff(x))
+    return float(steps[steps > 0.0].min(initial=np.inf)) if np.any(steps) else 0.0
+
+
+def noise_floor(records: Sequence[Array]) -> float:
+    """The root mean square over the records of the noise that their resolution alone makes."""
+    resolutions = np.array([resolution_of(x) for x in records])
+    return float(np.sqrt(np.mean(resolutions**2) / 12.0))
+
+
 def log_likelihood(method: KalmanMethod, x: Array, h: float) -> float:
     """The logarithm of the likelihood of the positions x, up to a constant per sample.
 
@@ -81,14 +93,17 @@ def likelihood_of_all(method: KalmanMethod, records: Sequence[Array], h: float) 
 def most_likely(method: K, records: Sequence[Array], h: float, *, damped: bool = False) -> K:
     """The method with the noise and the intensity that make the records (of positions) most likely.
 
-    With `damped`, also with the damping and the frequency of the acceleration process, starting
-    from a method that is the most likely one without. The search is a grid, then the simplex of
-    Nelder and Mead on logarithms.
+    The noise is at least that of the encoder's resolution. With `damped`, also with the damping and
+    the frequency of the acceleration process, starting from a method that is the most likely one
+    without. The search is a grid, then the simplex of Nelder and Mead on logarithms.
     """
     from scipy.optimize import minimize
 
+    floor = noise_floor(records)
+
     def at(point: Array) -> K:
-        return replace(method, **dict(zip(FITTED[: len(point)], np.exp(point), strict=True)))
+        settings = dict(zip(FITTED[: len(point)], np.exp(point), strict=True))
+        return replace(method, **{**settings, "noise": max(settings["noise"], floor)})
 
     def loss(point: Array) -> float:
         if np.abs(point).max() > 60.0:
@@ -101,7 +116,7 @@ def most_likely(method: K, records: Sequence[Array], h: float, *, damped: bool =
         start = np.log([method.noise, method.intensity, 1.0, 2.0])
     else:
         # Of one variance for all records, the most likely value is the mean of theirs.
-        sigma = np.sqrt(np.mean([noise_of(x) ** 2 for x in records]))
+        sigma = max(np.sqrt(np.mean([noise_of(x) ** 2 for x in records])), floor)
         # The intensity that goes with a bandwidth [rad/s] at this noise
         bandwidths = np.geomspace(2.0, 1.5 / h, 25)
         grid = 2 * method.states * np.log(bandwidths) + np.log(sigma**2 * h)
@@ -114,18 +129,21 @@ def most_likely(method: K, records: Sequence[Array], h: float, *, damped: bool =
 def best_smoothing(method: K, x: Array, h: float) -> K:
     """The method with the intensity whose smoother predicts held-out positions of x best.
 
-    The likelihood looks one sample ahead. A smoother sees the motion on both sides, and on a smooth
-    motion does better with a lower intensity. The search is a grid of half decades, then the
-    minimum of the parabola through its least points.
+    x: of one joint (rows), or of several that share the settings (joints, rows). The likelihood
+    looks one sample ahead. A smoother sees the motion on both sides, and on a smooth motion does
+    better with a lower intensity. The search is a grid of half decades, then the minimum of the
+    parabola through its least points.
     """
-    x = np.ascontiguousarray(x[:ENOUGH])
+    records = [np.ascontiguousarray(row[:ENOUGH]) for row in np.atleast_2d(x)]
     grid = np.log(method.intensity) + np.log(10.0) * np.arange(-6.0, 1.5, 0.5)
 
     def at(log_intensity: float) -> K:
         return replace(method, intensity=float(np.exp(log_intensity)))
 
     tiny = np.finfo(float).tiny  # of a record at rest
-    errors = np.log([held_out_error(at(point), x, h) + tiny for point in grid])
+    errors = np.array(
+        [sum(np.log(held_out_error(at(g), row, h) + tiny) for row in records) for g in grid]
+    )
     least = int(np.argmin(errors))
     around = errors[max(least - 1, 0) : least + 2]
     if len(around) < 3 or not np.isfinite(around).all():

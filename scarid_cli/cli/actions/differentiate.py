@@ -4,18 +4,36 @@ from __future__ import annotations
 
 from typing import Any
 
+from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.methods import configured
+from scarid_cli.errors import UsageFault
 from scarid_cli.io.schemas import joints_of, numbered
 from scarid_cli.stages import differentiate as stage
 
 
-def run(job: Job, *, file: str, match: bool | None, **choice: Any) -> None:
+def run(job: Job, *, file: str, match: bool | None, per_joint: bool, **choice: Any) -> None:
     """Write the motion; the choice is that of a method and its settings, of `configured`."""
     signals = ("q",) if match is False else ("q", "tau")
     table = job.read(file, "measurement", reads=lambda names: numbered(names, *signals))
     methods = configured(joints_of(table.columns, "q"), **choice)
     if match is None:
         match = joints_of(table.columns, "tau") > 0
-    estimated = stage.matched if match else stage.differentiate
-    job.write(estimated(job.recorded(table), methods, job.left_out))
+    if not match:
+        job.write(stage.differentiate(job.recorded(table), methods, job.left_out))
+        return
+    if not per_joint:
+        _require_alike(methods)
+    motion = stage.matched(job.recorded(table), methods, job.left_out, per_joint=per_joint)
+    job.write(motion)
+
+
+def _require_alike(methods: list[Any]) -> None:
+    """Refuse settings that differ between joints, whose signals belong into one equation."""
+    names = [n for n in names_of(methods[0]) if len({getattr(m, n) for m in methods}) > 1]
+    if names:
+        raise UsageFault(
+            f"the joints have different settings ({', '.join(names)}), but a torque contains the "
+            "accelerations of all joints, which --match must pass through the same low-pass; give "
+            "one value for all joints, or --per-joint if they move independently"
+        )

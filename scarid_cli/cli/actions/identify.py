@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,16 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
+from scarid_cli.cli.measured import motion
 from scarid_cli.cli.pairs import require_known, single_settings
-from scarid_cli.cli.treatment import for_robot, treatment_of
+from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import UsageFault
+from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages import identify as stage
 from scarid_cli.stages.parameters import identified
+
+ONLINE, OFFLINE = "rls", "wls"  # what a motion, and a measurement, are identified by
 
 
 def run(
@@ -27,7 +32,7 @@ def run(
     *,
     file: str,
     robot: str | None,
-    estimator: str,
+    estimator: str | None,
     initial: str | None,
     variance: str,
     trace: str | None,
@@ -36,26 +41,30 @@ def run(
     **given: Any,
 ) -> None:
     """Write the parameters, and report the verdict."""
-    method = ESTIMATORS.load(estimator)
-    values = _settings(method, estimator, given)
+    name = estimator or ONLINE
+    method = ESTIMATORS.load(name)
+    values = _settings(method, name, given)
     method(**values)  # refuses settings before anything is read
     treatment = treatment_of(given)
-    _require_possible(method, estimator, treatment, trace=trace, resumable=save or resumed)
+    _require_possible(method, name, treatment, trace=trace, resumable=save or resumed)
     if initial and not method.INITIAL:
-        raise UsageFault(f"--initial: {estimator} has no initial parameters; leave the option out")
+        raise UsageFault(f"--initial: {name} has no initial parameters; leave the option out")
     side, place = job.side_table(trace), job.side_text(save)
-    kind = "trajectory" if method.FOLLOWS else "motion"
-    table, arm = job.read_for(file, kind, robot, torques=True, reference=method.REFERENCE)
+    table, arm = _read(job, file, robot, method)
     arm, treatment = for_robot(arm, treatment, given)
+    if not method.FOLLOWS and not numbered(table.columns, "dq"):
+        row_by_row = bool(trace or resumed or save)
+        if not (estimator or values or given["forgetting"] or initial or row_by_row):
+            name, method = OFFLINE, ESTIMATORS.load(OFFLINE)
+        if given["align"] is None and method.ALIGNS and not row_by_row:
+            treatment = replace(treatment, align=True)
+        table = motion(job, table, arm, _options(name, treatment))
+    given["all_rows"] |= method.FOLLOWS
+    treatment = for_motion(table.meta, treatment, given)
     solver = method(**values, **_single(given["forgetting"], arm.names))
     start = _initial(job, initial, arm)
-    fixed = _fixed(table, arm, estimator, solver, treatment, given["smooth_sign"])
+    fixed = _fixed(table, arm, name, solver, treatment, given["smooth_sign"])
     places: list[Checkpoint] = []
-    checkpoint = None
-    if resumed:
-        from scarid_cli.stages.continuation import restored  # zipfile takes a while to import
-
-        checkpoint = restored(resumed, fixed)
     result = stage.identify(
         job.recorded(table),
         arm,
@@ -64,7 +73,7 @@ def run(
         treatment=treatment,
         variance=variance,
         trace=side,
-        checkpoint=checkpoint,
+        checkpoint=_restored(resumed, fixed),
         keep=places.append,
     )
     job.write(result)
@@ -72,10 +81,37 @@ def run(
         from scarid_cli.stages.continuation import saved
 
         place.write(saved(places[0], fixed))
-    for line in summary_lines(arm.name, estimator, result.meta.extra):
+    report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
+    for line in summary_lines(arm.name, name, result.meta.extra):
         job.say(line)
     if treatment.align and job.out.format == "csv":
         job.say("CSV does not keep the delay: write -o FILE.parquet for validate to apply it")
+
+
+def _read(job: Job, file: str, robot: str | None, method: Any) -> tuple[Table, Robot]:
+    """The motion or measurement, or whatever else the estimator reads, and the robot."""
+    return job.read_for(
+        file,
+        "trajectory" if method.FOLLOWS else "motion",
+        robot,
+        torques=True,
+        reference=method.REFERENCE,
+        without_derivatives=None if method.FOLLOWS else "measurement",
+    )
+
+
+def _options(name: str, treatment: Treatment) -> list[str]:
+    """What is used with a measurement and has to be stated for a motion."""
+    return [f"--estimator {name}", *(["--align"] if treatment.align else [])]
+
+
+def _restored(resumed: str | None, fixed: dict[str, Any]) -> Checkpoint | None:
+    """The checkpoint to continue from, if one was given."""
+    if not resumed:
+        return None
+    from scarid_cli.stages.continuation import restored  # zipfile takes a while to import
+
+    return restored(resumed, fixed)
 
 
 def _require_possible(

@@ -9,31 +9,66 @@ from scarid_cli.cli.settings import document
 from scarid_cli.io.reader import require
 from scarid_cli.io.schemas import joints_of, numbered, of_joints
 from scarid_cli.io.table import Table
+from scarid_cli.stages import bandwidth, record
 from scarid_cli.stages import tune as stage
+
+FOR_ROBOT, FOR_POSITIONS = ("rts", "kalman"), ("kalman",)
 
 
 def run(
-    job: Job, *, file: str, method: str, robot: str | None, seed: int, save: str | None
+    job: Job,
+    *,
+    file: str,
+    methods: tuple[str, ...],
+    robot: str | None,
+    to_time: float | None,
+    seed: int,
+    save: str | None,
 ) -> None:
-    """Write the table of what was tried, and save the best settings."""
+    """Write the table of what was tried, and save the chosen settings."""
     side = job.side_text(save)
     signals = ("q", "tau") if robot else ("q",)
     log = job.read(file, "measurement", reads=lambda names: numbered(names, *signals))
     table = job.recorded(log)
     arm = robot_of(robot) if robot else None
     joints = _joints(table, arm)
-    names = stage.online() if method == "all" else [method]
-    record = stage.Record.of(table, joints, torques=arm is not None)
+    names = _names(methods or (FOR_ROBOT if arm else FOR_POSITIONS))
+    used = record.until(table, to_time) if to_time else table
+    held = record.Record.of(used, joints, torques=arm is not None)
     with steps(quiet=job.quiet) as progress:
-        rows = stage.tune(record, names, arm, seed, progress)
-    best, settings = stage.chosen(rows, joints)
+        if arm:
+            found = bandwidth.bandwidth(held, arm, progress)
+            rows = list(bandwidth.tune_for(held, found, names, seed, progress))
+        else:
+            rows = stage.tune(held, names, seed, progress)
     job.write(stage.trials(table, rows))
     if side:
-        side.write(document(best, settings, command_line()))
+        side.write(document(names[0], stage.chosen(rows, joints), command_line()))
+    if arm:
+        job.say(found.text)
+    elif joints > 1:
+        _warn(job, held)
     for row in rows:
-        if row.best and row.judge != stage.LIKELIHOOD and row.name == best:
-            where = f"joint {row.joint}, " if row.joint else ""
-            job.say(f"{best}, {where}{row.judge} {row.trial.loss:.4g}: {row.settings}")
+        if row.best and row.judge != stage.SCATTER and row.settings:
+            job.say(f"{row.name}: {row.settings}")
+
+
+def _names(methods: tuple[str, ...]) -> list[str]:
+    """The methods that were asked for, each once."""
+    several = (stage.online() if name == "all" else [name] for name in methods)
+    return list(dict.fromkeys(name for names in several for name in names))
+
+
+def _warn(job: Job, held: record.Record) -> None:
+    """Report that the joints would have chosen different bandwidths by themselves."""
+    apart, own = stage.octaves(held)
+    if apart > stage.OCTAVE:
+        listed = ", ".join(f"{hertz:.3g}" for hertz in own)
+        job.say(
+            f"warning: by themselves, the joints would have bandwidths of {listed} Hz; some of "
+            "them may vibrate or be noisy. Give the robot with --robot to choose the bandwidth at "
+            "which its parameters scatter least"
+        )
 
 
 def _joints(table: Table, arm: Robot | None) -> int:

@@ -8,7 +8,7 @@ from typing import Any
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.cli.job import Job, command_line
-from scarid_cli.cli.treatment import for_robot, treatment_of
+from scarid_cli.cli.treatment import for_motion, for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import urdf as stage
 from scarid_cli.stages.estimates import estimates_with_covariance
@@ -26,7 +26,8 @@ def run(
 ) -> None:
     """Write the URDF, and report how far the parameters had to move, and what that costs."""
     treatment = treatment_of(given)
-    if not motion and (treatment != Treatment() or given["smooth_sign"]):
+    rows = given["smooth_sign"] or given["all_rows"] or given["bandwidth"]
+    if not motion and (treatment != Treatment() or rows):
         raise UsageFault("options for the rows of a motion need --motion FILE")
     arm = load(robot)
     if not arm.body:
@@ -41,6 +42,7 @@ def run(
     for line in stage.consistency_report(identified, found):
         job.say(line)
     if log:
+        treatment = for_motion(log.meta, treatment, given)
         r2 = stage.r2_before_and_after(log, identified, found, treatment)
         for line in stage.r2_report(*r2):
             job.say(line)

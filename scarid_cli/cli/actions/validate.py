@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from scarid_cli.cli.job import Job
-from scarid_cli.cli.treatment import for_robot, treatment_of
+from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import validate as stage
 from scarid_cli.stages.parameters import identified
@@ -28,9 +28,11 @@ def run(
     known = job.read(parameters, "parameters")
     table, arm = job.read_for(file, "motion", robot or known.meta.robot, torques=True)
     arm, treatment = for_robot(arm, treatment, given)
+    treatment = for_motion(table.meta, treatment, given)
     model = identified(known, arm)
     result = stage.validate(job.recorded(table), model, treatment=treatment, predictions=side)
     job.write(result)
+    report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
     if model.delay:
         delay = 1e3 * model.delay
         job.say(f"applied the delay that identify fitted: torques lead by {delay:.3g} ms")

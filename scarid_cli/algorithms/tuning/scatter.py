@@ -1,0 +1,161 @@
+"""One cut-off for all joints, at which the identified parameters scatter least.
+
+A low-pass that is too wide passes noise and vibration, one that is too narrow leaves no excitation
+in the rows. Both make the parameters of the parts of a record differ. For a sequence of cut-offs,
+positions and torques of all joints pass the same low-pass, parameters are identified by weighted
+least squares, and the jackknife over the parts of the record gives their covariance. The scatter is
+the share of the variance of the torques that this covariance stands for. No prediction error is
+judged, so that parameters shrunk towards zero gain nothing. See docs/theory.md, section "One
+bandwidth".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.information import inverse_deviations
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
+from scarid_cli.arrays import Array, Numbers
+
+STEP = 2.0**0.25  # from one cut-off to the next
+PARTS = 20  # of the record, each left out once
+ROWS_PER_PARAMETER = 10.0  # independent rows at the first cut-off
+LOWEST = 0.5  # Hz
+HIGHEST = 0.2  # of the sampling rate
+ENOUGH = 2.0  # times the least scatter, at which the sequence ends
+FEWEST = 8  # cut-offs before it may end
+PLATEAU = 1.5  # times the least scatter, up to which a cut-off is as good as the best
+WIDTH = 4  # cut-offs of a plateau
+RIDGE = 1e-10  # added to the squares of columns of unit length
+EXACT = 1e-12  # share of the torques' squares that counts as no residual
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """The scatter at a cut-off [Hz], and the number of rows that count of all rows."""
+
+    cutoff: float
+    scatter: float
+    rows: int
+    share: float
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The cut-off that was chosen, and the plateau (lowest and highest cut-off) around it [Hz]."""
+
+    cutoff: float
+    plateau: tuple[float, float]
+
+
+def curve(
+    robot: Robot,
+    segments: Sequence[Segment],
+    h: float,
+    progress: Callable[[], object] = lambda: None,
+) -> list[Scatter]:
+    """The scatter over the cut-off, from the lowest one up to where it has doubled; h [s]."""
+    found: list[Scatter] = []
+    cutoff = _first(robot, segments, h)
+    while cutoff < HIGHEST / h:
+        parts = [part for s in segments if (part := lowpassed(s, h, cutoff))]
+        found.append(_scatter(robot, parts, cutoff))
+        progress()
+        least = min(point.scatter for point in found)
+        if len(found) > FEWEST and found[-1].scatter > ENOUGH * least:
+            break
+        cutoff *= STEP
+    return found
+
+
+def chosen(points: Sequence[Scatter]) -> Choice:
+    """The middle of the lowest plateau, in octaves, or the least scatter if no plateau is wide."""
+    values = np.array([point.scatter for point in points])
+    least = int(np.argmin(values))
+    good = values <= PLATEAU * values[least]
+    ends = np.flatnonzero(np.diff(good, prepend=False, append=False)).reshape(-1, 2)
+    wide = [(first, last - 1) for first, last in ends.tolist() if last - first >= WIDTH]
+    first, last = wide[0] if wide else (least, least)
+    return Choice(points[(first + last) // 2].cutoff, (points[first].cutoff, points[last].cutoff))
+
+
+def _first(robot: Robot, segments: Sequence[Segment], h: float) -> float:
+    """The cut-off from which there are ten independent rows for each parameter."""
+    rows = sum(s.q.size for s in segments)
+    return max(LOWEST, ROWS_PER_PARAMETER * len(robot.parameters) / (2.0 * rows * h))
+
+
+def _scatter(robot: Robot, parts: Sequence[Lowpassed], cutoff: float) -> Scatter:
+    """The jackknife at one cut-off; infinite where the rows do not determine a joint's residual."""
+    joints, count = len(robot.joints), len(robot.parameters)
+    if not parts:
+        return Scatter(cutoff, np.inf, 0, 0.0)
+    q, dq, ddq, tau = (
+        np.concatenate(x, axis=1) for x in zip(*(p.motion for p in parts), strict=True)
+    )
+    counts = np.concatenate([p.counts for p in parts], axis=1)
+    share = float(np.count_nonzero(counts) / counts.size)
+    rows = counts.sum(axis=1)
+    if not np.all(rows > count / joints + 1):
+        return Scatter(cutoff, np.inf, int(rows.sum()), share)
+    sums = _sums(robot.regressor(q, dq, ddq), tau, counts)
+    variances = np.array([y[k].var() for y, k in zip(tau, counts, strict=True)])
+    value = _jackknife(sums, rows, variances)
+    return Scatter(cutoff, value, int(rows.sum()), share)
+
+
+def _sums(W: Array, tau: Array, counts: Numbers) -> Array:
+    """[W y]'[W y] of the rows that count (parts, joints, parameters + 1, parameters + 1)."""
+    samples, joints, count = W.shape
+    edges = np.arange(PARTS + 1) * samples // PARTS
+    sums = np.empty((PARTS, joints, count + 1, count + 1))
+    for j in range(joints):
+        rows = np.column_stack((W[:, j], tau[j])) * counts[j][:, None]
+        for k in range(PARTS):
+            part = rows[edges[k] : edges[k + 1]]
+            sums[k, j] = part.T @ part
+    return sums
+
+
+def _jackknife(sums: Array, rows: Numbers, variances: Array) -> float:
+    """The trace of the covariance of the parameters, in shares of the variance of the torques.
+
+    sums: of each part and joint, as `_sums` gives them; rows (joints); variances of the torques
+    (joints).
+    """
+    p = sums.shape[-1] - 1
+    total = sums.sum(axis=0)
+    weighted = np.tensordot(_inverse_variances(total, rows), sums, (0, 1))
+    whole = weighted.sum(axis=0)
+    estimates = _solved(whole - weighted)
+    off = estimates - estimates.mean(axis=0)
+    driven = variances > 0.0
+    shares = total[driven, :p, :p] / (rows * variances)[driven, None, None]
+    mean = shares.sum(axis=0) / len(rows)
+    return float((PARTS - 1) / PARTS * np.einsum("ki,ij,kj->", off, mean, off))
+
+
+def _inverse_variances(total: Array, rows: Numbers) -> Array:
+    """The weight of each joint: one over the variance of its residual in a fit of its own rows."""
+    explained = (_solved(total) * total[:, :-1, -1]).sum(axis=1)
+    squares = np.maximum(total[:, -1, -1] - explained, EXACT * total[:, -1, -1])
+    residuals = np.sqrt(squares / rows)
+    return np.asarray(inverse_deviations(residuals) ** 2)
+
+
+def _solved(sums: Array) -> Array:
+    """The solution of the normal equations in [W y]'[W y], or of a stack of them.
+
+    In units of the columns, a little is added to the diagonal, so that undetermined directions
+    remain near 0.
+    """
+    A, b = sums[..., :-1, :-1], sums[..., :-1, -1]
+    size = np.sqrt(np.diagonal(A, axis1=-2, axis2=-1))
+    size = np.where(size > 0.0, size, 1.0)
+    scaled = A / (size[..., :, None] * size[..., None, :])
+    scaled[..., np.arange(b.shape[-1]), np.arange(b.shape[-1])] += RIDGE
+    return np.asarray(np.linalg.solve(scaled, (b / size)[..., None])[..., 0] / size)

@@ -1,0 +1,98 @@
+"""One bandwidth for all joints of a robot, and the settings that give it to differentiators."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite, nan
+from typing import Any
+
+import numpy as np
+
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.tuning.equivalent import chain, equivalent, typed
+from scarid_cli.algorithms.tuning.likelihood import noise_floor
+from scarid_cli.algorithms.tuning.lowpassed import ORDER, Segment, removed
+from scarid_cli.algorithms.tuning.scatter import Choice, Scatter, chosen, curve
+from scarid_cli.algorithms.tuning.search import Trial
+from scarid_cli.errors import BadData
+from scarid_cli.stages.record import Record
+from scarid_cli.stages.tune import BANDWIDTH, SCATTER, Progress, Tried, nearest
+
+
+@dataclass(frozen=True)
+class Bandwidth:
+    """The cut-off [Hz] of all joints, its plateau [Hz], and what was found at each cut-off.
+
+    `noise` [rad or m] is the standard deviation of what the low-pass takes from the positions.
+    """
+
+    choice: Choice
+    points: tuple[Scatter, ...]
+    noise: float
+
+    @property
+    def point(self) -> Scatter:
+        """The scatter at the cut-off that was chosen."""
+        return next(p for p in self.points if p.cutoff == self.choice.cutoff)
+
+    @property
+    def cutoff(self) -> float:
+        """The cut-off [Hz] in four digits, as it is typed."""
+        return typed(self.choice.cutoff)
+
+    @property
+    def text(self) -> str:
+        """The choice in a line."""
+        low, high = self.choice.plateau
+        return (
+            f"cut-off {self.choice.cutoff:.3g} Hz for all joints: the parameters scatter least "
+            f"from {low:.3g} to {high:.3g} Hz, where {100.0 * self.point.share:.0f} % of the rows "
+            "count"
+        )
+
+
+def bandwidth(record: Record, robot: Robot, progress: Progress = lambda: None) -> Bandwidth:
+    """The cut-off at which the parameters of this robot scatter least."""
+    segments = record.segments
+    points = curve(robot, segments, record.h, progress)
+    if not any(isfinite(point.scatter) for point in points):
+        raise BadData(
+            f"{record.name}: too few rows are away from reversals and standstill to choose a "
+            f"bandwidth for the {len(robot.parameters)} parameters of {robot.name}; give a longer "
+            "log, in which every joint moves"
+        )
+    choice = chosen(points)
+    return Bandwidth(choice, tuple(points), _noise(segments, record.h, choice.cutoff))
+
+
+def _noise(segments: Sequence[Segment], h: float, cutoff: float) -> float:
+    """What the low-pass takes from the positions (rms), at least what their resolution makes."""
+    rest = np.concatenate([removed(segment, h, cutoff) for segment in segments], axis=1)
+    floors = [noise_floor(list(segment.q)) for segment in segments]
+    return max(float(np.sqrt(np.mean(rest**2))), *floors)
+
+
+def tune_for(
+    record: Record, found: Bandwidth, names: Sequence[str], seed: int, progress: Progress
+) -> Iterator[Tried]:
+    """The trials of the bandwidth, and for each method the settings that have this bandwidth."""
+    for point in found.points:
+        zero_phase = DIFFERENTIATORS.load("zero-phase")(cutoff=typed(point.cutoff), order=ORDER)
+        best = point.cutoff == found.choice.cutoff
+        yield Tried("zero-phase", SCATTER, Trial(zero_phase, point.scatter), best, point.rows)
+    for name in names:
+        method = DIFFERENTIATORS.load(name)()
+        same = equivalent(method, found.noise, found.cutoff, record.h)
+        if same is not None:
+            yield Tried(name, BANDWIDTH, Trial(same, nan), best=True)
+            continue
+        smoother = recommended(found, record.h)
+        smoothers = [smoother] * record.joints
+        yield from nearest(name, method, record, smoothers, seed, progress)
+
+
+def recommended(found: Bandwidth, h: float) -> Any:
+    """The smoother of the recommended procedure, with this bandwidth."""
+    return chain(DIFFERENTIATORS.load("rts")(), found.noise, found.cutoff, h)

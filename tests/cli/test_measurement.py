@@ -1,0 +1,120 @@
+"""`scarid identify` on a measurement, and the pipe that it says does the same."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import Result, refused
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def log(samples: Path) -> Path:
+    return samples / "scara2.csv"
+
+
+def pipe(err: str) -> str:
+    """The pipe that identify says does the same."""
+    found = re.search(r"^scarid identify: the same as: (.*)$", err, re.MULTILINE)
+    assert found
+    return found[1]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        "",
+        "--robot scara2 --drop-slow 0.1,0.2",
+        "--estimator rls --no-align --set weights=0",
+        "--estimator ml --all-rows",
+        "--decimate 2 --essential",
+        "--initial apriori",
+    ],
+)
+def test_the_printed_pipe_gives_the_same_bytes(options: str, shell: Run) -> None:
+    once = shell(f"scarid identify {options} $SAMPLES/scara2.csv".replace("  ", " "))
+    assert once.status == 0, once.err
+    line = pipe(once.err)
+    assert line.count(" | ") == 1
+    again = shell(line)
+    assert again.out == once.out
+    assert again.err.splitlines() == [
+        x for x in once.err.splitlines() if "measurement" not in x and "the same as" not in x
+    ]
+
+
+def test_a_measurement_may_come_through_a_pipe(shell: Run) -> None:
+    once = shell("scarid identify $SAMPLES/scara2.csv")
+    piped = shell("cat $SAMPLES/scara2.csv | scarid identify")
+    assert piped.out == once.out
+    assert shell(f"cat $SAMPLES/scara2.csv | {pipe(piped.err)}").out == once.out
+
+
+def test_a_measurement_is_identified_by_the_recommended_procedure(log: Path, scarid: Run) -> None:
+    result = scarid("identify", log)
+    assert "cut-off" in result.err
+    assert "scara2, wls, " in result.err
+    assert "torques lead by" in result.err
+    assert "left out" in result.err
+    assert "\nscarid identify: good: " in result.err
+
+
+def test_a_measurement_without_torques_is_refused(log: Path, tmp_path: Path, scarid: Run) -> None:
+    bare = tmp_path / "bare.csv"
+    lines = log.read_text("utf-8").splitlines()
+    bare.write_text("\n".join(",".join(line.split(",")[:3]) for line in lines) + "\n")
+    refused(scarid("identify", bare), 65, "column tau1")
+
+
+def test_a_jittered_measurement_is_refused_with_what_to_type(
+    log: Path, tmp_path: Path, scarid: Run
+) -> None:
+    jittered = tmp_path / "jittered.csv"
+    lines = log.read_text("utf-8").splitlines(keepends=True)
+    jittered.write_text("".join([*lines[:100], *lines[101:]]))
+    refused(scarid("identify", jittered), 65, "scarid resample --rate")
+
+
+def test_too_short_a_measurement_is_refused(log: Path, tmp_path: Path, scarid: Run) -> None:
+    short = tmp_path / "short.csv"
+    short.write_text("".join(log.read_text("utf-8").splitlines(keepends=True)[:30]))
+    refused(scarid("identify", short), 65, "short.csv: ", "too few rows")
+
+
+def test_measurements_can_be_identified_one_after_the_other(tmp_path: Path, shell: Run) -> None:
+    """Row by row, so without the delay."""
+    first, second = (
+        shell(f"scarid identify {words} $SAMPLES/scara2.csv")
+        for words in ("--save s.npz", "--from s.npz")
+    )
+    assert first.status == second.status == 0, first.err + second.err
+    assert "scara2, rls, " in second.err
+    assert (tmp_path / "s.npz").exists()
+
+
+def test_rows_that_count_are_the_same_in_identify_and_validate(shell: Run) -> None:
+    result = shell(
+        "scarid differentiate $SAMPLES/scara2.csv -o m.parquet &&"
+        " scarid identify --estimator wls m.parquet -o p.parquet &&"
+        " scarid validate --parameters p.parquet m.parquet > metrics.csv"
+    )
+    assert result.status == 0, result.err
+    said = [line.partition(": ")[2] for line in result.err.splitlines() if "left out" in line]
+    assert len(said) == 2
+    assert said[0] == said[1]
+    all_rows = shell("scarid validate --all-rows --parameters p.parquet m.parquet")
+    assert "left out" not in all_rows.err
+
+
+def test_csv_loses_the_bandwidth_and_says_so(shell: Run) -> None:
+    csv = shell("scarid differentiate $SAMPLES/scara2.csv | scarid identify")
+    assert "give --bandwidth HZ" in csv.err
+    arrow = shell("scarid differentiate --format arrow $SAMPLES/scara2.csv | scarid identify")
+    assert "near reversals and" in arrow.err
+    assert "--bandwidth" not in arrow.err
+    given = shell("scarid differentiate $SAMPLES/scara2.csv | scarid identify --bandwidth 11.4")
+    assert "near reversals and" in given.err

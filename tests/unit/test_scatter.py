@@ -1,0 +1,122 @@
+"""The bandwidth at which identified parameters scatter least."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from scipy import signal
+from stages.tables import SCARA
+
+from scarid_cli.algorithms.tuning import lowpassed, scatter
+from scarid_cli.algorithms.tuning.lowpassed import Segment
+
+H = 2e-3
+
+
+def arm(
+    seconds: float = 20.0, *, noise: float = 1e-5, vibration: float = 0.0, h: float = H
+) -> Segment:
+    """A motion of two joints; a vibration [N m] of 15 Hz is in the torques and the positions."""
+    t = np.arange(0.0, seconds, h)
+    rng = np.random.default_rng(0)
+    rates = np.array([[0.7, 1.9, 3.1], [1.1, 2.3, 4.3]])
+    waves = np.exp(1j * (rates * t[:, None, None] + [0.0, 1.0, 2.0]))
+    q, dq, ddq = (
+        np.ascontiguousarray((waves * (1j * rates) ** n).imag.sum(axis=2).T) for n in range(3)
+    )
+    tau = SCARA.torques(SCARA.regressor(q, dq, ddq), SCARA.apriori)
+    shaking = vibration * np.sin(
+        2.0 * np.pi * 15.0 * t + np.cumsum(rng.standard_normal(len(t))) * 0.05
+    )
+    q = q + noise * rng.standard_normal(q.shape) + 1e-4 * shaking
+    tau = tau + 0.02 * rng.standard_normal(tau.shape) + np.array([[1.0], [-0.1]]) * shaking
+    return Segment(q, tau, np.full(2, noise))
+
+
+def points(*values: float) -> list[scatter.Scatter]:
+    return [scatter.Scatter(scatter.STEP**k, value, 1, 1.0) for k, value in enumerate(values)]
+
+
+@pytest.mark.parametrize(
+    ("values", "at", "ends"),
+    [
+        ((9, 1, 1.1, 1.2, 1.1, 1, 9), 3, (1, 5)),  # the middle of a plateau
+        ((9, 1.4, 1.3, 1.4, 1.3, 9, 1, 1, 1, 1, 9), 2, (1, 4)),  # the lowest of two
+        ((9, 1.2, 9, 1, 9, 9, 9), 3, (3, 3)),  # none is wide enough: the least
+        ((1, 1, 1, 1), 1, (0, 3)),
+        ((np.inf, 1, 1, 1, 1, 3), 2, (1, 4)),
+    ],
+)
+def test_the_middle_of_the_lowest_plateau_is_chosen(
+    values: Sequence[float], at: int, ends: tuple[int, int]
+) -> None:
+    choice = scatter.chosen(points(*values))
+    assert choice.cutoff == pytest.approx(scatter.STEP**at)
+    assert choice.plateau == pytest.approx([scatter.STEP**k for k in ends])
+
+
+def test_vibration_lowers_the_cutoff() -> None:
+    """The plateau ends below the vibration, which a likelihood would follow."""
+    calm, shaken = (
+        scatter.chosen(scatter.curve(SCARA, [arm(vibration=v)], H)) for v in (0.0, 20.0)
+    )
+    assert shaken.plateau[1] <= 15.0 < calm.plateau[1]
+
+
+def test_noise_of_the_positions_lowers_the_cutoff() -> None:
+    fine, coarse = (
+        scatter.chosen(scatter.curve(SCARA, [arm(noise=x)], H)).cutoff for x in (1e-6, 3e-4)
+    )
+    assert coarse < fine
+
+
+def test_segments_count_together() -> None:
+    """Two halves of a record choose nearly what the record chooses."""
+    whole = arm()
+    middle = whole.q.shape[1] // 2
+    halves = [
+        Segment(whole.q[:, part], whole.tau[:, part], whole.noise)
+        for part in (slice(0, middle), slice(middle, None))
+    ]
+    one, two = (scatter.chosen(scatter.curve(SCARA, s, H)).cutoff for s in ([whole], halves))
+    assert two == pytest.approx(one, rel=0.5)
+
+
+def test_a_joint_that_stands_still_gives_no_choice() -> None:
+    moving = arm()
+    q = np.array([moving.q[0], np.zeros(moving.q.shape[1])])
+    found = scatter.curve(SCARA, [Segment(q, moving.tau, moving.noise)], H)
+    assert not any(np.isfinite(point.scatter) for point in found)
+
+
+def test_the_jackknife_is_that_of_the_rows() -> None:
+    """Against parameters identified anew without the rows of each part."""
+    rng = np.random.default_rng(1)
+    W, tau = rng.standard_normal((200, 1, 3)), rng.standard_normal((1, 200))
+    counts = np.ones((1, 200), dtype=bool)
+    sums = scatter._sums(W, tau, counts)
+    value = scatter._jackknife(sums, counts.sum(axis=1), np.array([tau.var()]))
+    thetas = []
+    for k in range(scatter.PARTS):
+        kept = np.arange(200) * scatter.PARTS // 200 != k
+        thetas.append(np.linalg.lstsq(W[kept, 0], tau[0, kept], rcond=None)[0])
+    off = np.array(thetas) - np.mean(thetas, axis=0)
+    torques = W[:, 0] @ off.T
+    expected = 19.0 / 20.0 * (torques**2).sum() / 200.0 / tau.var()
+    assert value == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_lowpass_is_scipys() -> None:
+    segment = arm(5.0)
+    found = lowpassed.lowpassed(segment, H, 10.0)
+    assert found is not None
+    sections = signal.butter(4, 10.0, fs=1.0 / H, output="sos")
+    expected = signal.sosfiltfilt(sections, segment.q, axis=1, padlen=int(3.0 / 10.0 / H))
+    end = int(1.0 / 10.0 / H) + lowpassed.REACH
+    step = max(1, int(1.0 / (10.0 * 10.0 * H)))
+    inner = expected[:, end : expected.shape[1] - end][:, ::step]
+    assert found.motion[0] == pytest.approx(inner, abs=1e-9)
+    v = np.gradient(expected, H, axis=1)[:, end : expected.shape[1] - end][:, ::step]
+    assert found.motion[1] == pytest.approx(v, abs=2e-3 * np.abs(v).max())
