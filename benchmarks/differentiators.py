@@ -33,6 +33,7 @@ from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.tuning import judges, search
+from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 
 
@@ -42,7 +43,7 @@ def blind(name: str, q: Array) -> Any:
     if method.TUNES_ITSELF:
         return method.fitted(q, H)
     if method.HAS_LIKELIHOOD:
-        return judges.fit(method, q, H)
+        return best_model(method, q, H)
     judge = judges.distance_to_smoother(q, H)
     return min(search.search(method, method.TUNED, judge, H, 0), key=lambda t: t.loss).method
 
@@ -63,10 +64,10 @@ def informed(method: Any, q: Array, motion: TrueMotion) -> float:
     return min(trial.loss for trial in search.search(method, ranges, judge, H, 0))
 
 
-def ours(known: list[TrueMotion], bits: int) -> list[Score]:
+def ours(known: list[TrueMotion], bits: int, names: list[str]) -> list[Score]:
     """The methods of scarid."""
     scores = []
-    for name in DIFFERENTIATORS.names:
+    for name in names:
         score = Score(name, class_of(DIFFERENTIATORS.load(name)()), bits, ours=True)
         for seed, motion in enumerate(known):
             q = seen(motion.q, bits, seed)
@@ -148,6 +149,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    names = DIFFERENTIATORS.names
+    parser.add_argument("methods", nargs="*", help="of scarid, for a table alone (default: all)")
     parser.add_argument("--no-peers", action="store_true", help="leave out other packages")
     parser.add_argument(
         "--output", type=Path, default=Path("build/differentiators"), help="folder of the figures"
@@ -158,9 +161,11 @@ def main() -> None:
         print(f"Not installed, so left out: {', '.join(missing)}")
     known, scores = motions(), []
     for bits in summary.BITS:
-        scores += ours(known, bits)
+        scores += ours(known, bits, options.methods or names)
         scores += [] if options.no_peers else others(known, bits)
     summary.tables(scores)
+    if options.methods:
+        return
     summary.claims(scores)
     summary.draw(scores, options.output)
     print(f"\nFigures: {options.output}")

@@ -6,11 +6,11 @@ from dataclasses import replace
 from typing import Any
 
 from scarid_cli.algorithms.regression.counting import Counting, LeftOut
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job, per_joint
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Metadata, Table
-from scarid_cli.stages.rows import Treatment
 
 
 def treatment_of(given: dict[str, Any]) -> Treatment:

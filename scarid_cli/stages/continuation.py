@@ -15,9 +15,9 @@ from scarid_cli.algorithms.estimators.rls import WeightedInformation
 from scarid_cli.algorithms.regression.information import Information
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.errors import BadData, UsageFault
-from scarid_cli.stages.identify import Checkpoint
 
 KNOWN = {
     kind.__name__: kind

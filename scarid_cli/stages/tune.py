@@ -8,15 +8,15 @@ from math import isfinite, log2
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.processes.bandwidth import lowpass_bandwidth
 from scarid_cli.algorithms.tuning import judges, search
+from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, TooShort
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table
+from scarid_cli.io.table import Table, table_of
 from scarid_cli.stages.record import Record
 
 Settings = dict[str, list[float]]
@@ -64,7 +64,7 @@ def tune(record: Record, names: Sequence[str], seed: int, progress: Progress) ->
 def likely(name: str, method: Any, q: Array, h: float) -> Iterator[Tried]:
     """The default settings of a Kalman method, if it has any, and the most likely ones."""
     likelihood = judges.negative_log_likelihood(q, h)
-    fitted = judges.fit(method, q, h)
+    fitted = best_model(method, q, h)
     for tried in (method, fitted) if values(method)["noise"] else (fitted,):
         yield Tried(name, LIKELIHOOD, search.Trial(tried, likelihood(tried)), tried is fitted)
 
@@ -102,7 +102,7 @@ def _marked(name: str, trials: Iterable[search.Trial]) -> Iterator[Tried]:
 def octaves(record: Record) -> tuple[float, list[float]]:
     """By how many octaves the joints' own most likely bandwidths differ, and these [Hz]."""
     kalman = DIFFERENTIATORS.load("kalman")()
-    own = [judges.fit(kalman, q, record.h) for q in record.longest]
+    own = [best_model(kalman, q, record.h) for q in record.longest]
     found = [lowpass_bandwidth(method.matched().torque_filter, record.h) for method in own]
     return log2(max(found) / min(found)), found
 
@@ -124,16 +124,8 @@ def chosen(rows: Sequence[Tried], joints: int) -> dict[str, Settings]:
 def trials(table: Table, rows: Sequence[Tried]) -> Table:
     """The table of all trials."""
     schema = schemas.load("trials").arrow()
-    losses = [row.trial.loss if isfinite(row.trial.loss) else None for row in rows]
-    batch = pa.RecordBatch.from_arrays(
-        [
-            pa.array([row.name for row in rows], pa.string()),
-            pa.array([row.settings for row in rows], pa.string()),
-            pa.array([row.judge for row in rows], pa.string()),
-            pa.array(losses, pa.float64()),
-            pa.array([row.rows for row in rows], pa.int64()),
-            pa.array([int(row.best) for row in rows], pa.int64()),
-        ],
-        schema=schema,
+    found = (
+        (row.name, row.settings, row.judge, float(row.trial.loss), row.rows, int(row.best))
+        for row in rows
     )
-    return Table("tune", schema, replace(table.meta, kind="trials"), iter([batch]))
+    return table_of("tune", schema, found, replace(table.meta, kind="trials"))

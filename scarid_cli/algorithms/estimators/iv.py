@@ -2,25 +2,23 @@
 
 The instruments are the regressor along a noise-free simulation of the robot in closed loop with the
 previous estimates, so noise of the measured motion cannot bias the estimates. The log must have the
-reference (q1_ref, ...), and the robot description must have the controller. Joints are weighted by
-their residuals. The Durbin-Wu-Hausman test against weighted least squares is reported. All rows are
-held in memory. No settings.
+reference (q1_ref, ...). The controller is that of the robot description, or else the default one of
+`simulate`. Joints are weighted by their residuals. The Durbin-Wu-Hausman test against weighted
+least squares is reported. All rows are held in memory. No settings.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.plants.following import simulated
-from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator
+from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, RobotEstimator
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, joined
-from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.jackknife import shifts
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -29,19 +27,9 @@ ITERATIONS = 10
 
 
 @dataclass(frozen=True)
-class Estimator(HoldingEstimator):
-    robot: Robot | None = field(default=None, metadata=GIVEN)
-
+class Estimator(RobotEstimator, HoldingEstimator):
     REFERENCE: ClassVar[bool] = True
     ALIGNS: ClassVar[bool] = False
-
-    def for_robot(self, robot: Robot) -> Estimator:
-        if robot.control is None:
-            raise UsageFault(
-                f"iv: robot {robot.name} has no controller to simulate it with; add [control] to "
-                "its description"
-            )
-        return replace(self, robot=robot)
 
     def step(
         self, state: list[Rows], rows: Rows, *, trace: bool = False
@@ -54,10 +42,8 @@ class Estimator(HoldingEstimator):
         return super().step(state, rows, trace=trace)
 
     def fit(self, state: list[Rows]) -> Estimation:
-        assert self.robot is not None
         rows = joined(state)
-        start = wls.Estimator()
-        plain = start.fit(start.step(start.init(np.zeros(rows.W.shape[2])), rows)[0])
+        plain = wls.Estimator().of_rows(rows)
         theta = plain.fit.estimates
         for _ in range(ITERATIONS):
             instruments = simulated(self.robot, theta, rows).W

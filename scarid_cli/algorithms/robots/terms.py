@@ -1,7 +1,6 @@
 """The terms of a robot's torques: each is one column of the regressor (docs/theory.md).
 
-A new friction term is a subclass of `AxisTerm` and its entry in `AXIS_TERMS`: descriptions with and
-without a URDF then take it.
+A new friction term is a subclass of `AxisTerm`: descriptions with and without a URDF then take it.
 """
 
 from __future__ import annotations
@@ -200,18 +199,5 @@ class Mass(AxisTerm):
         return {self.joint - 1: samples.ddq[self.joint - 1]}
 
 
-# The terms that [[parameter]] may name; those of the planar arm are in planar.py.
-AXIS_TERMS: dict[str, type[AxisTerm]] = {
-    term.NAME: term
-    for term in (
-        Viscous,
-        Coulomb,
-        Stribeck,
-        ViscousForward,
-        ViscousBackward,
-        CoulombForward,
-        CoulombBackward,
-        Offset,
-        Mass,
-    )
-}
+# The terms that [[parameter]] may name, in the order of this file; planar.py has those of its arm.
+AXIS_TERMS = {term.NAME: term for term in AxisTerm.__subclasses__()}

@@ -15,19 +15,11 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.processes.matching import over
-from scarid_cli.algorithms.tuning.likelihood import best_model, likelihood_of_all
+from scarid_cli.algorithms.tuning.likelihood import likelihood_of_all
 from scarid_cli.algorithms.tuning.search import Judge
 from scarid_cli.arrays import Array
 
 SKIPPED_START = 1.0  # seconds at the start, where a method may still be on its way
-
-
-def fit(method: Any, q: Array, h: float) -> Any:
-    """A Kalman method with the noise, the intensity and the acceleration process of the data.
-
-    q: positions of one joint (rows), or of several that share the settings (joints, rows).
-    """
-    return best_model(method, q, h)
 
 
 def negative_log_likelihood(q: Array, h: float) -> Judge:

@@ -10,7 +10,9 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.measured import motion
@@ -21,7 +23,6 @@ from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages import identify as stage
 from scarid_cli.stages.parameters import identified
-from scarid_cli.stages.rows import Treatment
 
 ONLINE, OFFLINE = "rls", "wls"  # what a motion, and a measurement, are identified by
 
@@ -63,7 +64,7 @@ def run(
     solver = method(**values, **_single(given["forgetting"], arm.names))
     start = _initial(job, initial, arm)
     fixed = _fixed(table, arm, name, solver, treatment, given["smooth_sign"])
-    places: list[stage.Checkpoint] = []
+    places: list[Checkpoint] = []
     result = stage.identify(
         job.recorded(table),
         arm,
@@ -104,7 +105,7 @@ def _options(name: str, treatment: Treatment) -> list[str]:
     return [f"--estimator {name}", *(["--align"] if treatment.align else [])]
 
 
-def _restored(resumed: str | None, fixed: dict[str, Any]) -> stage.Checkpoint | None:
+def _restored(resumed: str | None, fixed: dict[str, Any]) -> Checkpoint | None:
     """The checkpoint to continue from, if one was given."""
     if not resumed:
         return None
