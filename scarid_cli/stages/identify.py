@@ -53,9 +53,7 @@ def identify(
         state = estimator.init(initial)
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
     left_out = LeftOut()
-    for batch, rows in treated(
-        table, robot, treatment, checkpoint.seen, estimator, left_out=left_out
-    ):
+    for batch, rows in treated(table, robot, treatment, checkpoint.seen, estimator, left_out):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))

@@ -30,7 +30,6 @@ def treated(
     treatment: Treatment,
     seen: int = 0,
     estimator: BaseEstimator | None = None,
-    *,
     left_out: LeftOut | None = None,
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     """The rows of the settled samples, each part with the batch that it comes from.
@@ -43,8 +42,8 @@ def treated(
     those of the reference.
     """
     fitted = 0
-    parts = _treated(table, robot, treatment, seen, estimator, left_out or LeftOut())
-    for batch, rows in parts:
+    parts = _parts(table, robot, treatment, seen, estimator)
+    for batch, rows in _treated(parts, treatment, left_out or LeftOut()):
         fitted += int(np.count_nonzero(rows.scales))
         yield batch, rows
     if not fitted:
@@ -57,14 +56,8 @@ def treated(
 
 
 def _treated(
-    table: Table,
-    robot: Robot,
-    treatment: Treatment,
-    seen: int,
-    estimator: BaseEstimator | None,
-    left_out: LeftOut,
+    parts: Iterator[tuple[pa.RecordBatch, Rows]], treatment: Treatment, left_out: LeftOut
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
-    parts = _parts(table, robot, treatment, seen, estimator)
     if treatment.counting and not treatment.decimate:
         parts = counted(parts, treatment.counting, left_out)
     if not treatment.holds:

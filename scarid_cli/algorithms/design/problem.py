@@ -22,6 +22,7 @@ INFORMED = 5  # samples of the information in the time scale of a basis
 CHECKED = 25  # of the limits of positions, velocities and accelerations
 WATCHED = 10  # and of the laws, which change as slowly as positions do
 SHRINK = 1e-3  # of a curve towards home, at first
+PRECISION = 2e-3  # of the size of a motion that is as large as its limits allow
 BATCH = 1024
 
 
@@ -120,11 +121,24 @@ def _grid(basis: Basis, per_scale: int) -> Array:
 def kept(curve: Curve, limits: Limits, laws: tuple[Law, ...]) -> Curve:
     """The curve, shrunk towards home by as little as makes it keep its limits at every instant."""
     curve = curve.scaled(np.minimum(1.0, room(curve, limits)))
-    smaller = SHRINK
-    while smaller < 1.0 and max((m.max() for m in margins(curve, laws)), default=0.0) > 0.0:
-        curve = curve.scaled(np.full(len(limits.dq), 1.0 - smaller))
-        smaller *= 2.0
-    return curve
+    if _within(curve, laws):
+        return curve
+    beyond, size, step = 1.0, 1.0 - SHRINK, SHRINK
+    while size > 0.0 and not _within(_shrunk(curve, size), laws):
+        beyond, size, step = size, size - 2.0 * step, 2.0 * step
+    size = max(size, 0.0)
+    while beyond - size > PRECISION:
+        middle = 0.5 * (beyond + size)
+        beyond, size = (beyond, middle) if _within(_shrunk(curve, middle), laws) else (middle, size)
+    return _shrunk(curve, size)
+
+
+def _shrunk(curve: Curve, size: float) -> Curve:
+    return curve.scaled(np.full(len(curve.home), size))
+
+
+def _within(curve: Curve, laws: tuple[Law, ...]) -> bool:
+    return max((m.max() for m in margins(curve, laws)), default=0.0) <= 0.0
 
 
 def margins(curve: Curve, laws: tuple[Law, ...]) -> list[Array]:

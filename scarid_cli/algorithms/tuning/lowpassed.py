@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.filters.butterworth import Butterworth
-from scarid_cli.algorithms.filters.sections import SectionState
 from scarid_cli.algorithms.processes.bandwidth import velocity_noise
+from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.regression.counting import (
     Counting,
     Speeds,
@@ -20,7 +20,6 @@ from scarid_cli.algorithms.regression.counting import (
     reversals,
 )
 from scarid_cli.arrays import Array, Numbers
-from scarid_cli.kernels import sos
 
 ORDER = 4
 TWO_SIDED = (2.0**0.5 - 1.0) ** (0.5 / ORDER)  # the bandwidth of both passes, over the cut-off
@@ -62,9 +61,8 @@ def lowpassed(segment: Segment, h: float, cutoff: float) -> Lowpassed | None:
     end = int(END / cutoff / h) + REACH
     if segment.q.shape[1] <= 2 * end + 1:
         return None
-    sections = Butterworth(cutoff, ORDER).sections(h)
-    padding = _padding(segment, h, cutoff)
-    q, tau = (_both_ways(x, sections, padding) for x in (segment.q, segment.tau))
+    lowpass, padding = Butterworth(cutoff, ORDER), _padding(segment, h, cutoff)
+    q, tau = (_both_ways(x, lowpass, padding, h) for x in (segment.q, segment.tau))
     inner = slice(end, q.shape[1] - end)
     dq, ddq = (_differences(q, taps) for taps in (FIRST / h, SECOND / h**2))
     every = slice(None, None, _stride(q.shape[1], h, cutoff))
@@ -75,8 +73,8 @@ def lowpassed(segment: Segment, h: float, cutoff: float) -> Lowpassed | None:
 
 def removed(segment: Segment, h: float, cutoff: float) -> Array:
     """The positions (joints, samples) less the low-passed ones: noise, vibration, resolution."""
-    sections = Butterworth(cutoff, ORDER).sections(h)
-    return segment.q - _both_ways(segment.q, sections, _padding(segment, h, cutoff))
+    padding = _padding(segment, h, cutoff)
+    return segment.q - _both_ways(segment.q, Butterworth(cutoff, ORDER), padding, h)
 
 
 def _stride(samples: int, h: float, cutoff: float) -> int:
@@ -97,22 +95,17 @@ def _counts(dq: Array, noise: Array, bandwidth: float, h: float) -> Numbers:
     return np.asarray(moving & away(reversals(dq, 0), at, counting.window(h)))
 
 
-def _both_ways(x: Array, sections: Array, padding: int) -> Array:
-    """Each row of x forwards and backwards through the sections."""
+def _both_ways(x: Array, lowpass: Butterworth, padding: int, h: float) -> Array:
+    """Each row of x forwards and backwards through the low-pass."""
     before = 2.0 * x[:, :1] - x[:, padding:0:-1]
     after = 2.0 * x[:, -1:] - x[:, -2 : -padding - 2 : -1]
     extended = np.concatenate((before, x, after), axis=1)
     out = np.empty_like(x)
     for row, smooth in zip(extended, out, strict=True):
-        back = _forwards(np.ascontiguousarray(_forwards(row, sections)[::-1]), sections)
+        (forwards,) = over(lowpass, row, h)
+        (back,) = over(lowpass, np.ascontiguousarray(forwards[::-1]), h)
         smooth[:] = back[::-1][padding : padding + len(smooth)]
     return out
-
-
-def _forwards(x: Array, sections: Array) -> Array:
-    y = np.empty_like(x)
-    sos.filtered(x, y, SectionState.at_rest(sections, float(x[0])).values, sections)
-    return y
 
 
 def _differences(q: Array, taps: Array) -> Array:

@@ -10,6 +10,7 @@ from scarid_cli.cli.methods import configured
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.schemas import joints_of, numbered
 from scarid_cli.stages import differentiate as stage
+from scarid_cli.stages.suitability import Watch
 
 
 def run(job: Job, *, file: str, match: bool | None, per_joint: bool, **choice: Any) -> None:
@@ -24,8 +25,20 @@ def run(job: Job, *, file: str, match: bool | None, per_joint: bool, **choice: A
         return
     if not per_joint:
         _require_alike(methods)
-    motion = stage.matched(job.recorded(table), methods, job.left_out, per_joint=per_joint)
-    job.write(motion)
+    if any(choice.values()):
+        motion = stage.matched(job.recorded(table), methods, job.left_out, per_joint=per_joint)
+        job.write(motion)
+        return
+    watch = Watch(len(methods))
+    motion = stage.matched(watch.positions(job.recorded(table)), methods, job.left_out)
+    job.write(watch.derivatives(motion))
+    remarks = watch.remarks(methods[0].noise, motion.meta.extra["bandwidth"], table.period)
+    if remarks:
+        job.say(
+            f"the default settings hardly suit this log: {'; '.join(remarks)}. Find better ones "
+            "with `scarid tune --robot ROBOT LOG --save settings.toml`, and give them with "
+            "--settings settings.toml"
+        )
 
 
 def _require_alike(methods: list[Any]) -> None:
