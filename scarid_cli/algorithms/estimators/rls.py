@@ -71,5 +71,4 @@ class Estimator(BaseEstimator):
         return replace(self, forgetting=(*self.forgetting, max(self.forgetting)))
 
     def fit(self, state: Information) -> Estimation:
-        # The scores of an estimate that forgets are not those of the whole record.
-        return Estimation(solve(state), Scores() if min(self.factors) == 1.0 else None)
+        return Estimation(solve(state), Scores(forgetting=min(self.factors)))
