@@ -64,8 +64,9 @@ def _followed(robot: Robot, theta: Array, reference: Array, h: float) -> Array:
         ) from None
     except IndefiniteError:
         raise UsageFault(
-            f"robot {robot.name}: the inertia matrix of the estimates of least squares is not "
-            "positive definite, so they cannot be simulated; use --estimator wls"
+            f"robot {robot.name}: the inertia matrix of the estimates is not positive definite, so "
+            "they cannot be simulated; check the controller of the description, or use "
+            "--estimator wls"
         ) from None
     signals = np.stack((log.q_true, log.dq_true, log.ddq_true))[:, :, ::ratio]
     # The simulation ends one sample early, since nothing follows the last reference.

@@ -66,10 +66,10 @@ class Effect:
         if self.name not in ALWAYS and not self.significant(LIKELY):
             return np.zeros_like(self.moved)
         known = scatter > 0.0
-        squares = np.sum((self.moved[known] / scatter[known]) ** 2)
-        noise = TRUST * np.sum((self.errors[known] / scatter[known]) ** 2)
-        share = max(1.0 - noise / squares, 0.0) if squares > 0.0 else 0.0
-        return np.asarray(self.moved * np.sqrt(share), dtype=np.float64)
+        squares = float(np.sum((self.moved[known] / scatter[known]) ** 2))
+        noise = TRUST * float(np.sum((self.errors[known] / scatter[known]) ** 2))
+        share: float = max(1.0 - noise / squares, 0.0) if squares > 0.0 else 0.0
+        return np.asarray(share**0.5 * self.moved, dtype=np.float64)
 
 
 def thinned(rows: Rows) -> Rows:
