@@ -7,7 +7,8 @@
 # make bench-excitation   optimised excitations of several robots beside random ones (an hour)
 # make bench-differentiators   every differentiator and its peers on known signals
 # make crossvalidate   online identification of twenty simulated experiments
-# make montecarlo      coverage of the stated intervals, and whether bias is detected
+# make montecarlo      coverage of the stated intervals
+# make bench-verdicts   whether intervals and verdicts hold under imperfect conditions
 # make emps EMPS=emps_train.csv   every differentiator on the real EMPS log
 # make docs     generate docs/tables.md from schemas/
 # make samples  generate the small log and its parameters under samples/
@@ -21,7 +22,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-differentiators crossvalidate montecarlo emps docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-differentiators crossvalidate montecarlo bench-verdicts emps docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -74,6 +75,9 @@ crossvalidate: $(VENV)/tested
 
 montecarlo: $(VENV)/tested
 	$(BIN)/python benchmarks/montecarlo.py
+
+bench-verdicts: $(VENV)/tested
+	$(BIN)/python benchmarks/verdicts.py
 
 EMPS ?= ../shared/data/emps/emps_train.csv
 emps: $(VENV)/tested

@@ -31,11 +31,14 @@ SETTINGS: list[tuple[str, str, dict[str, float]]] = [
 ]
 
 
-def experiment(seed: int, segment: tuple[float, float], cutoff: float = 20.0) -> LoopLog:
-    """Twenty seconds of the simulated robot in its default control loop, at the control rate."""
+def experiment(
+    seed: int, segment: tuple[float, float], cutoff: float = 20.0, duration: float = 20.0
+) -> LoopLog:
+    """So many seconds of the simulated robot in its default loop, at the control rate."""
     limits, rng = Limits.of(ROBOT.joints), np.random.default_rng(seed)
-    path = Excitation(*segment).trajectory(limits, limits.home, 20.0, rng)
-    wanted = refine(*path.sample(np.arange(4001) * PERIOD), PERIOD, RATIO)
+    path = Excitation(*segment).trajectory(limits, limits.home, duration, rng)
+    instants = np.arange(round(duration / PERIOD) + 1) * PERIOD
+    wanted = refine(*path.sample(instants), PERIOD, RATIO)
     loop = ClosedLoop(
         robot=ROBOT,
         law=replace(law(ROBOT), velocity_cutoff=cutoff),

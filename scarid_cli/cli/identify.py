@@ -47,6 +47,12 @@ from scarid_cli.cli.described import describing
     "standard deviation is 30 times that of the most certain one and noise can explain the loss.",
 )
 @click.option(
+    "--torque-gain-error",
+    metavar="PART",
+    help="Standard error of the torque constants, such as 1% or 0.01. No log shows it, but it "
+    "enters the errors.  [default: 0]",
+)
+@click.option(
     "--variance",
     type=click.Choice(("residual", "unit", "sample")),
     default="residual",
@@ -84,8 +90,9 @@ def command() -> None:
 
     Solves tau = W(q, dq, ddq) theta (paper eq. 25), where W is the robot's regressor. Each estimate
     has two standard errors: one that holds for white residuals, s (diag (W'W)^-1)^1/2 (eq. 32-34),
-    and a robust one that also holds for autocorrelated residuals, found by leaving out blocks of
-    half a second. The columns low and high are the 95 % confidence interval from the robust error.
-    The last line on standard error is the verdict (good, doubtful or not identifiable) with its
-    reasons.
+    and a robust one, which also holds for autocorrelated residuals and allows for what the model
+    may lack: it grows where the estimates would change with an offset or Stribeck friction, without
+    the rows near reversals, or behind another low-pass. The columns low and high are the 95 %
+    confidence interval from the robust error. The last line on standard error is the verdict (good,
+    doubtful or not identifiable) with its reasons.
     """

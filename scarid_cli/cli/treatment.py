@@ -33,7 +33,19 @@ def treatment_of(given: dict[str, Any]) -> Treatment:
         slow=tuple(slow),
         align=bool(given.get("align")),
         essential=given.get("essential", False),
+        gain_error=_part(given.get("torque_gain_error") or "0", "--torque-gain-error"),
     )
+
+
+def _part(text: str, option: str) -> float:
+    """A part of one: `1%` or `0.01`."""
+    try:
+        part = float(text.removesuffix("%")) / (100.0 if text.endswith("%") else 1.0)
+    except ValueError:
+        part = -1.0
+    if not 0.0 <= part < 1.0:
+        raise UsageFault(f"{option} {text}: give a part of one, such as 1% or 0.01")
+    return part
 
 
 def for_robot(robot: Robot, treatment: Treatment, given: dict[str, Any]) -> tuple[Robot, Treatment]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from scarid_cli.reporting import published, torques
-from scarid_cli.reporting.estimates import estimates, fit, verdicts
+from scarid_cli.reporting.estimates import constants, estimates, fit, verdicts
 from scarid_cli.reporting.evolution import evolution
 from scarid_cli.reporting.kinds import (
     Measurement,
@@ -44,6 +44,7 @@ def _of_estimates(results: Sequence[Result], colours: dict[str, int]) -> Iterato
     for group in grouped(of_kind(results, Parameters), _same_parameters):
         yield estimates(group, colours)
         yield from fit(group)
+        yield from constants(group)
     for running in grouped(of_kind(results, Trace), _same_parameters):
         yield evolution(running, colours)
 

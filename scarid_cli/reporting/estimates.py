@@ -90,7 +90,7 @@ def _greatest(values: Sequence[float]) -> float:
 
 def fit(group: Sequence[Parameters]) -> list[Section]:
     """What the metadata say of the estimations; a CSV says nothing."""
-    keys = ("condition_number", "samples", "residual_deviation", "lag_share")
+    keys = ("condition_number", "samples", "residual_deviation")
     group = [r for r in group if any(key in r.extra for key in keys)]
     if not group:
         return []
@@ -99,13 +99,37 @@ def fit(group: Sequence[Parameters]) -> list[Section]:
     residual = with_unit("residual deviation", units.pop() if len(units) == 1 else "")
     section = Section(
         title=titled("Fit", group[0].name.experiment),
-        note="Condition number of the observation matrix W, standard deviation of the residual, "
-        "and lag share: the share of the residual that the motion 25 ms earlier and later "
-        "explains. A lag share near 1 means that torques and derivatives are misaligned in time.",
-        headers=("method", "condition number", "samples", residual, "lag share"),
+        note="Condition number of the observation matrix W, and standard deviation of the "
+        "residual.",
+        headers=("method", "condition number", "samples", residual),
         rows=tuple(
             (name, *(number(r.extra.get(key)) for key in keys))
             for name, r in zip(shown(group), group, strict=True)
         ),
     )
     return [section]
+
+
+def constants(group: Sequence[Parameters]) -> list[Section]:
+    """Which estimates depend on the torque constant of which joint, of the first such table."""
+    found = next((r for r in group if r.extra.get("torque_constants")), None)
+    if found is None:
+        return []
+    moves = found.extra["torque_constants"]
+    estimates = dict(zip(found.names, found.estimates, strict=True))
+    joints = len(next(iter(moves.values())))
+    section = Section(
+        title=titled("Torque constants", found.name.experiment),
+        note="By how many percent an estimate is too large if the torque constant of a joint is "
+        "1 % too large. No log shows such an error: state it with identify --torque-gain-error.",
+        headers=("parameter", *(f"joint {i}" for i in range(1, joints + 1))),
+        rows=tuple(
+            (name, *(number(_ratio(x, estimates[name])) for x in row))
+            for name, row in moves.items()
+        ),
+    )
+    return [section]
+
+
+def _ratio(moved: float, estimate: float) -> float:
+    return moved / estimate if estimate else nan

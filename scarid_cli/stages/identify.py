@@ -60,7 +60,7 @@ def identify(
             trace.write(with_columns(batch, schema, new))
     _check_enough(table, robot, checkpoint.subsample.counted)
     try:
-        found = outcome(estimator, initial, checkpoint, treatment)
+        found = outcome(estimator, initial, checkpoint, treatment, robot)
     except NotIdentifiableError as error:
         raise _not_identifiable(table, robot, error) from None
     if keep:

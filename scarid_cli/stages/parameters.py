@@ -11,7 +11,8 @@ import numpy as np
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.outcome import Outcome, covariance
+from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.algorithms.statistics.outcome import Outcome
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
@@ -85,7 +86,7 @@ def parameters(
     labels = Labels.of(found, robot)
     known_errors = found.diagnostics.covariance
     nan = np.full(len(found.kept), np.nan)
-    robust = known_errors.errors if known_errors else nan
+    robust = found.diagnostics.errors if known_errors else nan
     half = robust * known_errors.quantile if known_errors else nan
     estimates = found.found.fit.estimates
     errors = found.found.fit.standard_errors(variance=variance)
@@ -117,7 +118,6 @@ def _judged(found: Outcome, robot: Robot, labels: Labels, treatment: Treatment) 
         weak=combination(direction, names),
         diagnostics=found.diagnostics,
         treatment=treatment,
-        weighted=found.found.weighted,
     )
     judged = verdict(evidence, robot)
     return {
@@ -137,16 +137,20 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         "residual_deviation": float(np.sqrt(fit.variance)) if meaningful else None,
         "samples": found.samples,
         "excitation": dict(zip(labels.names, found.excitation.tolist(), strict=False)),
-        "joints": [
-            {fact: _or_none(value) for fact, value in asdict(joint).items()}
-            for joint in found.diagnostics.joints
-        ],
-        "lag_share": _or_none(found.diagnostics.lag_share),
+        "joints": _joints(found.diagnostics),
+        "effects": _effects(found.diagnostics),
+        "widened": _widened(found.diagnostics),
+        "torque_constants": dict(
+            zip(
+                [labels.names[i] for i in found.kept],
+                found.diagnostics.gains.T.tolist(),
+                strict=False,
+            )
+        ),
         **found.found.extra,
     }
-    full_covariance = covariance(found.full, found.errors)
-    if full_covariance is not None:
-        extra["covariance"] = full_covariance.tolist()
+    if np.isfinite(found.covariance).all():
+        extra["covariance"] = found.covariance.tolist()
     if found.delay:
         extra["delay"], extra["delay_error"] = map(_or_none, found.delay)
     if found.reduction and found.reduction.dropped:
@@ -157,6 +161,44 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
     return extra
 
 
+def _joints(diagnostics: Diagnostics) -> list[dict[str, Any]]:
+    """The facts of each joint: of its residual, and how well its torque and inertia are known."""
+    found = asdict(diagnostics.consequences)
+    facts = [asdict(joint) for joint in diagnostics.joints]
+    return [
+        {
+            **{fact: _or_none(value) for fact, value in residual.items()},
+            "held_out": _or_none(found["held_out"][i]),
+            "torque_error": _or_none(found["torque"][i]),
+            "inertia_error": _or_none(found["inertia"][i]),
+        }
+        for i, residual in enumerate(facts)
+    ]
+
+
+def _widened(diagnostics: Diagnostics) -> float | None:
+    """The median ratio of the errors to those of leaving out blocks, which noise alone causes."""
+    if diagnostics.covariance is None:
+        return None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = diagnostics.errors / diagnostics.covariance.errors
+    return _or_none(float(np.median(ratios)))
+
+
+def _effects(diagnostics: Diagnostics) -> dict[str, Any]:
+    """Of each alternative to the model: its statistic, and the share of the errors it adds."""
+    scatter = diagnostics.scatter[: len(diagnostics.errors)]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return {
+            effect.name: {
+                "statistic": _or_none(effect.largest),
+                "significant": effect.significant(),
+                "bias_in_errors": [_or_none(x) for x in (effect.bias / scatter).tolist()],
+            }
+            for effect in diagnostics.effects
+        }
+
+
 def _or_none(value: float) -> float | None:
     """JSON has no nan and no infinity."""
-    return value if np.isfinite(value) else None
+    return float(value) if np.isfinite(value) else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
@@ -9,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.regression.counting import LeftOut
-from scarid_cli.algorithms.regression.rows import Rows, delay_column, joined
+from scarid_cli.algorithms.regression.rows import Rows, joined, led
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
@@ -33,33 +34,43 @@ def predicted(
     """
     delay = models[0].delay
     parts = treated(table, models[0].robot, treatment, left_out=left_out)
-    for (batch, rows), around, own in _surrounded(parts) if delay else _alone(parts):
+    reach = 1 + abs(round(delay / table.period)) if delay and table.period > 0.0 else 0
+    for (batch, rows), around, own in _with_context(parts, reach):
         torques = [model.robot.torques(around.W, model.theta) for model in models]
         if delay:
-            torques = [tau + delay * delay_column(around, tau.T).T for tau in torques]
+            torques = [led(around, tau.T, delay).T for tau in torques]
         yield batch, rows, [np.ascontiguousarray(tau[:, own]) for tau in torques]
 
 
-def _alone(parts: Iterator[Part]) -> Iterator[tuple[Part, Rows, slice]]:
-    for part in parts:
-        yield part, part[1], slice(None)
+def _with_context(parts: Iterator[Part], reach: int) -> Iterator[tuple[Part, Rows, slice]]:
+    """Each part, its rows with up to `reach` samples before and after, and the slice of its own.
 
-
-def _surrounded(parts: Iterator[Part]) -> Iterator[tuple[Part, Rows, slice]]:
-    """Each part, its rows with one more sample before and after, and the slice of its own rows.
-
-    A part is returned only after the next one has been read.
+    A part is returned once so many samples after it have been read.
     """
     before: list[Rows] = []
-    held: Part | None = None
+    waiting: deque[Part] = deque()
     for part in chain(parts, [None]):
-        if held:
-            rows = held[1]
-            after = [part[1].part(slice(0, 1))] if part else []
-            around = joined([*before, rows, *after])
-            yield held, around, slice(len(before), len(before) + rows.samples)
-            before = [rows.part(slice(-1, None))]
-        held = part
+        if part:
+            waiting.append(part)
+        following = sum(rows.samples for _, rows in waiting) - (
+            waiting[0][1].samples if waiting else 0
+        )
+        while waiting and (part is None or following >= reach):
+            own = waiting.popleft()
+            after = [rows for _, rows in waiting]
+            around = joined([*before, own[1], *after])
+            first = sum(rows.samples for rows in before)
+            yield own, around, slice(first, first + own[1].samples)
+            before = _last(reach, [*before, own[1]])
+            following -= waiting[0][1].samples if waiting else 0
+
+
+def _last(count: int, parts: list[Rows]) -> list[Rows]:
+    """The last so many samples of consecutive rows."""
+    if not count:
+        return []
+    rows = joined(parts)
+    return [rows.part(slice(max(0, rows.samples - count), None))]
 
 
 def added(sums: list[Array], rows: Rows, torques: Array) -> list[Array]:

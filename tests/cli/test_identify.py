@@ -147,7 +147,7 @@ def test_the_metadata_hold_the_verdict_and_its_numbers(shell: Shell) -> None:
     )
     lines = result.out.splitlines()
     keys = {line.split()[0] for line in lines}
-    assert {"verdict", "delay", "lag_share", "excitation", "scaled_condition_number"} <= keys
+    assert {"verdict", "delay", "effects", "excitation", "scaled_condition_number"} <= keys
     assert "7 of 8 parameters known" in lines[lines.index("reasons") + 1]
     assert "autocorrelation" in lines[lines.index("joints") + 1]
 

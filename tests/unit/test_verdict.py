@@ -10,24 +10,37 @@ import pytest
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.statistics.consequences import Consequences
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.algorithms.statistics.effects import PARALLEL, SIGNALS, STRIBECK, Effect
 from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
+from scarid_cli.arrays import Array
 
 P = 3
 SCARA = load("scara2")
 GOOD = JointResidual(1000, 0.999, 0.1, 0.1, 2.0, 0.0, 5.0)
+KNOWN = Consequences(np.ones(2), np.array([0.001, 0.002]), np.array([0.003, 0.004]))
+BLOCKS = 40
+
+
+def effect(name: str, *, moved: float = 0.0, largest: float = 0.0) -> Effect:
+    """One that moves the second parameter by so many standard errors of 0.01."""
+    row = 0.01 * moved * np.eye(8)[1]
+    return Effect(name, row, np.full(8, 0.001), row, largest, 8, BLOCKS)
 
 
 def evidence(**changes: object) -> Evidence:
     diagnostics = Diagnostics(
         covariance=None,
-        blocks=20,
+        blocks=BLOCKS,
+        scatter=0.01 * np.ones(8),
         errors=0.01 * np.ones(8),
+        matrix=1e-4 * np.eye(8),
         joints=(GOOD, replace(GOOD, torque=0.5)),
-        lag_share=0.1,
-        moved=np.zeros(8),
-        slow=np.full(2, 0.1),
+        effects=(effect(PARALLEL), effect(SIGNALS)),
+        gains=np.ones((2, 8)),
+        consequences=KNOWN,
     )
     plain_evidence = Evidence(
         names=SCARA.names,
@@ -37,27 +50,54 @@ def evidence(**changes: object) -> Evidence:
         weak="Fv1 - Fs1",
         diagnostics=diagnostics,
         treatment=Treatment(),
-        weighted=False,
     )
     changed = {k: v for k, v in changes.items() if k in vars(plain_evidence)}
     others = {k: v for k, v in changes.items() if k not in changed}
     return replace(plain_evidence, diagnostics=replace(diagnostics, **others), **changed)  # type: ignore[arg-type]
 
 
+def consequence(**changes: Array) -> dict[str, object]:
+    return {"consequences": replace(KNOWN, **changes)}
+
+
+FAR = {"moved": -4.0, "largest": 9.0}
+NOT_KNOWN = np.array([np.nan, np.nan])
+
+
 @pytest.mark.parametrize(
     ("changes", "grade", "reason"),
     [
-        ({}, "good", "8 of 8 parameters known within 30 %, R2 0.9990, 0.9990, condition number 20"),
-        ({"lag_share": 0.8}, "doubtful", "biased: the motion 25 ms before and after explains 80 %"),
-        ({"moved": np.eye(8)[1] * -4.0}, "doubtful", "Fv1 would move by up to 4.0 deviations"),
+        (
+            {},
+            "good",
+            "8 of 8 parameters known within 30 %, torque within 0.2, 0.4 %, inertia within 0.61, "
+            "0.81 %, R2 0.9990, 0.9990, condition number 20",
+        ),
+        (
+            {"effects": (effect(PARALLEL, **FAR),)},
+            "doubtful",
+            "the estimates depend on the soft sensor: with derivatives and torques behind the same "
+            "low-pass, Fv1 would change from 1 to 0.96 (4 standard errors)",
+        ),
+        (
+            {"effects": (effect(PARALLEL), effect(SIGNALS, **FAR))},
+            "doubtful",
+            "Fv1 would change from 1 to 0.96 (4 standard errors); --align fits a delay",
+        ),
+        ({"effects": (effect(PARALLEL, moved=-4.0, largest=2.0),)}, "good", "8 of 8 parameters"),
+        ({"effects": (effect(PARALLEL, moved=-2.0, largest=9.0),)}, "good", "8 of 8 parameters"),
+        ({"effects": ()}, "doubtful", "the estimates were not tested for bias"),
+        (
+            {"effects": (effect(PARALLEL), effect(STRIBECK, **FAR))},
+            "good",
+            "friction decreases with speed (add Stribeck friction with --estimator separable); the "
+            "interval of Fv1 allows for it",
+        ),
         (
             {"joints": (GOOD, replace(GOOD, r2=0.3, torque=0.5))},
             "doubtful",
-            "explains the torque of joint 2 badly",
+            "the model does not explain the torque of joint 2 (R2 0.3)",
         ),
-        ({"lag_share": np.nan}, "doubtful", "not tested for bias"),
-        ({"moved": np.full(8, np.nan)}, "doubtful", "not tested whether the estimates depend on"),
-        ({"moved": np.full(8, 1e99)}, "doubtful", "would move by up to 1.0e+99 deviations"),
         (
             {"joints": (GOOD, replace(GOOD, r2=np.nan, torque=0.5))},
             "doubtful",
@@ -66,11 +106,23 @@ def evidence(**changes: object) -> Evidence:
         (
             {"joints": (GOOD, replace(GOOD, r2=np.nan, torque=0.5))},
             "doubtful",
-            "8 of 8 parameters known within 30 %, R2 0.9990, undefined, condition number 20",
+            "R2 0.9990, undefined, condition number 20",
         ),
-        ({"errors": np.full(8, np.nan)}, "doubtful", "0 of 8 parameters known within 30 %"),
-        ({"estimates": -np.ones(8)}, "doubtful", "Fv1 is negative"),
-        ({"errors": np.full(8, 0.5)}, "doubtful", "0 of 8 parameters known within 30 %"),
+        (
+            {"errors": np.full(8, np.nan), **consequence(torque=NOT_KNOWN)},
+            "doubtful",
+            "0 of 8 parameters known within 30 %",
+        ),
+        (consequence(torque=NOT_KNOWN), "doubtful", "uncertainty of the torque of joint 1"),
+        (consequence(torque=np.array([0.1, 0.0])), "doubtful", "joint 1 is known only within 20 %"),
+        (
+            consequence(held_out=np.array([1.0, 2.5])),
+            "doubtful",
+            "predicted with 2.5 times the error of the fit at joint 2",
+        ),
+        ({"errors": np.full(8, 0.5)}, "good", "0 of 8 parameters known within 30 %"),
+        ({"blocks": 3.2}, "doubtful", "forgetting leaves only 3.2 independent parts of the log"),
+        ({"estimates": -np.ones(8)}, "doubtful", "the friction parameter Fv1 is negative"),
         ({"scaled_condition": 1e6}, "not identifiable", "hardly determines Fv1 - Fs1"),
         (
             {"joints": (GOOD, replace(GOOD, torque=0.01))},
@@ -78,7 +130,7 @@ def evidence(**changes: object) -> Evidence:
             "joint 2 has hardly any torque (0.01 N m rms",
         ),
     ],
-    ids=lambda x: next(iter(x), "nothing") if isinstance(x, dict) else None,
+    ids=str,
 )
 def test_the_verdict_says_what_is_wrong(
     changes: dict[str, object], grade: str, reason: str
@@ -88,28 +140,15 @@ def test_the_verdict_says_what_is_wrong(
     assert any(reason in found for found in judged.reasons), judged.reasons
 
 
-@pytest.mark.parametrize(
-    ("used", "advice"),
-    [
-        ({}, "(--drop-slow 0.1,0.1 --align)"),
-        ({"treatment": Treatment(slow=(0.1, 0.1))}, "(--align)"),
-        ({"treatment": Treatment(slow=(0.1, 0.05), align=True)}, "(--drop-slow 0.1,0.1)"),
-        ({"treatment": Treatment(slow=(0.2, 0.1), align=True)}, "(--estimator wls)"),
-        ({"treatment": Treatment(slow=(0.2, 0.1), align=True), "weighted": True}, None),
-    ],
-    ids=["nothing", "slow rows", "slower rows", "both", "both and weights"],
-)
-def test_the_advice_is_what_was_not_tried(used: dict[str, object], advice: str | None) -> None:
-    """Velocities are advised with one digit: 0.1 for 0.14, and 0.1 given is then as advised."""
-    moved = {"moved": np.eye(8)[1] * 4.0, "slow": np.array([0.14, 0.1])}
-    reason = verdict(evidence(**used, **moved), SCARA).reasons[0]
-    assert "Fv1 would move by up to 4.0 deviations" in reason
-    assert reason.endswith(advice) if advice else "--" not in reason
+def test_a_delay_is_not_advised_twice() -> None:
+    effects = (effect(PARALLEL), effect(SIGNALS, **FAR))
+    judged = verdict(evidence(treatment=Treatment(align=True), effects=effects), SCARA)
+    assert "--align" not in judged.reasons[0]
 
 
 def test_essential_parameters_are_not_advised_twice() -> None:
-    poor = {"errors": np.array([0.01] * 3 + [0.5] * 5)}
-    hint = "--essential leaves out what is not known"
+    poor = consequence(torque=np.array([0.5, 0.5]))
+    hint = "--essential leaves out the parameters that are not known"
     assert hint in verdict(evidence(**poor), SCARA).reasons
     assert hint not in verdict(evidence(treatment=Treatment(essential=True), **poor), SCARA).reasons
 
@@ -119,7 +158,7 @@ def test_a_parameter_of_zero_is_named_but_no_reason_for_doubt() -> None:
     estimates[5] = 1e-3
     judged = verdict(evidence(estimates=estimates), SCARA)
     assert judged.grade == "good"
-    assert judged.reasons[-1] == "not L1MY2"
+    assert judged.reasons[-1].startswith("7 of 8 parameters known within 30 % (all but L1MY2), ")
 
 
 def test_the_weakest_direction_is_that_of_the_smallest_singular_value() -> None:

@@ -102,11 +102,10 @@ class Estimator(BaseEstimator):
         return replace(self, forgetting=(*self.forgetting, max(self.forgetting)))
 
     def fit(self, state: WeightedInformation) -> Estimation:
-        fit = solve(state.information)
-        if min(self.factors) < 1.0:  # the scores of what forgets are not those of the whole record
-            return Estimation(fit, None)
-        if not len(state.residuals):
-            return Estimation(fit)
-        counts = np.maximum(state.residuals[:, COUNT], 1.0)
-        deviations = np.sqrt(state.residuals[:, SUM] / counts)
-        return Estimation(fit, Scores(whitening=np.diag(inverse_deviations(deviations))))
+        whitening = None
+        if len(state.residuals):
+            counts = np.maximum(state.residuals[:, COUNT], 1.0)
+            deviations = np.sqrt(state.residuals[:, SUM] / counts)
+            whitening = np.diag(inverse_deviations(deviations))
+        scores = Scores(whitening=whitening, forgetting=min(self.factors))
+        return Estimation(solve(state.information), scores)

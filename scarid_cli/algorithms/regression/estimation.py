@@ -22,22 +22,24 @@ class Scores:
     `whitening` (joints, joints) is the matrix that the rows of each sample were multiplied by.
     `huber` is the whitened residual above which Huber's weights reduce the weight of a row.
     `instruments` (samples, joints, parameters) take the place of W in Z. `rows` are the rows in
-    which the problem is linear, if they are not those that the estimator was given.
+    which the problem is linear, if they are not those that the estimator was given. `forgetting` is
+    the factor by which the weight of a row decreases with each later sample.
     """
 
     whitening: Array | None = None
     huber: float = float("inf")
     instruments: Array | None = None
     rows: Rows | None = None
+    forgetting: float = 1.0
 
 
 @dataclass(frozen=True)
 class Estimation:
     """The result of an estimator.
 
-    `scores` is None if the estimates solve no such equations for the rows as they are, as with a
-    Kalman filter or with forgetting. `added` has the names and units of parameters beyond the
-    robot's, and `extra` whatever else the estimator reports.
+    `scores` is None if the estimates solve no such equations, as with a Kalman filter. `added` has
+    the names and units of parameters beyond the robot's, and `extra` whatever else the estimator
+    reports.
     """
 
     fit: Fit

@@ -82,6 +82,12 @@ def without_slow(rows: Rows, slow: Array) -> Rows:
     return replace(rows, scales=rows.scales * (np.abs(rows.motion[1].T) >= slow))
 
 
+def faded(rows: Rows, factor: float) -> Rows:
+    """The rows as an estimator weights them that forgets by this factor per sample."""
+    ages = (rows.at[-1] - rows.at).astype(np.float64)
+    return replace(rows, scales=rows.scales * np.exp(0.5 * ages * np.log(factor))[:, None])
+
+
 def joined(parts: Sequence[Rows]) -> Rows:
     """Several parts of a record as one."""
     if len(parts) == 1:
@@ -129,3 +135,19 @@ def delay_column(rows: Rows, predicted: Array) -> Array:
             turns[:-1] |= turns[1:]
             column[run][turns] = 0.0
     return column
+
+
+def led(rows: Rows, predicted: Array, delay: float) -> Array:
+    """Predicted torques (samples, joints) as a measurement shows them that leads by the delay [s].
+
+    They are those of the nearest whole number of samples later, and the rest to first order. At the
+    end of a run the last sample takes the place of those that are missing.
+    """
+    whole = round(delay / rows.h) if rows.h > 0.0 else 0
+    slope, found = delay_column(rows, predicted), np.empty_like(predicted)
+    for run in runs(rows.at):
+        at = np.arange(run.start, run.stop)
+        later = np.clip(at + whole, run.start, run.stop - 1)
+        rest = delay - (later - at) * rows.h
+        found[run] = predicted[later] + rest[:, None] * slope[later]
+    return found

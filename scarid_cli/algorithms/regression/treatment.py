@@ -14,8 +14,9 @@ class Treatment:
     `skip` rows at the start and at the end of the table are left out. W and the torques are
     decimated by each factor of `decimate` in turn. Rows of a joint that is slower than `slow`
     (joints) [rad/s or m/s] are left out, and those near a reversal or standstill as `counting`
-    says; it is None if all rows count. Two more options concern the fit: `align` also fits the time
-    by which the torques lead the motion, and `essential` drops parameters that are not essential.
+    says; it is None if all rows count. Three more options concern the fit: `align` also fits the
+    time by which the torques lead the motion, `essential` drops parameters that are not essential,
+    and `gain_error` is the relative standard error of the torque constants.
     """
 
     skip: tuple[int, int] = (0, 0)
@@ -24,6 +25,7 @@ class Treatment:
     counting: Counting | None = None
     align: bool = False
     essential: bool = False
+    gain_error: float = 0.0
 
     @property
     def holds(self) -> bool:

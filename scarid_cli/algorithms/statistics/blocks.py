@@ -89,6 +89,12 @@ class Blocks:
         products = tuple(p[:, chosen[:, None], chosen] for p in self.products)
         return replace(self, products=products)
 
+    def faded(self, factor: float) -> Blocks:
+        """The blocks as an estimator weights them that forgets by this factor per sample."""
+        ages = [self.length * (self.numbers[-1] - number) for number in self.numbers]
+        products = zip(ages, self.products, strict=True)
+        return replace(self, products=tuple(factor**age * p for age, p in products))
+
     def grouped(self, count: int) -> list[Array]:
         """The products of the record divided into at most `count` parts of equal length."""
         first, last = self.numbers[0], self.numbers[-1] + 1

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.misalignment import LAG
+from scarid_cli.algorithms.statistics.effects import INTERVAL
 from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
-
-ROWS_PER_LAG = 5  # at least, in the subsample of a long record, within the lag of the lag test
 
 
 @dataclass(frozen=True)
@@ -33,5 +31,5 @@ class Checkpoint:
         """
         if holds:
             return cls(state, Subsample(samples=ALL), None)
-        thinnest = int(LAG / ROWS_PER_LAG / h + 1e-9) if h > 0.0 else 1
+        thinnest = int(INTERVAL / h + 1e-9) if h > 0.0 else 1
         return cls(state, Subsample(thinnest=max(1, thinnest)), Blocks.every(h))

@@ -1,30 +1,34 @@
-"""The diagnostics of an estimation: robust errors, tests for bias, and residuals of each joint.
+"""The diagnostics of an estimation: errors, effects of alternatives to the model, and residuals.
 
-Errors and sums of squares are computed from all rows of a record. Everything else is computed from
-a subsample if the record is long.
+The errors that leave out blocks and the sums of squares are computed from all rows of a record,
+everything else from a subsample if the record is long.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from scarid_cli.algorithms.regression.estimation import Estimation
-from scarid_cli.algorithms.regression.information import NotIdentifiableError, least_squares
-from scarid_cli.algorithms.regression.rows import Rows, with_delay, without_slow
+from scarid_cli.algorithms.regression.information import Fit
+from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.consequences import (
+    Consequences,
+    consequences,
+    gain_sensitivities,
+)
+from scarid_cli.algorithms.statistics.effects import Effect, Trial
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
     inflation,
     jackknife,
     jackknife_of_blocks,
 )
-from scarid_cli.algorithms.statistics.misalignment import lag_share
 from scarid_cli.algorithms.statistics.residuals import JointResidual, residuals
 from scarid_cli.arrays import Array
-
-SLOW = 0.1  # of the root-mean-square velocity of a joint: below it, a row counts as slow
 
 
 @dataclass(frozen=True)
@@ -32,80 +36,102 @@ class Diagnostics:
     """What the residuals show about an estimation.
 
     `covariance` is robust to autocorrelated residuals; it is None for an estimator without scores.
-    `errors` (parameters) are its standard errors. Without it they are the standard errors for white
-    residuals, multiplied by the ratio of robust to white errors of least squares on the same rows
-    (`inflation`). `blocks` is the number of blocks of the record that the errors come from.
-    `lag_share` is the part of the residual that the motion 25 ms before and after explains: it is
-    near 0 if all signals belong to the same instant, and near 1 if they are misaligned. `moved` is
-    the number of standard errors by which each estimate changes when the rows slower than `slow`
-    (joints) [rad/s or m/s] are left out and a delay of the torques is fitted as well.
+    `scatter` (columns) are standard errors from the noise alone: the larger of those from leaving
+    out blocks and those from the autocovariance of the residuals. `errors` (own parameters) also
+    allow for the `effects` of alternatives to the model and for the errors of the torque constants.
+    `matrix` (own, own) is the covariance of the estimates with all of that. `blocks` is the
+    effective number of blocks. `gains` (joints, own) is how far the estimates move per relative
+    change of the torque constant of a joint.
     """
 
     covariance: RobustCovariance | None
-    blocks: int
+    blocks: float
+    scatter: Array
     errors: Array
+    matrix: Array
     joints: tuple[JointResidual, ...]
-    lag_share: float
-    moved: Array
-    slow: Array
-
-    def part(self, own: int) -> Diagnostics:
-        """The diagnostics of the first `own` parameters."""
-        covariance = self.covariance and self.covariance.part(own)
-        return replace(self, covariance=covariance, errors=self.errors[:own])
+    effects: tuple[Effect, ...]
+    gains: Array
+    consequences: Consequences
 
 
 def diagnose(
-    rows: Rows, found: Estimation, parameters: int, record: Blocks | None = None
+    rows: Rows,
+    found: Estimation,
+    own: int,
+    record: Blocks | None = None,
+    *,
+    model: Model | None = None,
+    gain_error: float = 0.0,
 ) -> Diagnostics:
     """Diagnose an estimation from its rows.
 
     `record` has the blocks of the whole record if `rows` are only a subsample of it. The first
-    `parameters` columns of W belong to the robot; the others are nuisance parameters.
+    `own` columns of W belong to the robot, whose `model` is None if the rows are not those of its
+    regressor; the others are nuisance parameters. `gain_error` is the relative standard error of
+    the torque constants.
     """
-    joints = residuals(rows, found.fit.estimates, record)
-    covariance = _covariance(rows, found, record)
-    if covariance:
-        blocks, errors = covariance.blocks, covariance.errors
-    else:
-        blocks, errors = _inflated(rows, found, record or Blocks.every(rows.h).add(rows).whole())
-    weights = np.array([1.0 / j.deviation if j.deviation > 0.0 else 0.0 for j in joints])
-    slow = SLOW * np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
-    fast = without_slow(rows, slow)
-    other = with_delay_fitted(fast, found.fit.estimates[:parameters], weights)
+    whole = record or Blocks.every(rows.h).add(rows).whole()
+    weights = _weights(found, rows.y.shape[1])
+    covariance, blocks, errors = _noise_errors(rows, found, record, whole)
+    trial = Trial.of(rows, own, weights)
+    scatter = errors * trial.longer()
+    effects = trial.effects(found.fit.estimates, model)
+    gains = gain_sensitivities(whole.total, weights)[:, :own]
+    shifts = np.array([e.bias for e in effects]).reshape(-1, own)
+    directions = [e.direction(scatter[:own]) for e in effects]
+    matrix = _matrix(found.fit.part(slice(own)), scatter[:own], [*directions, *gain_error * gains])
+    widest = np.max(shifts**2, axis=0, initial=0.0) + np.sum((gain_error * gains) ** 2, axis=0)
     return Diagnostics(
-        covariance=covariance,
+        covariance=covariance and covariance.part(own),
         blocks=blocks,
-        errors=errors,
-        joints=joints,
-        lag_share=lag_share(fast, weights, parameters),
-        moved=_in_errors(other - found.fit.estimates[:parameters], errors[:parameters]),
-        slow=slow,
+        scatter=scatter,
+        errors=np.sqrt(scatter[:own] ** 2 + np.nan_to_num(widest)),
+        matrix=matrix,
+        joints=residuals(rows, found.fit.estimates, record),
+        effects=effects,
+        gains=gains,
+        consequences=consequences(
+            whole, weights, found.fit.estimates, matrix, model, rows.motion[0]
+        ),
     )
 
 
-def _in_errors(difference: Array, errors: Array) -> Array:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.where(difference == 0.0, 0.0, difference / errors), dtype=np.float64)
+def _weights(found: Estimation, joints: int) -> Array:
+    """What the rows of each joint were multiplied by (joints)."""
+    if found.scores is None or found.scores.whitening is None:
+        return np.ones(joints)
+    return np.asarray(np.diag(found.scores.whitening), dtype=np.float64)
 
 
-def _covariance(rows: Rows, found: Estimation, record: Blocks | None) -> RobustCovariance | None:
+def _noise_errors(
+    rows: Rows, found: Estimation, record: Blocks | None, whole: Blocks
+) -> tuple[RobustCovariance | None, float, Array]:
+    """The robust covariance, the effective number of blocks, and the errors from leaving them out.
+
+    Without scores the errors are those for white residuals, multiplied by the ratio of robust to
+    white errors of least squares on the same rows.
+    """
     if found.scores is None:
-        return None
-    return jackknife_of_blocks(record, rows, found) if record else jackknife(rows, found)
+        blocks, ratio = inflation(whole, rows)
+        return None, blocks, np.asarray(found.fit.standard_errors() * ratio)
+    covariance = jackknife_of_blocks(record, rows, found) if record else jackknife(rows, found)
+    return covariance, covariance.effective, covariance.errors
 
 
-def _inflated(rows: Rows, found: Estimation, record: Blocks) -> tuple[int, Array]:
-    """The number of blocks, and the standard errors of an estimator without scores."""
-    blocks, ratio = inflation(record, rows)
-    return blocks, np.asarray(found.fit.standard_errors() * ratio, dtype=np.float64)
+def _matrix(fit: Fit, scatter: Array, shifts: list[Array]) -> Array:
+    """The covariance of the estimates, scaled to their errors; nan if these are not known.
 
-
-def with_delay_fitted(rows: Rows, estimates: Array, weights: Array) -> Array:
-    """The estimates when the delay of the torques is fitted as well; nan if that is singular."""
-    parameters = len(estimates)
-    wide = with_delay(replace(rows, W=rows.W[:, :, :parameters]), estimates)
-    try:
-        return least_squares(wide.W, wide.y, rows.scales * weights).estimates[:parameters]
-    except NotIdentifiableError:
-        return np.full(parameters, np.nan)
+    It is the classical covariance s^2 (W'W)^-1, multiplied by the median ratio of robust to
+    classical variances, plus the squares of the shifts. Autocorrelated residuals increase all
+    errors, but do not change the directions that the motion leaves undetermined. The robust
+    covariance itself would not do, because its rank is below the number of its blocks.
+    """
+    classical = fit.variance * fit.unit_covariance
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = scatter**2 / np.diag(classical)
+    ratios = ratios[np.isfinite(ratios) & (ratios > 0.0)]
+    sized = classical * (np.median(ratios) if len(ratios) else 1.0)
+    for shift in shifts:
+        sized = sized + np.outer(shift, shift) if np.isfinite(shift).all() else sized
+    return np.asarray(sized)

@@ -45,7 +45,7 @@ class Noise:
 
     rows: float
     inflation: float
-    blocks: int
+    blocks: float
 
     def growth(self, dropped: int, variance: float) -> float:
         """How much the residual sum of squares may grow: an F test for autocorrelated residuals."""

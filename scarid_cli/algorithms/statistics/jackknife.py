@@ -5,30 +5,32 @@ Its standard errors also hold for autocorrelated residuals; those for white resi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from statistics import NormalDist
 
 import numpy as np
 
 from scarid_cli.algorithms.regression.estimation import Estimation, Scores
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, Numbers
 
 BLOCK_DURATION = 0.5  # s: residuals this far apart are taken to be independent
 BLOCK_COUNTS = (10, 128)  # the smallest and the largest number of blocks of a record
-Z95 = 1.959963984540054
 
 
 @dataclass(frozen=True)
 class RobustCovariance:
     """The robust covariance `matrix` (parameters, parameters) of the estimates.
 
-    `blocks` is the number of blocks that it comes from; too few of them leave nan.
+    `blocks` is the number of blocks that it comes from; too few of them leave nan. `effective` is
+    the number of blocks of equal weight that would be as many, where old blocks are forgotten.
     """
 
     matrix: Array
     blocks: int
+    effective: float
 
     @property
     def errors(self) -> Array:
@@ -37,12 +39,12 @@ class RobustCovariance:
 
     def part(self, own: int) -> RobustCovariance:
         """The covariance of the first `own` estimates."""
-        return RobustCovariance(self.matrix[:own, :own], self.blocks)
+        return replace(self, matrix=self.matrix[:own, :own])
 
     @property
     def quantile(self) -> float:
         """Half the width of a 95 % confidence interval, in standard errors."""
-        return t95(self.blocks - 1)
+        return quantile(0.975, self.effective - 1.0)
 
 
 def jackknife(rows: Rows, found: Estimation) -> RobustCovariance:
@@ -52,7 +54,20 @@ def jackknife(rows: Rows, found: Estimation) -> RobustCovariance:
     of clustered errors; Bell and McCaffrey 2002), so an estimate that rests on a few violent moves
     gets a larger error.
     """
-    return _scatter(shifts(rows, found))
+    return _faded(_scatter(shifts(rows, found)), rows, found)
+
+
+def _faded(covariance: RobustCovariance, rows: Rows, found: Estimation) -> RobustCovariance:
+    """The covariance with the effective number of blocks, (sum of w)^2 / (sum of w^2).
+
+    w is the weight that forgetting leaves to a block.
+    """
+    factor = found.scores.forgetting if found.scores else 1.0
+    if not factor < 1.0:
+        return covariance
+    length = float(rows.at[-1] - rows.at[0] + 1) / covariance.blocks
+    weights = np.exp(np.log(factor) * length * np.arange(covariance.blocks))
+    return replace(covariance, effective=float(weights.sum() ** 2 / (weights**2).sum()))
 
 
 def jackknife_of_blocks(record: Blocks, rows: Rows, found: Estimation) -> RobustCovariance:
@@ -68,7 +83,7 @@ def jackknife_of_blocks(record: Blocks, rows: Rows, found: Estimation) -> Robust
         (gram, moment - gram @ found.fit.estimates)
         for gram, moment in _normal(record, rows, weights)
     ]
-    return _scatter(_without_each(parts))
+    return _faded(_scatter(_without_each(parts)), rows, found)
 
 
 def inflation(record: Blocks, rows: Rows) -> tuple[int, Array]:
@@ -79,7 +94,7 @@ def inflation(record: Blocks, rows: Rows) -> tuple[int, Array]:
     """
     parts = _normal(record, rows, np.ones(rows.y.shape[1]))
     gram, moment = (np.sum(x, axis=0) for x in zip(*parts, strict=True))
-    if not _regular(gram):
+    if not regular(gram):
         return len(parts), np.full(len(gram), np.nan)
     inverse = np.linalg.inv(gram)
     theta = inverse @ moment
@@ -104,17 +119,26 @@ def _scatter(moved: Array) -> RobustCovariance:
     """The jackknife covariance of estimates that move by `moved` (blocks, parameters)."""
     blocks, p = moved.shape
     if blocks < 2 or not np.isfinite(moved).all():
-        return RobustCovariance(np.full((p, p), np.nan), max(blocks, 2))
-    return RobustCovariance((blocks - 1) / blocks * moved.T @ moved, blocks)
+        return RobustCovariance(np.full((p, p), np.nan), max(blocks, 2), max(blocks, 2))
+    return RobustCovariance((blocks - 1) / blocks * moved.T @ moved, blocks, blocks)
 
 
 def shifts(rows: Rows, found: Estimation) -> Array:
     """How far the estimates move when each block is left out (blocks, parameters)."""
-    first, last = rows.at[0], rows.at[-1] + 1
-    count = _count((last - first) * rows.h)
-    block = (rows.at - first) * count // (last - first)
+    block, count = block_numbers(rows.at, rows.h)
     edges = np.searchsorted(block, np.arange(count + 1))
-    return _without_each([products(rows, found, slice(a, b)) for a, b in pairwise(edges) if b > a])
+    return _without_each([products(rows, found, slice(a, b)) for a, b in pairwise(edges.tolist())])
+
+
+def block_numbers(at: Numbers, h: float) -> tuple[Numbers, int]:
+    """The block of each sample of a record sampled every h [s], and how many blocks have samples.
+
+    at: the numbers of the samples, in ascending order.
+    """
+    first, last = int(at[0]), int(at[-1]) + 1
+    count = _count((last - first) * h)
+    used, block = np.unique((at - first) * count // (last - first), return_inverse=True)
+    return block, len(used)
 
 
 def _count(duration: float) -> int:
@@ -128,12 +152,12 @@ def _without_each(parts: list[tuple[Array, Array]]) -> Array:
     total = sum((gram for gram, _ in parts), np.zeros((p, p)))
     moved = np.full((len(parts), p), np.inf)
     for i, (gram, score) in enumerate(parts):
-        if _regular(total - gram):
+        if regular(total - gram):
             moved[i] = np.linalg.solve(total - gram, score)
     return moved
 
 
-def _regular(gram: Array) -> bool:
+def regular(gram: Array) -> bool:
     """Whether a Gram matrix is well conditioned once its columns have unit length."""
     size = np.sqrt(np.abs(np.diag(gram)))
     if not np.all(size > 0.0):
@@ -173,9 +197,9 @@ def _times(W: Array, scales: Array, whitening: Array | None) -> Array:
     return mixed
 
 
-def t95(freedom: int) -> float:
-    """The 97.5 % point of Student's t (Abramowitz and Stegun 26.7.5)."""
-    z, n = Z95, float(max(freedom, 1))
+def quantile(probability: float, freedom: float) -> float:
+    """This quantile of Student's t (Abramowitz and Stegun 26.7.5)."""
+    z, n = NormalDist().inv_cdf(probability), max(freedom, 1.0)
     return float(
         z
         + (z**3 + z) / (4.0 * n)

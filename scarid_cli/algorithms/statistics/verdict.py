@@ -10,22 +10,28 @@ import numpy as np
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.algorithms.statistics.effects import PARALLEL, SIGNALS, Effect
+from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.residuals import JointResidual
+from scarid_cli.algorithms.statistics.sentences import changed, friction_notes, listed, percents
 from scarid_cli.arrays import Array
 
 GOOD, DOUBTFUL, NOT_IDENTIFIABLE = "good", "doubtful", "not identifiable"
-LAGGED = 0.5  # share of the residual above which the lag test finds a bias
-DOUBT = 30.0  # %: the relative standard error above which a parameter counts as unknown
+DOUBT = 30.0  # %: half the width of the interval above which a parameter counts as unknown
 WEAK = 1e4  # scaled condition number above which a combination of parameters is undetermined
 POOR = 0.8  # R2 below which the model does not explain the torque of a joint
-READABLE = 1e4  # deviations from which on a power of ten is printed
 DEVIATIONS = 3.0  # standard errors by which an estimate may move
+PART = 0.01  # of an estimate, by which it may move however small its error is
 NOISE = 3.0  # times the torque noise: a joint with a smaller torque counts as not driven
+BLOCKS = 5.0  # effective blocks, below which errors cannot be stated
+HELD_OUT = 1.5  # times the residual of the fit that the one of held-out parts may reach
+VAGUE = 0.1  # of the torque: half the interval above which it counts as not known
+FEW = 3  # unknown parameters that are named
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """The grade and its reasons, each a sentence without its full stop."""
+    """The grade and its reasons, each a clause without its full stop."""
 
     grade: str
     reasons: tuple[str, ...]
@@ -36,7 +42,6 @@ class Evidence:
     """What a verdict is based on; `estimates` and errors are in the order of `names`.
 
     The verdict does not recommend the options of the `treatment` that are already in use.
-    `weighted`: joints are weighted by their residuals.
     """
 
     names: Sequence[str]
@@ -46,27 +51,24 @@ class Evidence:
     weak: str
     diagnostics: Diagnostics
     treatment: Treatment
-    weighted: bool
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     """Grade an estimation, with the gravest reasons first."""
     joints = evidence.diagnostics.joints
+    summary = _summary(evidence)
     obstacles = [*_idle(joints, robot), *_undetermined(evidence)]
     if obstacles:
-        return Verdict(NOT_IDENTIFIABLE, (*obstacles, *_summary(evidence)))
-    unknown = _unknown(evidence)
+        return Verdict(NOT_IDENTIFIABLE, (*obstacles, summary))
     wrong = [
-        *(_biased(evidence.diagnostics) or _moved(evidence, robot)),
+        *_forgotten(evidence.diagnostics),
+        *_biased(evidence),
         *_poor(joints),
+        *_vague(evidence),
         *_impossible(evidence, robot),
     ]
-    most = 2 * len(unknown) > len(evidence.names)
-    uncertain = [f"not {_listed(unknown)}"] if unknown and not most else []
-    if most and len(unknown) < len(evidence.names) and not evidence.treatment.essential:
-        uncertain = ["--essential leaves out what is not known"]
-    grade = DOUBTFUL if wrong or most else GOOD
-    return Verdict(grade, (*wrong, *_summary(evidence), *uncertain))
+    notes = friction_notes(evidence.names, evidence.diagnostics)
+    return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes))
 
 
 def _idle(joints: Sequence[JointResidual], robot: Robot) -> list[str]:
@@ -90,71 +92,77 @@ def _undetermined(evidence: Evidence) -> list[str]:
     ]
 
 
-def _biased(diagnostics: Diagnostics) -> list[str]:
-    if diagnostics.lag_share <= LAGGED:
+def _forgotten(diagnostics: Diagnostics) -> list[str]:
+    if diagnostics.blocks >= BLOCKS:
         return []
-    if np.isnan(diagnostics.lag_share):
-        return [
-            "not tested for bias: too few rows have those 25 ms before and after them; use a "
-            "longer log, or leave out fewer rows"
-        ]
     return [
-        f"biased: the motion 25 ms before and after explains {100 * diagnostics.lag_share:.0f} % "
-        "of the residual (signals of different instants, see scarid differentiate --match; noisy "
-        "derivatives; or a force that the model lacks)"
+        f"forgetting leaves only {diagnostics.blocks:.1f} independent parts of the log, too few "
+        "to state errors: forget more slowly"
     ]
 
 
-def _moved(evidence: Evidence, robot: Robot) -> list[str]:
-    """Estimates that depend on the Coulomb friction of slow rows, or on a delay."""
-    diagnostics = evidence.diagnostics
-    if not any(p.term.JUMPS for p in robot.parameters):
-        return []
-    if np.isnan(diagnostics.moved).all():
+def _biased(evidence: Evidence) -> list[str]:
+    """Alternatives to the signals that would move the estimates by more than their errors."""
+    found = {effect.name: effect for effect in evidence.diagnostics.effects}
+    if PARALLEL not in found:
         return [
-            "not tested whether the estimates depend on slow rows: the other rows do not determine "
-            "all parameters; use a log that excites every joint"
+            "the estimates were not tested for bias, because no part of the log without a gap or a "
+            "row left out is long enough: use a longer log"
         ]
-    moved = [
-        n for n, x in zip(evidence.names, diagnostics.moved, strict=False) if abs(x) > DEVIATIONS
+    reasons = []
+    if moved := _moved(evidence, found[PARALLEL]):
+        reasons.append(
+            "the estimates depend on the soft sensor: with derivatives and torques behind the same "
+            f"low-pass, {moved} (use scarid differentiate --match, or another method)"
+        )
+    if SIGNALS in found and (moved := _moved(evidence, found[SIGNALS])):
+        advice = "" if evidence.treatment.align else "; --align fits a delay"
+        reasons.append(
+            "torque and motion are not those of one instant, or a joint is flexible: with a delay "
+            f"and the second derivative of the inertial torque fitted as well, {moved}{advice}"
+        )
+    return reasons
+
+
+def _moved(evidence: Evidence, effect: Effect) -> str:
+    """Which estimates an effect moves too far; empty if there are none."""
+    scatter = evidence.diagnostics.scatter[: len(evidence.estimates)]
+    far = np.abs(effect.apart) > np.maximum(DEVIATIONS * scatter, PART * np.abs(evidence.estimates))
+    if not effect.significant() or not far.any():
+        return ""
+    return changed(evidence.names, evidence.estimates, effect.apart, scatter, far)
+
+
+def _vague(evidence: Evidence) -> list[str]:
+    """Joints whose torque is not known, or not predicted within its noise."""
+    found, width = evidence.diagnostics.consequences, _width(evidence)
+    reasons = [
+        f"the torque of joint {i} is known only within {100.0 * width * error:.2g} %"
+        if np.isfinite(error)
+        else f"the uncertainty of the torque of joint {i} is not known"
+        for i, error in enumerate(found.torque, start=1)
+        if not width * error <= VAGUE
     ]
-    if not moved:
-        return []
-    largest = np.nanmax(np.abs(diagnostics.moved))
-    most = f"{largest:.1f}" if largest < READABLE else f"{largest:.1e}"
-    slow = [f"{v:.1g}" for v in diagnostics.slow]
-    options = _untried(slow, evidence.treatment)
-    if options:
-        return [
-            f"{_listed(moved)} would move by up to {most} deviations without the slow rows and "
-            f"with the torques' delay fitted ({' '.join(options)})"
-        ]
-    advice = "" if evidence.weighted else " (--estimator wls)"
-    return [
-        f"{_listed(moved)} would move by up to {most} deviations in weighted least squares "
-        f"without the rows slower than {', '.join(slow)}{advice}"
+    reasons += [
+        f"parts of the log that were left out of the fit are predicted with {ratio:.2g} times the "
+        f"error of the fit at joint {i}: use a longer log, or fewer parameters"
+        for i, ratio in enumerate(found.held_out, start=1)
+        if not ratio <= HELD_OUT
     ]
+    hint = "--essential leaves out the parameters that are not known"
+    return [*reasons, hint] if reasons and not evidence.treatment.essential else reasons
 
 
-def _untried(slow: Sequence[str], used: Treatment) -> list[str]:
-    """The recommended options that are not in use, or only with a lower velocity."""
-    options = []
-    if len(used.slow) < len(slow) or any(map(_below, used.slow, slow)):
-        options.append(f"--drop-slow {','.join(slow)}")
-    if not used.align:
-        options.append("--align")
-    return options
-
-
-def _below(given: float, advised: str) -> bool:
-    return given < float(advised)
+def _width(evidence: Evidence) -> float:
+    """Half the width of a 95 % interval, in standard errors."""
+    return quantile(0.975, evidence.diagnostics.blocks - 1.0)
 
 
 def _poor(joints: Sequence[JointResidual]) -> list[str]:
     return [
         f"joint {i} has no R2, because its torque is constant or fewer than two of its rows count"
         if np.isnan(joint.r2)
-        else f"the model explains the torque of joint {i} badly (R2 {joint.r2:.3g})"
+        else f"the model does not explain the torque of joint {i} (R2 {joint.r2:.3g})"
         for i, joint in enumerate(joints, start=1)
         if not joint.r2 >= POOR
     ]
@@ -166,7 +174,7 @@ def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
     errors = evidence.diagnostics.errors
     rows = zip(evidence.names, evidence.estimates, errors, strict=True)
     return [
-        f"{name} is negative ({estimate:.3g}), which friction cannot be"
+        f"the friction parameter {name} is negative ({estimate:.3g})"
         for name, estimate, error in rows
         if name in friction and estimate < -DEVIATIONS * error
     ]
@@ -179,23 +187,24 @@ def _unknown(evidence: Evidence) -> list[str]:
     return [n for n, r in zip(evidence.names, relative, strict=True) if not r <= DOUBT]
 
 
-def _summary(evidence: Evidence) -> list[str]:
-    """The key figures: known parameters, R2 of each joint, condition number."""
-    known = len(evidence.names) - len(_unknown(evidence))
-    parts = [f"{known} of {len(evidence.names)} parameters known within {DOUBT:g} %"]
-    found = [joint.r2 for joint in evidence.diagnostics.joints]
-    r2 = ", ".join("undefined" if np.isnan(x) else f"{x:.4f}" for x in found)
-    parts.append(f"R2 {r2}")
+def _summary(evidence: Evidence) -> str:
+    """The key figures: known parameters, torques and inertias, R2 of each joint, condition."""
+    unknown = _unknown(evidence)
+    count = len(evidence.names)
+    known = f"{count - len(unknown)} of {count} parameters known within {DOUBT:g} %"
+    if 0 < len(unknown) <= FEW:
+        known += f" (all but {listed(unknown)})"
+    found, width = evidence.diagnostics.consequences, _width(evidence)
+    parts = [known]
+    if np.isfinite(found.torque).all():
+        parts.append(f"torque within {percents(width * found.torque)}")
+    if np.isfinite(found.inertia).all():
+        parts.append(f"inertia within {percents(width * found.inertia)}")
+    r2 = [joint.r2 for joint in evidence.diagnostics.joints]
+    parts.append(f"R2 {', '.join('undefined' if np.isnan(x) else f'{x:.4f}' for x in r2)}")
     if np.isfinite(evidence.condition):
         parts.append(f"condition number {evidence.condition:.3g}")
-    return [", ".join(parts)]
-
-
-def _listed(names: Sequence[str], most: int = 8) -> str:
-    shown = list(names[:most])
-    if len(names) > most:
-        shown.append(f"{len(names) - most} more")
-    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
+    return ", ".join(parts)
 
 
 def combination(direction: Array, names: Sequence[str]) -> str:

@@ -1,0 +1,115 @@
+"""What the uncertainty of the estimates means for their use: torques and inertias.
+
+An arm of fifty parameters has some that its motion hardly determines, and that matter as little.
+What matters is whether the torque is predicted within its noise where the parameters were not
+fitted, and how well the torque and the inertia of each joint are known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.jackknife import regular
+from scarid_cli.arrays import Array
+
+PARTS = 10  # of the record, each left out once
+POSES = 50  # of the record, at which the inertia is computed
+
+
+@dataclass(frozen=True)
+class Consequences:
+    """How well torques and inertias are known; one value for each joint.
+
+    `held_out` is the root-mean-square residual of parts of the record that were left out of the
+    fit, divided by that of the fit itself. `torque` is the standard error of the predicted torque,
+    divided by the root-mean-square torque. `inertia` is the standard error of the diagonal of the
+    inertia matrix, divided by its value, as a median over poses of the record.
+    """
+
+    held_out: Array
+    torque: Array
+    inertia: Array
+
+
+def consequences(
+    record: Blocks,
+    weights: Array,
+    estimates: Array,
+    covariance: Array,
+    model: Model | None,
+    poses: Array,
+) -> Consequences:
+    """The consequences of a covariance (own, own) of the first `own` estimates.
+
+    poses: positions of the joints (joints, samples) [rad or m].
+    """
+    own = len(covariance)
+    torque = _torque(record.total, covariance)
+    nothing = np.full(len(weights), np.nan)
+    inertia = nothing
+    if model is not None and poses.size:
+        inertia = _inertia(model, estimates[:own], covariance, poses)
+    return Consequences(_held_out(record, weights, estimates), torque, inertia)
+
+
+def _held_out(record: Blocks, weights: Array, estimates: Array) -> Array:
+    """Residuals of parts that were left out, relative to those of the fit (joints)."""
+    parts = record.grouped(PARTS)
+    total = np.sum(parts, axis=0)
+    inside, outside = _squares(total, estimates), np.zeros(len(weights))
+    for part in parts:
+        rest = np.tensordot(weights**2, total - part, 1)
+        gram = rest[:-2, :-2]
+        if not regular(gram):
+            return np.full(len(weights), np.inf)
+        outside += _squares(part, np.linalg.solve(gram, rest[:-2, -2]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.sqrt(np.where(outside > 0.0, outside / inside, 1.0)))
+
+
+def _squares(products: Array, estimates: Array) -> Array:
+    """The residual sum of squares of each joint (joints), from the products of [W, y, 1]."""
+    along = np.concatenate((-estimates, [1.0, 0.0]))
+    squares = np.einsum("i,jik,k->j", along, products, along)
+    return np.asarray(np.maximum(squares, 0.0), dtype=np.float64)
+
+
+def _torque(products: Array, covariance: Array) -> Array:
+    """The error of the predicted torque, relative to the torque (joints)."""
+    own = len(covariance)
+    errors = np.einsum("ik,jki->j", covariance, products[:, :own, :own])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.sqrt(np.maximum(errors, 0.0) / products[:, -2, -2]))
+
+
+def _inertia(model: Model, estimates: Array, covariance: Array, poses: Array) -> Array:
+    """The error of the diagonal of the inertia matrix, relative to it (joints)."""
+    q = np.ascontiguousarray(poses[:, :: max(1, poses.shape[1] // POSES)])
+    rest, found = np.zeros_like(q), []
+    still = model.regressor(q, rest, rest)
+    for j in range(len(q)):
+        ddq = np.zeros_like(q)
+        ddq[j] = 1.0
+        rows = (model.regressor(q, rest, ddq) - still)[:, j]
+        errors = np.sqrt(np.maximum(np.einsum("si,ik,sk->s", rows, covariance, rows), 0.0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found.append(float(np.median(errors / np.abs(rows @ estimates))))
+    return np.array(found)
+
+
+def gain_sensitivities(total: Array, weights: Array) -> Array:
+    """How far the estimates move per relative change of each torque constant (joints, columns).
+
+    If the torque of joint j is logged too large by a factor 1 + g, W'S y gains g times the part of
+    that joint, so d theta / d g = (W'S W)^-1 W_j' S_j y_j. All joints together give theta itself.
+    total: the products of [W, y, 1] of all rows.
+    """
+    parts = (weights**2)[:, None, None] * total
+    gram = parts.sum(axis=0)[:-2, :-2]
+    if not regular(gram):
+        return np.full((len(weights), len(gram)), np.nan)
+    return np.asarray(np.linalg.solve(gram, parts[:, :-2, -2].T).T)

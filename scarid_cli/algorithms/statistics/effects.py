@@ -1,0 +1,189 @@
+"""How far each alternative to the model moves the estimates, and whether that is significant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.statistics.alternatives import (
+    Model,
+    away_from_reversals,
+    friction_columns,
+    smoothed,
+)
+from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
+from scarid_cli.algorithms.statistics.jackknife import block_numbers, quantile
+from scarid_cli.algorithms.statistics.products import Products, Solved, jackknifed
+from scarid_cli.arrays import Array, Numbers
+
+INTERVAL = 0.005  # s: the rows are thinned to intervals of at most this length
+REVERSALS, OFFSET, STRIBECK = "reversals", "offset", "Stribeck"
+ASYMMETRY, PARALLEL, SIGNALS = "asymmetry", "parallel", "signals"
+ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL)  # widen the intervals whether significant or not
+CERTAIN = 0.01  # probability of calling an effect significant that is none
+LIKELY = 0.05
+TRUST = 1.5  # variances of an effect that are subtracted from its square
+
+
+@dataclass(frozen=True)
+class Effect:
+    """How far the estimates move under an alternative, and the errors of that (parameters).
+
+    `apart` is how far they move because of the alternative alone, on rows that are otherwise
+    treated alike. `largest` is the largest of the statistics that show whether there is an effect,
+    in their errors, and `tests` the number of these statistics, from so many `blocks`.
+    """
+
+    name: str
+    moved: Array
+    errors: Array
+    apart: Array
+    largest: float
+    tests: int
+    blocks: int
+
+    def significant(self, level: float = CERTAIN) -> bool:
+        """Whether noise would have such an effect with less than this probability."""
+        point = quantile(1.0 - 0.5 * level / max(self.tests, 1), self.blocks - 1)
+        return bool(self.largest > point)
+
+    @property
+    def bias(self) -> Array:
+        """The part of the move that its error does not explain (parameters); 0 if there is none."""
+        if self.name not in ALWAYS and not self.significant(LIKELY):
+            return np.zeros_like(self.moved)
+        rest = self.moved**2 - TRUST * self.errors**2
+        return np.asarray(np.sign(self.moved) * np.sqrt(np.maximum(np.nan_to_num(rest), 0.0)))
+
+    def direction(self, scatter: Array) -> Array:
+        """The bias of all estimates together (parameters), for their covariance.
+
+        It keeps the direction of the move, in which large moves of single parameters may cancel in
+        the torque. `scatter` (parameters) are the errors from noise, which make them comparable.
+        """
+        if self.name not in ALWAYS and not self.significant(LIKELY):
+            return np.zeros_like(self.moved)
+        known = scatter > 0.0
+        squares = float(np.sum((self.moved[known] / scatter[known]) ** 2))
+        noise = TRUST * float(np.sum((self.errors[known] / scatter[known]) ** 2))
+        share: float = max(1.0 - noise / squares, 0.0) if squares > 0.0 else 0.0
+        return np.asarray(share**0.5 * self.moved, dtype=np.float64)
+
+
+def thinned(rows: Rows) -> Rows:
+    """Every n-th sample, such that they are at most 5 ms apart if the record allows."""
+    step = int(INTERVAL / rows.h + 1e-9) if rows.h > 0.0 else 1
+    if step < 2:
+        return rows
+    part = rows.part(np.flatnonzero(rows.at % step == 0))
+    return replace(part, at=part.at // step, h=rows.h * step)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """The rows on which alternatives are tried, in so many blocks of these numbers.
+
+    The first `own` columns of W belong to the robot. Joints are weighted by `weights`. `plain` is
+    the fit without any alternative; None if the rows do not determine it.
+    """
+
+    rows: Rows
+    own: int
+    weights: Array
+    number: Numbers
+    count: int
+    plain: Solved | None = None
+
+    @classmethod
+    def of(cls, rows: Rows, own: int, weights: Array) -> Trial:
+        """From the rows of an estimation."""
+        few = thinned(rows)
+        trial = cls(few, own, weights, *block_numbers(few.at, few.h))
+        return replace(trial, plain=trial.products(few.scales, {})[0].solved([]))
+
+    def longer(self) -> Array:
+        """How many times the errors of long disturbances exceed those of blocks (columns); >= 1."""
+        if self.plain is None:
+            return np.ones(self.rows.W.shape[2])
+        errors = autocovariance_errors(self.rows, self.plain.whole, self.weights)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = errors / jackknifed(self.plain.deviations)
+        return np.asarray(np.where(ratios > 1.0, np.nan_to_num(ratios, posinf=1.0), 1.0))
+
+    def effects(self, estimates: Array, model: Model | None) -> tuple[Effect, ...]:
+        """The effects of all alternatives that the rows determine."""
+        if self.plain is None:
+            return ()
+        return (*self.friction(self.plain), *self.signals(self.plain, estimates, model))
+
+    def products(
+        self, scales: Array, further: dict[str, Array]
+    ) -> tuple[Products, dict[str, list[int]]]:
+        """The products with further columns, and the places of the columns of each name."""
+        places, start = {}, self.rows.W.shape[2]
+        for name, columns in further.items():
+            places[name] = list(range(start, start + columns.shape[2]))
+            start += columns.shape[2]
+        A = np.concatenate((self.rows.W, *further.values(), self.rows.y[:, :, None]), axis=2)
+        return self._of(A, scales, self.number), places
+
+    def _of(self, A: Array, scales: Array, number: Numbers) -> Products:
+        weighted = A * (scales * self.weights)[:, :, None]
+        return Products.of(weighted, number, self.count, self.rows.W.shape[2])
+
+    def friction(self, plain: Solved) -> list[Effect]:
+        """The effects of what friction may have beyond the model, and of rows near reversals."""
+        products, places = self.products(self.rows.scales, friction_columns(self.rows.motion[1]))
+        found = []
+        for name, columns in places.items():
+            new = products.independent(columns)
+            solved = products.solved(new) if new else None
+            found.append(solved and self.effect(name, plain, plain, solved, columns=True))
+        away = self.products(away_from_reversals(self.rows), {})[0].solved([])
+        found.append(away and self.effect(REVERSALS, plain, plain, away, columns=False))
+        return [effect for effect in found if effect]
+
+    def signals(self, plain: Solved, estimates: Array, model: Model | None) -> list[Effect]:
+        """The effects of another soft sensor, and of delays and flexible joints."""
+        smooth = smoothed(self.rows, model, estimates, self.own)
+        if smooth is None:
+            return []
+        number = self.number[smooth.centres]
+        for scales in (away_from_reversals(self.rows), self.rows.scales):
+            products = self._of(smooth.A, scales[smooth.centres], number)
+            same = self.products(scales, {})[0].solved([])
+            parallel = products.solved([])
+            if parallel and same:
+                break
+        else:
+            return []
+        found = [self.effect(PARALLEL, plain, same, parallel, columns=False)]
+        further = range(self.rows.W.shape[2], smooth.A.shape[2] - 1)
+        new = products.independent(list(further))
+        solved = products.solved(new) if new else None
+        if solved:
+            found.append(self.effect(SIGNALS, plain, parallel, solved, columns=True))
+        return found
+
+    def effect(
+        self, name: str, plain: Solved, same: Solved, other: Solved, *, columns: bool
+    ) -> Effect:
+        """The effect of `other`, compared with the plain fit and with one on the same rows.
+
+        `columns`: what is tested are the parameters of the further columns.
+        """
+        own, given = self.own, len(plain.whole)
+        moved = other.whole[:own] - plain.whole[:own]
+        errors = jackknifed(other.deviations[:, :own] - plain.deviations[:, :own])
+        apart = other.whole[:own] - same.whole[:own]
+        if columns:
+            tested, noise = other.whole[given:], jackknifed(other.deviations[:, given:])
+        else:
+            tested = apart
+            noise = jackknifed(other.deviations[:, :own] - same.deviations[:, :own])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = np.abs(tested) / noise
+        largest = float(np.max(np.nan_to_num(ratios, nan=0.0, posinf=0.0), initial=0.0))
+        return Effect(name, moved, errors, apart, largest, len(tested), self.count)

@@ -1,0 +1,86 @@
+"""The wording of a verdict: which estimates change, and which friction the model lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.algorithms.statistics.effects import (
+    ASYMMETRY,
+    OFFSET,
+    REVERSALS,
+    STRIBECK,
+    Effect,
+)
+from scarid_cli.arrays import Array, Marks
+
+NAMED = 2  # estimates whose change is written out
+ADVICE = {
+    OFFSET: "the torque has an offset that the model lacks (add the term offset to the robot)",
+    ASYMMETRY: "friction differs between the two directions (add the terms viscous-forward and "
+    "viscous-backward to the robot)",
+    STRIBECK: "friction decreases with speed (add Stribeck friction with --estimator separable)",
+    REVERSALS: "friction near reversals differs from the model (leave slow rows out with "
+    "--drop-slow)",
+}
+
+
+def changed(names: Sequence[str], estimates: Array, moved: Array, errors: Array, far: Marks) -> str:
+    """`ZZ1R would change from 3.42 to 3.1 (12 standard errors)`, of those that move too far.
+
+    Those that move by the most standard errors come first.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sizes = np.where(far, np.abs(moved) / errors, -1.0)
+    order = np.argsort(-sizes)[: int(np.count_nonzero(far))].tolist()
+    parts = [
+        f"{names[i]} would change from {estimates[i]:.3g} to {estimates[i] + moved[i]:.3g} "
+        f"({errors_in(float(sizes[i]))})"
+        for i in order[:NAMED]
+    ]
+    if len(order) > NAMED:
+        rest = len(order) - NAMED
+        parts.append(f"{rest} more parameter{'s' if rest > 1 else ''} by more than their errors")
+    return listed(parts)
+
+
+def errors_in(size: float) -> str:
+    """A number of standard errors in words."""
+    return f"{size:.2g} standard errors" if size < 1000.0 else "over 1000 standard errors"
+
+
+def friction_notes(names: Sequence[str], diagnostics: Diagnostics) -> list[str]:
+    """The term of friction that the model lacks most clearly, and whose intervals are wider."""
+    scatter = diagnostics.scatter[: len(names)]
+    found = [
+        effect
+        for effect in diagnostics.effects
+        if effect.name in ADVICE and effect.significant() and np.any(_wide(effect, scatter))
+    ]
+    if not found:
+        return []
+    best = max(found, key=lambda effect: float(np.max(np.abs(effect.bias) / scatter)))
+    wide = [name for name, x in zip(names, _wide(best, scatter), strict=True) if x]
+    allow = "interval" if len(wide) == 1 else "intervals"
+    verb = "allows" if len(wide) == 1 else "allow"
+    return [f"{ADVICE[best.name]}; the {allow} of {listed(wide)} {verb} for it"]
+
+
+def _wide(effect: Effect, scatter: Array) -> Marks:
+    """Which parameters have a bias that exceeds their errors."""
+    return np.asarray(np.abs(effect.bias) > scatter)
+
+
+def percents(parts: Iterable[float]) -> str:
+    """Parts of one, as percents with two digits: `0.31, 2.5 %`."""
+    return f"{', '.join(f'{100.0 * part:.2g}' for part in parts)} %"
+
+
+def listed(names: Sequence[str], most: int = 8) -> str:
+    """`a, b and c`; of more than `most` names only the first."""
+    shown = list(names[:most])
+    if len(names) > most:
+        shown.append(f"{len(names) - most} more")
+    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"

@@ -1,0 +1,186 @@
+"""How far alternatives to the model move the estimates: on one axis with known imperfections."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from unit.regressions import estimated
+
+from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.regression.rows import Rows, led, rows_of
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.statistics.alignment import aligned, shifted
+from scarid_cli.algorithms.statistics.alternatives import Model, away_from_reversals, differences
+from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
+from scarid_cli.algorithms.statistics.effects import (
+    OFFSET,
+    PARALLEL,
+    SIGNALS,
+    STRIBECK,
+    Effect,
+    thinned,
+)
+from scarid_cli.arrays import Array
+
+AXIS = load("emps")
+H = 0.005  # s
+NOISE = 1.0  # N
+DRIVE = 3.0  # N
+Change = Callable[[Array], Array]
+
+
+def moved(samples: int = 6000) -> Array:
+    """Position, velocity and acceleration (3, 1, samples) of a sum of sines."""
+    t = np.arange(samples) * H
+    sines = [(0.08, 0.31, 0.0), (0.05, 0.83, 1.0), (0.01, 1.9, 2.0), (0.002, 3.1, 0.5)]
+    q, dq, ddq = np.zeros((3, samples))
+    for size, frequency, phase in sines:
+        w = 2.0 * np.pi * frequency
+        q += size * np.sin(w * t + phase)
+        dq += size * w * np.cos(w * t + phase)
+        ddq -= size * w * w * np.sin(w * t + phase)
+    return np.stack((q, dq, ddq))[:, None]
+
+
+def axis(tau: Change | None = None, motion: Change | None = None, seed: int = 0) -> Rows:
+    """Rows of the axis; `tau` makes torques of the motion, and `motion` what is measured of it."""
+    true = moved()
+    exact = AXIS.torques(AXIS.regressor(*true), AXIS.apriori)
+    torque = exact if tau is None else exact + tau(true)
+    noise = NOISE * np.random.default_rng(seed).standard_normal(exact.shape)
+    seen = true if motion is None else motion(true)
+    return rows_of(AXIS, np.stack((*seen, torque + noise)), np.arange(exact.shape[1]), H)
+
+
+def diagnosed(rows: Rows) -> Diagnostics:
+    found = estimated(ls.Estimator(), rows)
+    return diagnose(rows, found, 4, model=Model(AXIS, [0, 1, 2, 3]))
+
+
+def effect(rows: Rows, name: str) -> Effect:
+    return next(effect for effect in diagnosed(rows).effects if effect.name == name)
+
+
+def test_nothing_is_significant_where_the_model_holds() -> None:
+    for seed in range(5):
+        found = diagnosed(axis(seed=seed))
+        assert not [effect.name for effect in found.effects if effect.significant(0.001)]
+        assert np.median(found.errors / found.scatter) < 1.5
+
+
+def attenuated(motion: Array) -> Array:
+    """A soft sensor whose acceleration is a tenth too small."""
+    return motion * np.array([1.0, 1.0, 0.9])[:, None, None]
+
+
+def test_derivatives_that_are_not_those_of_the_position_are_found() -> None:
+    found = effect(axis(motion=attenuated), PARALLEL)
+    assert found.significant()
+    assert found.apart[0] == pytest.approx(-0.1 / 0.9 * AXIS.apriori[0], rel=0.05)
+
+
+def late(motion: Array) -> Array:
+    """Torques three samples late."""
+    exact = AXIS.torques(AXIS.regressor(*motion), AXIS.apriori)
+    return np.roll(exact, 3, axis=1) - exact
+
+
+def elastic(motion: Array) -> Array:
+    """A joint between motor and load that vibrates at 8 Hz with the motor locked."""
+    curvature = np.gradient(np.gradient(motion[2], H, axis=1), H, axis=1)
+    return np.asarray(-AXIS.apriori[0] * curvature / (2.0 * np.pi * 8.0) ** 2)
+
+
+@pytest.mark.parametrize("tau", [late, elastic])
+def test_delays_and_flexible_joints_are_found(tau: Change) -> None:
+    assert effect(axis(tau), SIGNALS).significant()
+
+
+def stribeck(motion: Array) -> Array:
+    return DRIVE * np.sign(motion[1]) * np.exp(-((motion[1] / 0.1) ** 2))
+
+
+def test_intervals_allow_for_stribeck_friction() -> None:
+    rows = axis(stribeck)
+    found = diagnosed(rows)
+    assert effect(rows, STRIBECK).significant()
+    wrong = np.abs(estimated(ls.Estimator(), rows).fit.estimates - AXIS.apriori)
+    assert np.any(wrong > 5.0 * found.scatter)
+    assert np.all(wrong < 3.0 * found.errors)
+
+
+def test_what_the_model_has_is_no_alternative() -> None:
+    """The axis has an offset; a second one would be singular."""
+    assert OFFSET not in [effect.name for effect in diagnosed(axis()).effects]
+
+
+def test_a_log_without_noise_has_no_effects_beyond_rounding() -> None:
+    rows = axis()
+    exact = replace(rows, y=rows.W @ AXIS.apriori)
+    for found in diagnosed(exact).effects:
+        # Differences of five samples are exact to the fourth power of the period only.
+        assert np.all(np.abs(found.apart) < 1e-4 * np.abs(AXIS.apriori))
+
+
+def test_rows_near_reversals_are_left_out() -> None:
+    rows = axis()
+    away = away_from_reversals(rows)
+    velocity = rows.motion[1, 0]
+    turns = np.flatnonzero(np.diff(np.sign(velocity)))
+    for turn in turns[1:-1]:
+        assert not away[turn - 19 : turn + 20].any()
+    assert 0.5 < away.mean() < 0.95
+
+
+def test_differences_are_exact_for_polynomials_of_degree_four() -> None:
+    t = np.arange(20) * 0.1
+    dq, ddq = differences((t**4 - t)[None], 0.1)
+    np.testing.assert_allclose(dq[0, 2:-2], (4.0 * t**3 - 1.0)[2:-2], rtol=1e-9)
+    np.testing.assert_allclose(ddq[0, 2:-2], (12.0 * t**2)[2:-2], rtol=1e-9, atol=1e-9)
+
+
+def test_rows_of_a_fast_log_are_thinned_to_5_ms() -> None:
+    rows = replace(axis(), h=0.001)
+    few = thinned(rows)
+    assert few.h == pytest.approx(0.005)
+    np.testing.assert_array_equal(few.at, np.arange(1200))
+    np.testing.assert_array_equal(few.y, rows.y[::5])
+
+
+@given(samples=st.floats(-8.0, 8.0))
+def test_the_delay_of_the_torques_is_found_however_long(samples: float) -> None:
+    """Whole samples by a shift, the rest to first order."""
+    true, t = moved(2000), np.arange(2000) * H
+
+    def torque(at: Array) -> Array:
+        return np.sin(1.3 * at) + 0.3 * np.sin(7.0 * at)
+
+    motion = np.stack((*true, torque(t + samples * H)[None]))
+    rows = rows_of(AXIS, motion, np.arange(2000), H)
+    rows = replace(rows, W=torque(t)[:, None, None])
+    found = aligned(ls.Estimator(), np.zeros(2), rows, estimated(ls.Estimator(), rows))
+    assert found.delay == pytest.approx(samples * H, abs=1e-4)
+    assert found.found.fit.estimates[0] == pytest.approx(1.0, abs=2e-3)
+
+
+def test_torques_are_shifted_within_runs_only() -> None:
+    rows = axis().part(np.r_[0:100, 200:300])
+    moved_rows = shifted(rows, 3)
+    np.testing.assert_array_equal(moved_rows.y[3:100], rows.y[:97])
+    assert not moved_rows.scales[np.r_[0:3, 100:103]].any()
+    assert moved_rows.scales.sum() == 194
+
+
+def test_predicted_torques_lead_as_the_fit_says() -> None:
+    rows = axis()
+    t = np.arange(rows.samples)[:, None] * H
+    for delay in (-0.0123, 0.0004, 0.021):
+        found = led(rows, np.sin(t), delay)
+        expected = np.sin(t + delay)
+        turns = np.abs(found - expected) > 1e-4  # to order zero where the direction changes
+        assert turns.mean() < 0.03
