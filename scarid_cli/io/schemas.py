@@ -110,6 +110,7 @@ def _units(unit: str | dict[str, str] | None) -> tuple[str, ...]:
 KINDS = (
     "parameters",
     "metrics",
+    "comparison",
     "trials",
     "published",
     "prediction",

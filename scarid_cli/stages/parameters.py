@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.outcome import Outcome, covariance
@@ -16,6 +17,8 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, doubles
+
+EVIDENCE = "evidence"  # key of the metadata
 
 
 @dataclass(frozen=True)
@@ -145,6 +148,7 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
             for joint in found.diagnostics.joints
         ],
         "lag_share": _or_none(found.diagnostics.lag_share),
+        EVIDENCE: stored(found.evidence, labels.names),
         **found.found.extra,
     }
     full_covariance = covariance(found.full, found.errors)
@@ -158,6 +162,17 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         extra["dropped_allowed"] = found.reduction.allowed
         extra["full_estimates"] = found.full.estimates.tolist()
     return extra
+
+
+def stored(found: LogEvidence, columns: list[str]) -> dict[str, Any]:
+    """Evidence as the metadata keep it: the lower triangle of the information, row by row."""
+    return {
+        "columns": columns,
+        "information": found.information[np.tril_indices(len(found.score))].tolist(),
+        "score": found.score.tolist(),
+        "deviations": found.deviations.tolist(),
+        "blocks": found.blocks,
+    }
 
 
 def _or_none(value: float) -> float | None:

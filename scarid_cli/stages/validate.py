@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -12,6 +13,8 @@ from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, number, numbers, segment_field, with_columns
 from scarid_cli.stages import Sink
+from scarid_cli.stages.changes import Known, verdict
+from scarid_cli.stages.identify import Checkpoint
 from scarid_cli.stages.parameters import Identified, known
 from scarid_cli.stages.prediction import Tally, predicted
 from scarid_cli.stages.rows import Treatment
@@ -23,11 +26,14 @@ def validate(
     *,
     treatment: Treatment | None = None,
     predictions: Sink | None = None,
+    before: Known | None = None,
 ) -> Table:
     """The metrics of the torques that identified parameters predict for a motion, a row per joint.
 
     The predicted torques lead the motion by the delay that was fitted with the parameters.
-    `predictions` receives the measured and predicted torques of every sample (Fig. 7-8).
+    `predictions` receives the measured and predicted torques of every sample (Fig. 7-8). With
+    `before`, what is known of the log of the identification, the metadata say whether the robot
+    has changed since then.
     """
     robot = model.robot
     tally = Tally(len(robot.joints))
@@ -35,12 +41,18 @@ def validate(
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
+    subsample = Checkpoint.at_start(None, table.period, holds=False).subsample
     for batch, rows, (torques,) in predicted(table, [model], treatment or Treatment()):
         tally.add(rows, torques)
+        if before:
+            subsample = subsample.add(rows)
         if predictions and batch is not None:
             new = dict(zip(schema.names[1:], (*rows.y.T, *torques), strict=False))
             predictions.write(with_columns(batch, schema, new))
-    return _metrics(table, robot, tally.qualities, model.delay)
+    extra: dict[str, Any] = {"delay": model.delay} if model.delay else {}
+    if before:
+        extra["change"] = verdict(subsample.rows(), model, before).extra
+    return _metrics(table, robot, tally.qualities, extra)
 
 
 def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
@@ -49,7 +61,7 @@ def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
     return pa.schema([number("t", "s"), *torques, *segment_field(table)])
 
 
-def _metrics(table: Table, robot: Robot, qualities: list[Quality], delay: float) -> Table:
+def _metrics(table: Table, robot: Robot, qualities: list[Quality], extra: dict[str, Any]) -> Table:
     schema = schemas.load("metrics").arrow()
     batch = pa.RecordBatch.from_arrays(
         [
@@ -62,6 +74,6 @@ def _metrics(table: Table, robot: Robot, qualities: list[Quality], delay: float)
         ],
         schema=schema,
     )
-    extra = {**table.meta.extra, **({"delay": delay} if delay else {})}
+    extra = {**table.meta.extra, **extra}
     meta = replace(table.meta, kind="metrics", robot=robot.name, extra=extra)
     return Table("validate", schema, meta, iter([batch]))

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, with_delay
@@ -57,7 +58,8 @@ class Outcome:
     the model was reduced to essential parameters. `full` is the fit of all parameters, before any
     were dropped, and `errors` are its standard errors. `delay` is the fitted delay of the torques
     and its standard error [s]. `excitation` (parameters) is the root-mean-square torque that one
-    unit of each parameter causes on this motion. `samples` is the number of samples.
+    unit of each parameter causes on this motion. `samples` is the number of samples. `evidence` is
+    that of the rows, at these estimates, which later logs are compared with.
     """
 
     found: Estimation
@@ -69,6 +71,7 @@ class Outcome:
     delay: tuple[float, float] | None
     excitation: Array
     samples: int
+    evidence: LogEvidence
 
 
 def outcome(
@@ -95,17 +98,28 @@ def outcome(
             problem = whole.reduced(reduction)
             diagnostics = problem.diagnostics()
     own, fit = problem.own, problem.found.fit
+    kept = (reduction.kept if reduction else list(range(own)))[:own]
+    delay = (float(fit.estimates[own]), float(diagnostics.errors[own])) if align else None
     return Outcome(
         found=replace(problem.found, fit=fit.part(slice(own))),
         diagnostics=diagnostics.part(own),
-        kept=(reduction.kept if reduction else list(range(own)))[:own],
+        kept=kept,
         reduction=reduction,
         full=whole.found.fit.part(slice(whole.own)),
         errors=errors,
-        delay=(float(fit.estimates[own]), float(diagnostics.errors[own])) if align else None,
+        delay=delay,
         excitation=_excitation(whole),
         samples=subsample.total,
+        evidence=_evidence(whole, fit.estimates[:own], kept, delay[0] if delay else 0.0),
     )
+
+
+def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -> LogEvidence:
+    """The evidence of all parameters, of which those that were dropped are zero."""
+    theta = np.zeros(whole.own)
+    theta[kept] = estimates
+    W = np.ascontiguousarray(whole.rows.W[:, :, : whole.own])
+    return evidence(replace(whole.rows, W=W), theta, delay)
 
 
 def _problem(

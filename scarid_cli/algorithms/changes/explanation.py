@@ -1,0 +1,121 @@
+"""Which changes explain the difference of two logs, found one after another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp, log
+
+import numpy as np
+
+from scarid_cli.algorithms.changes.hypotheses import Hypothesis
+from scarid_cli.algorithms.changes.likelihood import (
+    Difference,
+    Test,
+    everything,
+    penalty,
+    tested,
+)
+from scarid_cli.algorithms.statistics.tails import log_tail_f
+
+FALSE_ALARMS = 0.01  # of comparisons in which nothing changed, over all tests together
+MOST = 3  # changes that are named
+WORTH = 0.003  # of the whole difference: a further change that explains less is not named
+LEFT = 0.2  # of the whole difference: if more is left, the changes do not explain it
+CLOSE = 6.0  # twice the logarithm of 20: another change is then 20 times less likely
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A change that explains a part of the difference.
+
+    `amounts` (k) and `errors` (k) are those of the hypothesis, estimated together with all changes.
+    `rivals` are hypotheses that explain the difference nearly as well.
+    """
+
+    hypothesis: Hypothesis
+    amounts: tuple[float, ...]
+    errors: tuple[float, ...]
+    rivals: tuple[Hypothesis, ...] = ()
+
+
+@dataclass(frozen=True)
+class Change:
+    """Whether two logs of a robot differ by more than noise, and what explains it.
+
+    `p_value` is the smallest of all tests, multiplied by their number `tests` (Bonferroni).
+    `explained` is the share of the difference that the explanations account for.
+    """
+
+    p_value: float
+    tests: int
+    explanations: tuple[Explanation, ...]
+    explained: float
+
+    @property
+    def changed(self) -> bool:
+        return self.p_value < FALSE_ALARMS
+
+    @property
+    def complete(self) -> bool:
+        """Whether the explanations account for the difference."""
+        return bool(self.explanations) and self.explained >= 1.0 - LEFT
+
+
+def change(difference: Difference, possible: list[Hypothesis]) -> Change:
+    """Test all hypotheses, and anything else whatever; then look for explanations."""
+    whole = everything(difference)
+    log_ps = [whole.log_p, *(tested(difference, [h]).log_p for h in possible)]
+    log_p = min(min(log_ps) + log(len(log_ps)), 0.0)
+    if not log_p < log(FALSE_ALARMS):
+        return Change(exp(log_p), len(log_ps), (), 0.0)
+    chosen, rivals = _chosen(difference, possible, whole)
+    if not chosen:
+        return Change(exp(log_p), len(log_ps), (), 0.0)
+    found = tested(difference, chosen)
+    share = min(found.raw / whole.raw, 1.0) if whole.raw > 0.0 else 0.0
+    return Change(exp(log_p), len(log_ps), _described(chosen, rivals, found), share)
+
+
+def _chosen(
+    difference: Difference, possible: list[Hypothesis], whole: Test
+) -> tuple[list[Hypothesis], list[tuple[Hypothesis, ...]]]:
+    """Hypotheses that explain the difference one after another, each with its rivals."""
+    chosen: list[Hypothesis] = []
+    rivals: list[tuple[Hypothesis, ...]] = []
+    before = Test.nothing()
+    while len(chosen) < MOST:
+        rest = [h for h in possible if not any(h is c for c in chosen)]
+        tests = [tested(difference, [*chosen, h]) for h in rest]
+        gains = [t.raw - penalty(difference, t.rank) for t in tests]
+        best = int(np.argmax(gains))
+        if not _significant(difference, before, tests[best], whole, len(possible) + 1):
+            break
+        chosen.append(rest[best])
+        near = [h for h, gain in zip(rest, gains, strict=True) if gain > gains[best] - CLOSE]
+        rivals.append(tuple(h for h in near if h is not rest[best]))
+        before = tests[best]
+    return chosen, rivals
+
+
+def _significant(
+    difference: Difference, before: Test, after: Test, whole: Test, tests: int
+) -> bool:
+    """Whether one more change explains more than noise does, and a part worth naming."""
+    gain, rank = after.raw - before.raw, after.rank - before.rank
+    if rank < 1 or (before.rank and gain < WORTH * whole.raw):
+        return False
+    log_p = log_tail_f(gain / after.excess / rank, rank, difference.freedom)
+    return log_p + log(tests) < log(FALSE_ALARMS)
+
+
+def _described(
+    chosen: list[Hypothesis], rivals: list[tuple[Hypothesis, ...]], found: Test
+) -> tuple[Explanation, ...]:
+    errors = np.sqrt(np.maximum(np.diag(found.covariance), 0.0))
+    explanations, start = [], 0
+    for hypothesis, near in zip(chosen, rivals, strict=True):
+        own = slice(start, start + hypothesis.directions.shape[1])
+        amounts, own_errors = (tuple(x[own].tolist()) for x in (found.amounts, errors))
+        explanations.append(Explanation(hypothesis, amounts, own_errors, near))
+        start = own.stop
+    return tuple(explanations)
