@@ -33,6 +33,7 @@ from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.tuning import judges, search
+from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 
 
@@ -42,7 +43,7 @@ def blind(name: str, q: Array) -> Any:
     if method.TUNES_ITSELF:
         return method.fitted(q, H)
     if method.HAS_LIKELIHOOD:
-        return judges.fit(method, q, H)
+        return best_model(method, q, H)
     judge = judges.distance_to_smoother(q, H)
     return min(search.search(method, method.TUNED, judge, H, 0), key=lambda t: t.loss).method
 

@@ -18,10 +18,11 @@ from crossvalidation import Experiment, log, seen
 from defaults import PERIOD, ROBOT
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.statistics.jackknife import Z95
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Metadata, Table, doubles
-from scarid_cli.stages.identify import Treatment, identify
+from scarid_cli.stages.identify import identify
 
 RECOMMENDED = Treatment(slow=(0.1, 0.1), align=True)
 COLUMNS = [f"{signal}{i}" for signal in ("q", "dq", "ddq", "tau") for i in (1, 2)]

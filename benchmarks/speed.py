@@ -14,7 +14,7 @@ import numpy as np
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.arrays import Array
-from scarid_cli.kernels import fir, information, moments, p2smd, plant, sos
+from scarid_cli.kernels import chain, fir, information, moments, p2smd, plant, sos
 
 SAMPLES, INTERPRETED_SAMPLES = 200_000, 2000
 KernelRun = Callable[[ModuleType, int], object]
@@ -53,7 +53,7 @@ def kernels() -> None:
     """Each kernel compiled and interpreted."""
     print("\nKernels, ns per sample and joint (or per row of a regressor, or per control period)")
     print(f"  {'':30} {'compiled':>9} {'interpreted':>12}")
-    for name, (module, run) in {**signals(), **regressions(), **simulation()}.items():
+    for name, (module, run) in {**signals(), **regressions(), **chains(), **simulation()}.items():
         there = not str(module.__file__).endswith(".py")
         fast = f"{timed(run, module, SAMPLES):.1f}" if there else "none"
         slow = timed(run, interpreted(module) if there else module, INTERPRETED_SAMPLES)
@@ -102,13 +102,36 @@ def regressions() -> dict[str, tuple[ModuleType, KernelRun]]:
     }
 
 
+def chains() -> dict[str, tuple[ModuleType, KernelRun]]:
+    """The regressor of six axes, 20 samples at a time, and its derivatives."""
+    axes = np.random.default_rng(0).standard_normal((6, 16))
+    axes[:, 15] = 0.0
+    q = np.random.default_rng(1).standard_normal((6, 20))
+    W, links, back = np.ones((120, 60)), np.empty((7, 57)), np.empty((7, 57))
+    slopes = np.empty((3, 6, 20))
+    arguments = (axes, np.ones(3), q, q, q, W)
+
+    def gradient(module: ModuleType, k: int) -> None:
+        for _ in range(k // 20):
+            module.gradient(*arguments, *slopes, links, back)
+
+    def regressor(module: ModuleType, k: int) -> None:
+        for _ in range(k // 20):
+            module.regressor(*arguments, links)
+
+    return {
+        "gradient of six axes, sample": (chain, gradient),
+        "regressor of six axes, sample": (chain, regressor),
+    }
+
+
 def simulation() -> dict[str, tuple[ModuleType, KernelRun]]:
     """The simulated robot in its control loop."""
     q = encoded(SAMPLES)
     reference = np.column_stack([q, q, np.zeros(SAMPLES), np.zeros(SAMPLES)])
     noise, log = np.zeros((SAMPLES, 2)), np.empty((SAMPLES, 10))
     model = np.array([3.42, 0.064, 0.131, 0.0, 0.07, 0.015, 0.58, 0.156, 0.0, 0.0])
-    control = np.array([800, 25, 100, 2.5, 0, 0, 1e9, 1e9, 1e-4, 1e-4, 0.9])
+    control = np.array([800, 25, 100, 2.5, 0, 0, 1e9, 1e9, 1e-4, 1e-4, 0.9, *np.zeros(6)])
 
     def run(module: ModuleType, k: int) -> None:
         module.run(reference[:k], noise[:k], log[:k], np.zeros(10), model, control, 1e-3, 4)

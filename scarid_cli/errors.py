@@ -55,6 +55,12 @@ def bad_data(
     return BadData(f"{', '.join(place)}: found {found}, expected {expected}; {remedy}")
 
 
+def bad_row(where: str, found: str, expected: str, row: int, column: str | None = None) -> BadData:
+    """Bad data in one row (from 1), which nothing but its source can mend."""
+    remedy = "correct or remove the row"
+    return bad_data(where, found, expected=expected, remedy=remedy, row=row, column=column)
+
+
 def cut_short(where: str) -> BadData:
     """The error for a table that is incomplete, because the command that wrote it failed."""
     return BadData(f"{where}: the table was cut short, because the command that wrote it failed")

@@ -24,11 +24,8 @@ from scarid_cli.cli.described import describing
     metavar="NAME=VALUE[,VALUE...]",
     help="A setting of the method, one value for all joints or one per joint; repeatable.",
 )
-@click.option(
-    "--settings",
-    type=options.INPUT,
-    metavar="FILE",
-    help="Settings that `scarid tune --save` wrote, one value per joint.",
+@options.input_file(
+    "--settings", help="Settings that `scarid tune --save` wrote, one value per joint."
 )
 @click.option(
     "--preset", metavar="NAME", help="Named settings; table1 has those printed in the paper."

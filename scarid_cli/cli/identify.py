@@ -56,12 +56,8 @@ from scarid_cli.cli.described import describing
     "freedom (residual), 1 as printed in paper eq. 32-33 (unit), or estimated with r - 1 (sample).",
 )
 @options.side_output("--trace", help="Write the estimates after every sample (rls, ekf).")
-@click.option(
-    "--from",
-    "resumed",
-    type=options.INPUT,
-    metavar="STATE",
-    help="Continue the estimation that --save wrote.",
+@options.input_file(
+    "--from", "resumed", metavar="STATE", help="Continue the estimation that --save wrote."
 )
 @options.side_output(
     "--save",

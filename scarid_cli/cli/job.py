@@ -6,7 +6,7 @@ import contextlib
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -22,6 +22,8 @@ from scarid_cli.io.writer import Document, Output, all_or_none, write_table
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
 
+D = TypeVar("D", Output, Document)
+
 
 class Job:
     """Made by `job()`, which commits its outputs together, or none of them.
@@ -32,27 +34,21 @@ class Job:
 
     out: Output
 
-    def __init__(self, *, quiet: bool, verbose: bool, history: bool) -> None:
-        self.quiet = quiet
-        self._verbose = verbose and not quiet
-        self._history = history
+    def __init__(self, options: dict[str, Any]) -> None:
+        self.quiet: bool = options["quiet"]
+        self._verbose = options["verbose"] and not self.quiet
+        self._history = not options.get("no_history")
         self.outputs: list[Output | Document] = []
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
 
     def output(self, path: str, wanted: str | None = None) -> Output:
         """The output for a table; opened before anything is read, so that mistakes show at once."""
-        self._require_unused(path)
-        output = Output(path, wanted)
-        self.outputs.append(output)
-        return output
+        return self._new(path, lambda: Output(path, wanted))
 
     def text(self, path: str) -> Document:
         """The output for a document beside the tables, which is opened early as well."""
-        self._require_unused(path)
-        document = Document(path)
-        self.outputs.append(document)
-        return document
+        return self._new(path, lambda: Document(path))
 
     def side_table(self, path: str | None) -> Output | None:
         """The table of a side output, if it was asked for."""
@@ -62,10 +58,12 @@ class Job:
         """The document of a side output, if it was asked for."""
         return self.text(path) if path else None
 
-    def _require_unused(self, path: str) -> None:
+    def _new(self, path: str, opened: Callable[[], D]) -> D:
         if path in {output.path for output in self.outputs}:
             place = "standard output" if path == "-" else path
             raise UsageFault(f"{place}: two outputs cannot share it; give one of them another FILE")
+        self.outputs.append(output := opened())
+        return output
 
     def read(
         self,
@@ -159,11 +157,7 @@ class Job:
 @contextlib.contextmanager
 def job(options: dict[str, Any]) -> Iterator[Job]:
     """A run of a command, given the options of `common` and `table_output`."""
-    run = Job(
-        quiet=options["quiet"],
-        verbose=options["verbose"],
-        history=not options.get("no_history"),
-    )
+    run = Job(options)
     try:
         with all_or_none(run.outputs):
             yield run

@@ -26,33 +26,20 @@ class Unrecorded(click.Option):
 class InputFile(click.ParamType[str]):
     """A file to read, or - for standard input, or one of a few other words.
 
-    That the file is there is checked before anything is read. It is not opened yet: a named pipe
-    can be opened only once.
+    With `endings`, a text without any of them is a name and no file. That the file is there is
+    checked before anything is read. It is not opened yet: a named pipe can be opened only once.
     """
 
     name = "file"
 
-    def __init__(self, *words: str) -> None:
-        self.words = ("-", *words)
+    def __init__(self, *words: str, endings: tuple[str, ...] = ("",)) -> None:
+        self.words, self.endings = ("-", *words), endings
 
     def convert(self, value: Any, param: Any, ctx: Any) -> str:  # noqa: ARG002
         path = str(value)
-        if path not in self.words:
+        if path.endswith(self.endings) and path not in self.words:
             require_readable(path)
         return path
-
-
-class RobotName(click.ParamType[str]):
-    """The name of a robot, or the file that describes it."""
-
-    name = "robot"
-    endings = (".toml", ".urdf")
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> str:  # noqa: ARG002
-        name = str(value)
-        if name.endswith(self.endings):
-            require_readable(name)
-        return name
 
 
 class Numbers(click.ParamType[tuple[float, ...]]):
@@ -84,7 +71,7 @@ def require_readable(path: str) -> None:
 
 
 INPUT = InputFile()
-ROBOT = RobotName()
+ROBOT = InputFile(endings=(".toml", ".urdf"))  # or the name of a robot
 NUMBERS = Numbers()
 
 
@@ -105,6 +92,13 @@ def table_input(function: F) -> F:
 def side_output(*names: str, help: str, metavar: str = "FILE") -> Callable[[F], F]:
     """A file to write beside the table, which the table does not depend on."""
     return click.option(*names, cls=Unrecorded, metavar=metavar, help=help)
+
+
+def input_file(
+    *names: str, help: str, metavar: str = "FILE", required: bool = False
+) -> Callable[[F], F]:
+    """A file to read beside the table; - stands for standard input."""
+    return click.option(*names, type=INPUT, metavar=metavar, required=required, help=help)
 
 
 def settings_of(algorithm: str) -> Callable[[F], F]:

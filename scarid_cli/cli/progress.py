@@ -20,13 +20,8 @@ def steps(*, quiet: bool) -> Iterator[Callable[[], None]]:
     if quiet or not sys.stderr.isatty():
         yield lambda: None
         return
-    from rich.console import Console
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    columns = (SpinnerColumn(), TextColumn("{task.completed} settings tried"), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=None)
-        yield lambda: progress.advance(task)
+    with _line("{task.completed} settings tried") as advance:
+        yield lambda: advance(1)
 
 
 def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
@@ -40,16 +35,19 @@ def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
             break
     else:
         return
-    yield from _with_progress_line(batches, held)
+    with _line("{task.completed:,.0f} rows", held) as advance:
+        for batch in batches:
+            yield batch
+            advance(batch.num_rows)
 
 
-def _with_progress_line(batches: Iterator[pa.RecordBatch], rows: int) -> Iterator[pa.RecordBatch]:
+@contextlib.contextmanager
+def _line(text: str, completed: int = 0) -> Iterator[Callable[[int], None]]:
+    """A progress line with this text, and the function that counts on."""
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    columns = (SpinnerColumn(), TextColumn("{task.completed:,.0f} rows"), TimeElapsedColumn())
+    columns = (SpinnerColumn(), TextColumn(text), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=None, completed=rows)
-        for batch in batches:
-            yield batch
-            progress.advance(task, batch.num_rows)
+        task = progress.add_task("", total=None, completed=completed)
+        yield lambda count: progress.advance(task, count)

@@ -12,12 +12,7 @@ from scarid_cli.cli.declare import declare
 @click.argument("files", nargs=-1, metavar="[FILE]...", type=options.INPUT)
 @options.side_output("--html", help="Write one self-contained page with tables and figures.")
 @options.side_output("--markdown", help="Write the tables as Markdown.")
-@click.option(
-    "--published",
-    type=options.INPUT,
-    metavar="FILE",
-    help="A table of published values to print beside the results.",
-)
+@options.input_file("--published", help="A table of published values to print beside the results.")
 @click.option(
     "--repeated",
     is_flag=True,

@@ -38,9 +38,10 @@ def check(robot: str, **_rest: Any) -> None:
 
     ROBOT is the name of a robot that comes with scarid (scara2, emps, planar2-gravity), a TOML file
     or a URDF. The command shows what the logs of the robot hold (see `scarid convert --robot`), its
-    joints with their limits, and the parameters that `scarid identify` estimates: name, unit and a
-    priori value. For a robot with a URDF it also shows which joints are locked and why, and the
-    combination of standard parameters that each base parameter stands for.
+    joints with their limits, the imperfections of the simulated robot (see `scarid simulate
+    --with`), and the parameters that `scarid identify` estimates: name, unit and a priori value.
+    For a robot with a URDF it also shows which joints are locked and why, and the combination of
+    standard parameters that each base parameter stands for.
     """
     from scarid_cli.algorithms.robots.reading import load
 
@@ -75,6 +76,8 @@ def _limits(joint: Joint) -> Iterator[str]:
 
 def described(robot: Robot) -> Iterator[str]:
     """The lines on the robot, each of its joints and each of its parameters."""
+    from scarid_cli.algorithms.imperfections.registry import written
+
     joints, parameters = len(robot.joints), len(robot.parameters)
     yield f"robot       {robot.name}: {robot.title}"
     yield f"freedom     {joints} joint{'s' if joints > 1 else ''}, {parameters} parameters"
@@ -89,6 +92,10 @@ def described(robot: Robot) -> Iterator[str]:
         yield f"  {i}  {joint.type:<9}  {', '.join(_limits(joint)) or 'no limits'}"
     for name, why in (robot.body.locked if robot.body else {}).items():
         yield f"  locked: {name} ({why})"
+    if robot.imperfections:
+        yield "imperfections of the simulated robot"
+    for name, values in robot.imperfections.items():
+        yield f"  {written(name, values)}"
     yield "parameters"
     width = max(len(parameter.name) for parameter in robot.parameters)
     for parameter in robot.parameters:

@@ -6,10 +6,11 @@ import click
 
 from scarid_cli.cli import options
 from scarid_cli.cli.declare import declare
+from scarid_cli.cli.imperfections import WithImperfections
 from scarid_cli.cli.options import NUMBERS
 
 
-@declare("simulate")
+@declare("simulate", WithImperfections)
 @options.table_input
 @options.robot
 @click.option("--kp", type=NUMBERS, help="Proportional gains.  [default: the robot's]")
@@ -33,24 +34,18 @@ from scarid_cli.cli.options import NUMBERS
     help="Runge-Kutta steps per period of the controller.",
 )
 @click.option(
-    "--encoder-bits",
-    type=click.IntRange(0, 40),
-    help="Resolution of the encoders of revolute joints, in bits per turn; 0 for perfect ones.  "
-    "[default: the robot's resolution]",
+    "--with",
+    "imperfections",
+    multiple=True,
+    metavar="NAME=VALUE[,VALUE...]",
+    help="An imperfection of the robot, its sensors or its log, one value for all joints or one "
+    "per joint; repeatable. They are listed below.  [default: those of the description]",
 )
 @click.option(
-    "--position-noise",
-    type=NUMBERS,
-    default="0",
-    show_default=True,
-    help="Standard deviation of the noise of the position, before the encoder quantises it "
-    "[rad or m].",
+    "--encoder-bits", type=NUMBERS, help="The same as --with encoder-bits=...; 0 for perfect ones."
 )
-@click.option(
-    "--torque-noise",
-    type=NUMBERS,
-    help="Standard deviation of the noise of the logged torque [N m or N].  [default: the robot's]",
-)
+@click.option("--position-noise", type=NUMBERS, help="The same as --with position-noise=...")
+@click.option("--torque-noise", type=NUMBERS, help="The same as --with torque-noise=...")
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the noise."
 )
@@ -65,6 +60,7 @@ def command() -> None:
     \b
       scarid trajgen --seed 1 | scarid simulate --seed 1 -o log.parquet
       scarid simulate --encoder-bits 13 --truth reference.parquet > log.csv
+      scarid simulate --with torque-delay=0.002 --with lost-rows=0.001 reference.csv
       scarid simulate --kp 6.5,155 --kd 5,25 reference.csv   # the gains printed in the paper
 
     The robot has the a priori parameters of its description and starts at rest at the first

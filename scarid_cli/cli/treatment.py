@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import per_joint
 from scarid_cli.errors import UsageFault
-from scarid_cli.stages.rows import Treatment
 
 
 def treatment_of(given: dict[str, Any]) -> Treatment:

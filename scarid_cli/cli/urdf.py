@@ -10,11 +10,9 @@ from scarid_cli.cli.declare import declare
 
 @declare("urdf")
 @click.argument("robot", metavar="ROBOT", type=options.ROBOT)
-@click.option(
+@options.input_file(
     "--parameters",
     required=True,
-    type=options.INPUT,
-    metavar="FILE",
     help="The parameter table of `scarid identify --robot ROBOT`; in Parquet or Arrow it carries "
     "the covariance of the estimates.",
 )
@@ -28,10 +26,8 @@ from scarid_cli.cli.declare import declare
     help="Write the URDF to FILE.  [default: standard output]",
 )
 @options.side_output("--base", help="Write the base parameters of the new bodies as a table.")
-@click.option(
+@options.input_file(
     "--motion",
-    type=options.INPUT,
-    metavar="FILE",
     help="Report R2 per joint on this motion, of the identified and of the consistent parameters. "
     "Give the options below as they were given to identify.",
 )

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import click
-
 from scarid_cli.cli import options
 from scarid_cli.cli.declare import declare
 
 
 @declare("validate")
 @options.table_input
-@click.option(
-    "--parameters",
-    required=True,
-    type=options.INPUT,
-    metavar="FILE",
-    help="The parameter table that `scarid identify` wrote.",
+@options.input_file(
+    "--parameters", required=True, help="The parameter table that `scarid identify` wrote."
 )
 @options.robot
 @options.treatment

@@ -6,11 +6,12 @@ import csv
 import io
 import re
 from collections.abc import Callable, Iterator, Sequence
+from itertools import chain
 
 import pyarrow as pa
 import pyarrow.csv as pacsv
 
-from scarid_cli.errors import BadData, bad_data, cut_short
+from scarid_cli.errors import BadData, bad_data, bad_row, cut_short
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Metadata, Table
@@ -130,19 +131,15 @@ def _first_row_end(body: bytes) -> int:
 
 
 def _batches(
-    block: bytes, lines: Iterator[bytes], schema: pa.Schema, name: str
+    body: bytes, lines: Iterator[bytes], schema: pa.Schema, name: str
 ) -> Iterator[pa.RecordBatch]:
     row = 0
-    while True:
+    for block in chain([body], lines):
         if CUT in block:
             raise cut_short(name)
         for batch in _parse(block, schema, name, row):
             yield batch
             row += batch.num_rows
-        more = next(lines, None)
-        if more is None:
-            return
-        block = more
 
 
 def _parse(block: bytes, schema: pa.Schema, name: str, row: int) -> list[pa.RecordBatch]:
@@ -173,24 +170,12 @@ def _located(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | 
     reader = csv.reader(io.StringIO(block.decode(errors="replace")))
     for number, values in enumerate((v for v in reader if v), start=row + 1):
         if len(values) != len(schema):
-            return bad_data(
-                name,
-                f"{len(values)} values",
-                expected=f"{len(schema)}, one per column of the header",
-                remedy="correct or remove the row",
-                row=number,
-            )
+            expected = f"{len(schema)}, one per column of the header"
+            return bad_row(name, f"{len(values)} values", expected, number)
         for field, value in zip(schema, values, strict=True):
             if not _fits(field.type, value):
                 kind = "an integer" if pa.types.is_integer(field.type) else "a number"
-                return bad_data(
-                    name,
-                    repr(value),
-                    expected=kind,
-                    remedy="correct or remove the row",
-                    row=number,
-                    column=field.name,
-                )
+                return bad_row(name, repr(value), kind, number, field.name)
     return None
 
 

@@ -26,8 +26,6 @@ class TranslatedCsv(ByteSource):
         self._table = bytes.maketrans(
             (separator + decimal).encode(), (b"," if separator else b"") + b"." * len(decimal)
         )
-        if separator and decimal == ",":
-            self._table = bytes.maketrans(separator.encode() + b",", b",.")
         if header:
             self._ahead = header.encode() + b"\n"
 

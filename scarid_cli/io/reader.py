@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.errors import bad_data
+from scarid_cli.errors import bad_data, bad_row
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.clock import clocked
@@ -16,6 +16,7 @@ from scarid_cli.io.table import SEGMENT, Table, cast
 
 # From the columns of a table, those whose values a command reads.
 Reads = Callable[[list[str]], Iterable[str]]
+Fault = tuple[str, str, str, str]  # the column, what was found, expected, and the remedy
 ROW_MARKS = ("t", SEGMENT, "settled")  # columns that every command reads
 
 
@@ -56,11 +57,10 @@ def checked(table: Table, kind: str, *, reads: Reads | None = None, regular: boo
 def conforming(table: Table, kind: str, reads: Reads | None = None) -> Table:
     """The table, with the columns, types and units of a kind; whole numbers become doubles."""
     schema = schemas.load(kind)
-    _check_columns(table, schema)
-    _check_units(table, schema)
+    _refuse(table, _faults_of_columns(table, schema))
     types = {c: known.type for c in table.columns if (known := schema.field_of(c))}
     types = {**dict.fromkeys(reads(table.columns) if reads else (), pa.float64()), **types}
-    _check_types(table, types)
+    _refuse(table, _faults_of_types(table, types))
     typed = pa.schema([f.with_type(types.get(f.name, f.type)) for f in table.schema])
     if typed.equals(table.schema):
         return table
@@ -78,31 +78,30 @@ def _columns_to_check(table: Table, schema: schemas.TableSchema, reads: Reads | 
     return [column for column in table.columns if column in wanted]
 
 
-def _check_columns(table: Table, schema: schemas.TableSchema) -> None:
+def _faults_of_columns(table: Table, schema: schemas.TableSchema) -> Iterator[Fault]:
     for column in table.columns:
-        if table.columns.count(column) > 1:
-            raise bad_data(
-                table.name,
-                f"{table.columns.count(column)} columns of this name",
-                expected="one",
-                remedy="rename or drop one of them",
-                column=column,
-            )
+        if (count := table.columns.count(column)) > 1:
+            yield column, f"{count} columns of this name", "one", "rename or drop one of them"
     missing = schema.missing_from(table.columns)
     if missing:
         require(table, [missing], f"a {schema.title.lower()} with this one")
+    for column in table.columns:
+        known, unit = schema.field_of(column), table.unit(column)
+        if known and unit and known.units and unit not in known.units:
+            yield column, f"unit {unit}", " or ".join(known.units), "convert the column first"
 
 
-def _check_types(table: Table, types: dict[str, pa.DataType]) -> None:
+def _faults_of_types(table: Table, types: dict[str, pa.DataType]) -> Iterator[Fault]:
+    remedy = "convert the column where the table is made"
     for field in table.schema:
         if not _same_type(field.type, types.get(field.name, field.type)):
-            raise bad_data(
-                table.name,
-                f"type {field.type}",
-                expected=str(types[field.name]),
-                remedy="convert the column where the table is made",
-                column=field.name,
-            )
+            yield field.name, f"type {field.type}", str(types[field.name]), remedy
+
+
+def _refuse(table: Table, faults: Iterator[Fault]) -> None:
+    """Refuse a table with any fault; the first one is reported."""
+    for column, found, expected, remedy in faults:
+        raise bad_data(table.name, found, expected=expected, remedy=remedy, column=column)
 
 
 def require(table: Table, columns: list[str], expected: str) -> None:
@@ -131,20 +130,6 @@ def _same_type(given: pa.DataType, known: pa.DataType) -> bool:
     return bool(given == known or (pa.types.is_floating(known) and pa.types.is_integer(given)))
 
 
-def _check_units(table: Table, schema: schemas.TableSchema) -> None:
-    for column in table.columns:
-        known = schema.field_of(column)
-        unit = table.unit(column)
-        if known and unit and known.units and unit not in known.units:
-            raise bad_data(
-                table.name,
-                f"unit {unit}",
-                expected=" or ".join(known.units),
-                remedy="convert the column first",
-                column=column,
-            )
-
-
 def _valued(table: Table, columns: list[str]) -> Iterator[pa.RecordBatch]:
     """Pass batches on; a value of these columns that is missing or not finite is an error."""
     row = 0
@@ -166,11 +151,5 @@ def _check_values(column: pa.Array, name: str, column_name: str, row: int) -> No
             bad = int(np.argmin(finite))
             found = str(column[bad].as_py())
     if bad is not None:
-        raise bad_data(
-            name,
-            found,
-            expected="a finite number" if pa.types.is_floating(column.type) else "a value",
-            remedy="correct or remove the row",
-            row=row + bad + 1,
-            column=column_name,
-        )
+        expected = "a finite number" if pa.types.is_floating(column.type) else "a value"
+        raise bad_row(name, found, expected, row + bad + 1, column_name)

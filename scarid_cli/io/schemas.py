@@ -90,14 +90,8 @@ def load(kind: str) -> TableSchema:
         )
         for field in document["fields"]
     )
-    return TableSchema(
-        kind=document["name"],
-        version=document["version"],
-        title=document["title"],
-        description=document["description"],
-        sampled=document["sampled"],
-        fields=fields,
-    )
+    own = {key: document[key] for key in ("version", "title", "description", "sampled")}
+    return TableSchema(kind=document["name"], fields=fields, **own)
 
 
 def _units(unit: str | dict[str, str] | None) -> tuple[str, ...]:

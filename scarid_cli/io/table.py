@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass, field, replace
 from itertools import groupby, pairwise
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -111,6 +112,17 @@ def integers(values: Any) -> pa.Array:
     """A column of whole numbers, made likewise."""
     data = np.ascontiguousarray(values, dtype=np.int64)
     return pa.Array.from_buffers(pa.int64(), len(data), [None, pa.py_buffer(data)])
+
+
+def table_of(
+    name: str, schema: pa.Schema, rows: Iterable[tuple[Any, ...]], meta: Metadata
+) -> Table:
+    """A small table of these rows; numbers that are not finite become empty cells."""
+    columns = (
+        pa.array([None if isinstance(x, float) and not isfinite(x) else x for x in values], f.type)
+        for f, values in zip(schema, zip(*rows, strict=True), strict=True)
+    )
+    return Table(name, schema, meta, iter([pa.RecordBatch.from_arrays([*columns], schema=schema)]))
 
 
 def cast(batch: pa.RecordBatch, schema: pa.Schema) -> pa.RecordBatch:

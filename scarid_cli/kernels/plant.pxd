@@ -7,6 +7,7 @@ cdef extern from "math.h" nogil:
 
 cdef double sign(double x) noexcept nogil
 cdef double quantised(double x, double resolution) noexcept nogil
+cdef double eccentric(double q, double amplitude, double turns, double phase) noexcept nogil
 cdef double clip(double x, double limit) noexcept nogil
 
 @cython.locals(c=double, s=double, coupling=double, bend=double, m22=double)

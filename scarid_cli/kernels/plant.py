@@ -23,6 +23,13 @@ def quantised(x, resolution):
     return x
 
 
+def eccentric(q, amplitude, turns, phase):
+    """The position that an eccentric encoder sees: q + amplitude sin(turns q + phase)."""
+    if amplitude != 0.0:
+        return q + amplitude * sin(turns * q + phase)
+    return q
+
+
 def clip(x, limit):
     """x, limited to plus and minus limit."""
     return min(max(x, -limit), limit)
@@ -113,15 +120,16 @@ def run(reference, noise, log, state, model, control, h, substeps):
     reference (ticks, 4): q1, q2, dq1, dq2 wanted. noise (ticks, 2): added to the positions that the
     encoders see. log (ticks, 10): measured q, torque, true q, dq and ddq, each of joints 1 and 2,
     at the tick and with its torque. state (10): q, dq, last readings, velocity estimates and
-    integrals, each of joints 1 and 2; changed in place. control (11): Kp, Kd, Ki, torque limits and
+    integrals, each of joints 1 and 2; changed in place. control (17): Kp, Kd, Ki, torque limits and
     encoder resolutions, each of joints 1 and 2, then the smoothing of the velocity estimate per
-    tick (0: none). model: see `accelerations`. h: period of the control [s].
+    tick (0: none), then the amplitude, turns and phase of the eccentricity of the encoders, each of
+    joints 1 and 2. model: see `accelerations`. h: period of the control [s].
     """
     if log.shape[0] != len(reference) or len(noise) != len(reference):
         raise ValueError("plant: lengths differ")
     if reference.shape[1] != 4 or noise.shape[1] != 2 or log.shape[1] != 10:
         raise ValueError("plant: numbers of columns are wrong")
-    if len(state) != 10 or len(model) != 10 or len(control) != 11:
+    if len(state) != 10 or len(model) != 10 or len(control) != 17:
         raise ValueError("plant: sizes of state, model or control are wrong")
     q1, q2, v1, v2 = float(state[0]), float(state[1]), float(state[2]), float(state[3])
     last1, last2, w1, w2 = float(state[4]), float(state[5]), float(state[6]), float(state[7])
@@ -129,8 +137,10 @@ def run(reference, noise, log, state, model, control, h, substeps):
     smooth = float(control[10])
     d = h / substeps
     for k in range(len(reference)):
-        m1 = quantised(q1 + float(noise[k, 0]), float(control[8]))
-        m2 = quantised(q2 + float(noise[k, 1]), float(control[9]))
+        m1 = eccentric(q1, float(control[11]), float(control[13]), float(control[15]))
+        m1 = quantised(m1 + float(noise[k, 0]), float(control[8]))
+        m2 = eccentric(q2, float(control[12]), float(control[14]), float(control[16]))
+        m2 = quantised(m2 + float(noise[k, 1]), float(control[9]))
         w1 = smooth * w1 + (1.0 - smooth) * (m1 - last1) / h
         w2 = smooth * w2 + (1.0 - smooth) * (m2 - last2) / h
         last1 = m1

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import logging
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
@@ -16,8 +16,6 @@ from scarid_cli.io.table import Table
 from scarid_cli.reporting.curves import POINTS
 from scarid_cli.reporting.parts import Section, header_lines, split
 
-A = TypeVar("A")
-B = TypeVar("B")
 PAGE_WIDTH = 108  # characters of a table that fit an A4 page
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -51,10 +49,12 @@ def html(
                 "parts": split(section, PAGE_WIDTH, wrapped=True) if section.rows else [],
                 "figures": [
                     (plot.caption, _own(element(document), f"f{i}-{j}-"))
-                    for j, (plot, document) in _numbered(section.plots, documents)
+                    for j, (plot, document) in enumerate(
+                        zip(section.plots, documents, strict=True), 1
+                    )
                 ],
             }
-            for i, (section, documents) in _numbered(sections, drawn)
+            for i, (section, documents) in enumerate(zip(sections, drawn, strict=True), 1)
         ],
     )
 
@@ -69,10 +69,6 @@ def _template() -> Template:
     )
     environment.filters["wrapping"] = _wrapping
     return environment.get_template("report.html")
-
-
-def _numbered(first: Iterable[A], second: Iterable[B]) -> Iterator[tuple[int, tuple[A, B]]]:
-    return enumerate(zip(first, second, strict=True), start=1)
 
 
 def _origins(tables: Sequence[Table]) -> list[dict[str, Any]]:

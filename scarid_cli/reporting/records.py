@@ -9,7 +9,7 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
-from scarid_cli.errors import bad_data
+from scarid_cli.errors import bad_data, bad_row
 from scarid_cli.io.reader import require
 from scarid_cli.io.schemas import joints_of
 from scarid_cli.io.table import Table, matrix, settled
@@ -161,11 +161,5 @@ def _require_finite(values: Array, table: str, column: str, row: int) -> None:
     finite = np.isfinite(values)
     if not finite.all():
         at = int(np.argmin(finite))
-        raise bad_data(
-            table,
-            "an empty cell or nan" if np.isnan(values[at]) else str(values[at]),
-            expected="a finite number",
-            remedy="correct or remove the row",
-            row=row + at + 1,
-            column=column,
-        )
+        found = "an empty cell or nan" if np.isnan(values[at]) else str(values[at])
+        raise bad_row(table, found, "a finite number", row + at + 1, column)

@@ -23,8 +23,6 @@ from scarid_cli.reporting.source import Source
 def reportable(table: Table) -> Table:
     """The checked table, with its kind in the metadata; not every kind is a result."""
     stated = table.meta.kind
-    if stated in READERS:
-        return checked(table, stated)
     detected = None if stated else schemas.detect(table.columns)
     kind = detected.kind if detected else stated
     if kind in READERS:

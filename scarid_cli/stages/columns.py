@@ -108,37 +108,27 @@ def _segments(
     planned: Callable[[Table], tuple[Table, Plan]],
     left_out: list[TooShort],
 ) -> Iterator[pa.RecordBatch]:
-    first = rows = 0
     if SEGMENT not in table.columns:
-        yield from _rows(*planned(table), schema, first)
+        yield from _rows(*planned(table), schema, 0)
         return
+    rows = read = 0
+
+    def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+        nonlocal read
+        for batch in batches:
+            read += batch.num_rows
+            yield batch
+
     for segment in segments(table):
-        counted = Counted(segment.batches)
+        first, part = read, replace(segment, batches=counted(segment.batches))
         try:
-            for batch in _rows(*planned(replace(segment, batches=counted)), schema, first):
+            for batch in _rows(*planned(part), schema, first):
                 rows += batch.num_rows
                 yield batch
         except TooShort as reason:
             left_out.append(reason)
-        first += counted.rows
     if not rows and left_out:
         raise left_out[0]
-
-
-class Counted:
-    """An iterator over batches that counts their rows."""
-
-    def __init__(self, batches: Iterator[pa.RecordBatch]) -> None:
-        self._batches = batches
-        self.rows = 0
-
-    def __iter__(self) -> Counted:
-        return self
-
-    def __next__(self) -> pa.RecordBatch:
-        batch = next(self._batches)
-        self.rows += batch.num_rows
-        return batch
 
 
 def _rows(table: Table, plan: Plan, schema: pa.Schema, first: int) -> Iterator[pa.RecordBatch]:

@@ -22,9 +22,8 @@ from scarid_cli.algorithms.statistics.comparison import (
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, doubles
+from scarid_cli.io.table import Table, table_of
 from scarid_cli.stages.estimates import array_of, errors_of
-from scarid_cli.stages.parameters import known
 
 SHOWN = 5  # parameters that a message names at most
 MOST_ROWS = 3  # tables from which there is a trend
@@ -227,21 +226,16 @@ def _table(
     estimates: list[Estimate],
     pairs: list[Comparison],
 ) -> Table:
-    count, tables = len(names), len(labels)
-    batch = pa.RecordBatch.from_arrays(
-        [
-            pa.array([label for label in labels for _ in names], pa.string()),
-            pa.array(names * tables, pa.string()),
-            pa.array(units * tables, pa.string()),
-            doubles(np.tile(estimates[0].values, tables)),
-            doubles(np.concatenate([e.values for e in estimates[1:]])),
-            *(
-                known(np.concatenate([getattr(p, name) for p in pairs]))
-                for name in ("difference", "errors", "counts", "p_values")
-            ),
-        ],
-        schema=schemas.load("comparison").arrow(),
+    rows = (
+        (label, *row)
+        for label, other, pair in zip(labels, estimates[1:], pairs, strict=True)
+        for row in zip(
+            names,
+            units,
+            *(x.tolist() for x in (estimates[0].values, other.values, pair.difference)),
+            *(x.tolist() for x in (pair.errors, pair.counts, pair.p_values)),
+            strict=True,
+        )
     )
-    assert batch.num_rows == count * tables
     meta = replace(first.meta, kind="comparison", extra={})
-    return Table("compare", batch.schema, meta, iter([batch]))
+    return table_of("compare", schemas.load("comparison").arrow(), rows, meta)

@@ -14,9 +14,9 @@ from scarid_cli.algorithms.estimators.ekf import FilterState
 from scarid_cli.algorithms.regression.information import Information
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.errors import BadData, UsageFault
-from scarid_cli.stages.identify import Checkpoint
 
 KNOWN = {
     kind.__name__: kind for kind in (Blocks, Information, Checkpoint, FilterState, Rows, Subsample)

@@ -3,53 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
 
 import pyarrow as pa
 
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.misalignment import LAG
-from scarid_cli.algorithms.statistics.outcome import Outcome, outcome
-from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
-from scarid_cli.algorithms.statistics.verdict import InUse, combination
+from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
+from scarid_cli.algorithms.statistics.outcome import outcome
+from scarid_cli.algorithms.statistics.verdict import combination
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import Table, number, segment_field, with_columns
 from scarid_cli.stages import Sink
 from scarid_cli.stages.parameters import parameters
-from scarid_cli.stages.rows import Treatment, treated
-
-ROWS_PER_LAG = 5  # at least, in the subsample of a long record, within the lag of the lag test
-
-
-@dataclass(frozen=True)
-class Checkpoint:
-    """The state of an estimation, which can be saved and continued with another log.
-
-    `state` is that of the estimator. The statistics need `subsample` and, unless this holds all
-    rows, `blocks`. `seen` is the number of samples so far, including those that were left out.
-    """
-
-    state: Any
-    subsample: Subsample
-    blocks: Blocks | None
-    seen: int = 0
-
-    @classmethod
-    def at_start(cls, state: Any, h: float, *, holds: bool) -> Checkpoint:
-        """The checkpoint before the first sample of a record sampled every h [s].
-
-        `holds`: the estimation keeps all rows in memory.
-        """
-        if holds:
-            return cls(state, Subsample(samples=ALL), None)
-        thinnest = int(LAG / ROWS_PER_LAG / h + 1e-9) if h > 0.0 else 1
-        return cls(state, Subsample(thinnest=max(1, thinnest)), Blocks.every(h))
+from scarid_cli.stages.rows import treated
 
 
 def identify(
@@ -80,25 +51,20 @@ def identify(
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
-    for batch, rows in treated(
-        table,
-        robot,
-        treatment,
-        checkpoint.seen,
-        reference=estimator.REFERENCE,
-        follows=estimator.FOLLOWS,
-    ):
+    for batch, rows in treated(table, robot, treatment, checkpoint.seen, estimator):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))
             trace.write(with_columns(batch, schema, new))
     _check_enough(table, robot, checkpoint.subsample.counted)
-    found = _outcome(table, robot, estimator, initial, checkpoint, treatment)
+    try:
+        found = outcome(estimator, initial, checkpoint, treatment)
+    except NotIdentifiableError as error:
+        raise _not_identifiable(table, robot, error) from None
     if keep:
         keep(checkpoint)
     meta = replace(table.meta, kind="parameters", robot=robot.name)
-    in_use = InUse(treatment.slow, treatment.align, found.found.weighted, treatment.essential)
-    return parameters(found, robot, meta, in_use, variance=variance)
+    return parameters(found, robot, meta, treatment, variance=variance)
 
 
 def _check_enough(table: Table, robot: Robot, counted: int) -> None:
@@ -120,31 +86,13 @@ def _stepped(
     return Checkpoint(state, checkpoint.subsample.add(rows), blocks, seen), estimates
 
 
-def _outcome(
-    table: Table,
-    robot: Robot,
-    estimator: BaseEstimator,
-    initial: Array,
-    checkpoint: Checkpoint,
-    treatment: Treatment,
-) -> Outcome:
-    try:
-        return outcome(
-            estimator,
-            initial,
-            checkpoint.state,
-            checkpoint.subsample,
-            checkpoint.blocks,
-            align=treatment.align,
-            reduce=treatment.essential,
-        )
-    except NotIdentifiableError as error:
-        names = [*robot.names, *(error.added or ["the delay"])]
-        raise BadData(
-            f"{table.name}: not identifiable: the motion leaves "
-            f"{combination(error.direction, names[: len(error.direction)])} undetermined; "
-            "use a log that excites every joint"
-        ) from None
+def _not_identifiable(table: Table, robot: Robot, error: NotIdentifiableError) -> BadData:
+    names = [*robot.names, *(error.added or ["the delay"])]
+    return BadData(
+        f"{table.name}: not identifiable: the motion leaves "
+        f"{combination(error.direction, names[: len(error.direction)])} undetermined; "
+        "use a log that excites every joint"
+    )
 
 
 def _trace_schema(robot: Robot, table: Table) -> pa.Schema:

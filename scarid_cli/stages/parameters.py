@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.regression.information import weakest
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.outcome import Outcome, covariance
-from scarid_cli.algorithms.statistics.verdict import Evidence, InUse, combination, verdict
+from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Metadata, Table, doubles
+from scarid_cli.io.table import Metadata, Table, table_of
 
 EVIDENCE = "evidence"  # key of the metadata
 
@@ -73,15 +74,15 @@ class Labels:
         units = [*(p.unit for p in robot.parameters), *(unit for _, unit in found.found.added)]
         return cls(names, units, found.kept)
 
-    def placed(self, values: Array, otherwise: float) -> Array:
+    def placed(self, values: Array, otherwise: float) -> list[float]:
         """Values of the kept parameters, extended to all parameters by the value `otherwise`."""
         row = np.full(len(self.names), otherwise)
         row[self.kept] = values
-        return row
+        return row.tolist()
 
 
 def parameters(
-    found: Outcome, robot: Robot, meta: Metadata, in_use: InUse, *, variance: str
+    found: Outcome, robot: Robot, meta: Metadata, treatment: Treatment, *, variance: str
 ) -> Table:
     """The parameter table, with the verdict in its metadata."""
     labels = Labels.of(found, robot)
@@ -94,24 +95,19 @@ def parameters(
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = 100.0 * errors / np.abs(estimates)
     statistics = (errors, relative, robust, estimates - half, estimates + half)
-    columns = [
-        pa.array(labels.names, pa.string()),
-        pa.array(labels.units, pa.string()),
-        doubles(labels.placed(estimates, 0.0)),
-        *(known(labels.placed(values, np.nan)) for values in statistics),
-    ]
+    columns: list[Sequence[Any]] = [labels.names, labels.units, labels.placed(estimates, 0.0)]
+    columns += [labels.placed(values, np.nan) for values in statistics]
     schema = schemas.load("parameters").arrow()
     if robot.body:
         written = [p.stands_for or p.name for p in robot.parameters]
-        columns.append(pa.array([*written, *labels.names[len(written) :]], pa.string()))
+        columns.append([*written, *labels.names[len(written) :]])
     else:
         schema = schema.remove(schema.get_field_index("stands_for"))
-    batch = pa.RecordBatch.from_arrays(columns, schema=schema)
-    extra = _judged(found, robot, labels, in_use) | _facts(found, labels)
-    return Table("identify", schema, replace(meta, extra=extra), iter([batch]))
+    extra = _judged(found, robot, labels, treatment) | _facts(found, labels)
+    return table_of("identify", schema, zip(*columns, strict=True), replace(meta, extra=extra))
 
 
-def _judged(found: Outcome, robot: Robot, labels: Labels, in_use: InUse) -> dict[str, Any]:
+def _judged(found: Outcome, robot: Robot, labels: Labels, treatment: Treatment) -> dict[str, Any]:
     """The metadata of the verdict, with the condition numbers that it is based on."""
     fit = found.found.fit
     names = [labels.names[i] for i in labels.kept]
@@ -123,7 +119,8 @@ def _judged(found: Outcome, robot: Robot, labels: Labels, in_use: InUse) -> dict
         scaled_condition=scaled,
         weak=combination(direction, names),
         diagnostics=found.diagnostics,
-        in_use=in_use,
+        treatment=treatment,
+        weighted=found.found.weighted,
     )
     judged = verdict(evidence, robot)
     return {
@@ -178,8 +175,3 @@ def stored(found: LogEvidence, columns: list[str]) -> dict[str, Any]:
 def _or_none(value: float) -> float | None:
     """JSON has no nan and no infinity."""
     return value if np.isfinite(value) else None
-
-
-def known(values: Array) -> pa.Array:
-    """A column in which values that are not finite become empty cells."""
-    return pa.array([x if np.isfinite(x) else None for x in values.tolist()], pa.float64())

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from itertools import chain
 
 import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.regression.rows import Rows, delay_column, joined
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table
 from scarid_cli.stages.parameters import Identified
-from scarid_cli.stages.rows import Treatment, treated
+from scarid_cli.stages.rows import treated
 
 Part = tuple[pa.RecordBatch | None, Rows]
 
@@ -57,35 +57,21 @@ def _surrounded(parts: Iterator[Part]) -> Iterator[tuple[Part, Rows, slice]]:
         held = part
 
 
-@dataclass
-class Tally:
-    """The sums of measured and predicted torques, joint by joint."""
+def added(sums: list[Array], rows: Rows, torques: Array) -> list[Array]:
+    """The sums of each joint after the rows whose scale is not zero.
 
-    joints: int
-    sums: list[Array] = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.sums = [empty() for _ in range(self.joints)]
-
-    def add(self, rows: Rows, torques: Array) -> None:
-        """Add the rows whose scale is not zero, with their predicted torques (joints, samples)."""
-        counts = [np.flatnonzero(scale) for scale in rows.scales.T]
-        self.sums = [
-            accumulate(sums, tau[at], own[at])
-            for sums, tau, own, at in zip(self.sums, rows.y.T, torques, counts, strict=True)
-        ]
-
-    @property
-    def qualities(self) -> list[Quality]:
-        return [Quality.of(sums) for sums in self.sums]
+    `torques` (joints, samples) are the predicted ones.
+    """
+    counts = [np.flatnonzero(scale) for scale in rows.scales.T]
+    parts = zip(sums, rows.y.T, torques, counts, strict=True)
+    return [accumulate(own, tau[at], found[at]) for own, tau, found, at in parts]
 
 
 def qualities(
     table: Table, models: Sequence[Identified], treatment: Treatment
 ) -> list[list[Quality]]:
     """How well each model predicts each joint's torques."""
-    tallies = [Tally(len(model.robot.joints)) for model in models]
+    sums = [[empty() for _ in model.robot.joints] for model in models]
     for _, rows, torques in predicted(table, models, treatment):
-        for tally, own in zip(tallies, torques, strict=True):
-            tally.add(rows, own)
-    return [tally.qualities for tally in tallies]
+        sums = [added(own, rows, tau) for own, tau in zip(sums, torques, strict=True)]
+    return [[Quality.of(joint) for joint in own] for own in sums]

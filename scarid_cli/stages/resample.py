@@ -176,7 +176,7 @@ class Interpolation:
         t, *values = matrix(piece, ["t", *self.numbers])
         x = np.array(values).reshape(len(self.numbers), len(t))
         if begins:
-            self.state = self._at(float(t[0]), x[:, 0])
+            self.state = self.resampler.init(float(t[0]), x[:, 0], self.state)
             self.held = piece.slice(0, 1)
             piece, t, x = piece.slice(1), t[1:], x[:, 1:]
         assert self.state
@@ -191,11 +191,6 @@ class Interpolation:
         mark = integers(np.full(len(at), segment))
         new = {"t": at, SEGMENT: mark, **dict(zip(self.numbers, found, strict=True))}
         return _batch(together, self.schema, new, left)
-
-    def _at(self, t: float, x: Array) -> ResamplerState:
-        if self.state is None:
-            return self.resampler.init(t, x)
-        return self.resampler.after_gap(self.state, t, x)
 
 
 @dataclass

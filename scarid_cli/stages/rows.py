@@ -4,82 +4,23 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, without_slow
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, segments_of, settled_runs
 
+MEASURED = ("q{i}", "dq{i}", "ddq{i}", "tau{i}")
+FOLLOWED = ("q{i}_ref", "dq{i}_ref", "ddq{i}_ref", "tau{i}")
+REFERENCE = FOLLOWED[:2]
 GAP_DURATION = 0.05  # s: longer than the intervals in the subsample of a long record
-
-
-@dataclass(frozen=True)
-class Treatment:
-    """How the rows of a motion are treated before the fit.
-
-    `skip` rows at the start and at the end of the table are left out. W and the torques are
-    decimated by each factor of `decimate` in turn. Rows of a joint that is slower than `slow`
-    (joints) [rad/s or m/s] are left out. Two more options concern the fit: `align` also fits the
-    time by which the torques lead the motion, and `essential` drops parameters that are not
-    essential.
-    """
-
-    skip: tuple[int, int] = (0, 0)
-    decimate: tuple[int, ...] = ()
-    slow: tuple[float, ...] = ()
-    align: bool = False
-    essential: bool = False
-
-    @property
-    def holds(self) -> bool:
-        """Whether the treatment needs all rows at once."""
-        return bool(self.decimate) or self.align
-
-
-@dataclass(frozen=True)
-class Columns:
-    """The columns that the regression of a robot needs from a motion sampled every h [s].
-
-    With `reference`, these include the reference position and velocity if the table has them. If
-    the estimator `follows` the reference, the motion is that of the reference as well.
-    """
-
-    robot: Robot
-    h: float
-    reference: bool
-    follows: bool
-
-    def motion(self, batch: pa.RecordBatch) -> Array:
-        """Position, velocity, acceleration and torque (4, joints, samples)."""
-        joints = len(self.robot.joints)
-        of = "_ref" if self.follows else ""
-        names = of_joints(joints, f"q{{i}}{of}", f"dq{{i}}{of}", f"ddq{{i}}{of}", "tau{i}")
-        return matrix(batch, names).reshape(4, joints, batch.num_rows)
-
-    def references(self, columns: list[str], batch: pa.RecordBatch) -> Array | None:
-        """The reference position and velocity (2, joints, samples), if needed and present."""
-        joints = len(self.robot.joints)
-        names = of_joints(joints, "q{i}_ref", "dq{i}_ref")
-        if not self.reference or not set(names) <= set(columns):
-            return None
-        return matrix(batch, names).reshape(2, joints, batch.num_rows)
-
-    def rows(self, columns: list[str], batch: pa.RecordBatch, at: int, slow: Array | None) -> Rows:
-        """The rows of a batch whose first sample has the number `at`."""
-        return rows_of(
-            self.robot,
-            self.motion(batch),
-            np.arange(at, at + batch.num_rows),
-            self.h,
-            slow=slow,
-            reference=self.references(columns, batch),
-        )
 
 
 def treated(
@@ -87,19 +28,17 @@ def treated(
     robot: Robot,
     treatment: Treatment,
     seen: int = 0,
-    *,
-    reference: bool = False,
-    follows: bool = False,
+    estimator: BaseEstimator | None = None,
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     """The rows of the settled samples, each part with the batch that it comes from.
 
     A treatment that needs all rows at once gives a single part, without a batch. `seen` is the
-    number of the first sample. With `reference`, the rows include the reference of the robot; if
-    the estimator `follows` it, they are those of the reference.
+    number of the first sample. The rows include the reference position and velocity if the
+    estimator needs them and the table has them; for one that follows the reference, the rows are
+    those of the reference.
     """
     counted = 0
-    columns = Columns(robot, table.period, reference, follows)
-    for batch, rows in _treated(table, columns, treatment, seen):
+    for batch, rows in _treated(table, robot, treatment, seen, estimator):
         counted += int(np.count_nonzero(rows.scales))
         yield batch, rows
     if not counted:
@@ -112,20 +51,33 @@ def treated(
 
 
 def _treated(
-    table: Table, columns: Columns, treatment: Treatment, seen: int
+    table: Table, robot: Robot, treatment: Treatment, seen: int, estimator: BaseEstimator | None
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     slow = np.array(treatment.slow) if treatment.slow else None
     late = None if treatment.decimate else slow
     held, gaps = [], Gaps(table.period)
+    signals = FOLLOWED if estimator and estimator.FOLLOWS else MEASURED
+    known = set(of_joints(len(robot.joints), *REFERENCE)) <= set(table.columns)
     start, end = treatment.skip
     for first, kept in _after(start, settled_runs(_without_last(end, table.batches))):
-        rows = columns.rows(table.columns, kept, seen + first + gaps.before(kept), late)
+        at = seen + first + gaps.before(kept) + np.arange(kept.num_rows)
+        motion = _signals(robot, kept, *signals)
+        reference = None
+        if known and estimator and estimator.REFERENCE:
+            reference = _signals(robot, kept, *REFERENCE)
+        rows = rows_of(robot, motion, at, table.period, slow=late, reference=reference)
         if treatment.holds:
             held.append(rows)
         else:
             yield kept, rows
     if held:
         yield None, _decimated(joined(held), treatment.decimate, slow)
+
+
+def _signals(robot: Robot, batch: pa.RecordBatch, *names: str) -> Array:
+    """The signals of these names (names, joints, samples)."""
+    columns = of_joints(len(robot.joints), *names)
+    return matrix(batch, columns).reshape(len(names), -1, batch.num_rows)
 
 
 class Gaps:

@@ -8,8 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.imperfections.registry import Imperfections
+from scarid_cli.algorithms.imperfections.rows import StandstillAfter, StandstillBefore
 from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, LoopState
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.sensors import building
+from scarid_cli.algorithms.sensors.recorder import Recorder, Rows
+from scarid_cli.algorithms.sensors.standstill import with_standstill
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.io.schemas import of_joints
@@ -18,18 +23,32 @@ from scarid_cli.io.table import Table, doubles, matrix, motion_fields, number, n
 SIGNALS = ("q", "dq", "ddq")
 
 
-def simulate(table: Table, loop: ClosedLoop, log_rate: float, *, truth: bool) -> Table:
+def simulate(
+    table: Table,
+    loop: ClosedLoop,
+    log_rate: float,
+    *,
+    truth: bool,
+    given: Imperfections | None = None,
+) -> Table:
     """The log, at the log rate [Hz], of a robot that follows a trajectory in closed loop.
 
-    The robot starts at rest at the first position of the trajectory. The log has measured signals
-    and the reference; `truth` adds the true signals.
+    The robot starts at rest at the first position of the trajectory. The log has measured signals,
+    with the imperfections that are given, and the reference; `truth` adds the true signals, and
+    their time where that is not the time of the row.
     """
-    period = table.period
-    ratio = _whole(loop.control_rate * period, "the trajectory's rate")
+    given = given or Imperfections(len(loop.robot.joints))
+    ratio = _whole(loop.control_rate * table.period, "the trajectory's rate")
     keep = _whole(loop.control_rate / log_rate, "the log rate")
-    schema = _schema(loop.robot, truth=truth)
+    recorder = building.recorder(given, loop.encoder, loop.control_rate, keep)
+    schema = _schema(loop.robot, truth=truth, jitter=building.jitters(given))
     meta = replace(table.meta, kind="measurement", robot=loop.robot.name, period=1.0 / log_rate)
-    return Table(table.name, schema, meta, _rows(table, loop, ratio, keep, schema))
+    references = _references(table, len(loop.robot.joints), ratio)
+    before, after = (
+        round(given.one(kind) * loop.control_rate) for kind in (StandstillBefore, StandstillAfter)
+    )
+    rows = _rows(with_standstill(references, before, after), loop, recorder)
+    return Table(table.name, schema, meta, _batches(rows, schema))
 
 
 def _whole(ratio: float, what: str) -> int:
@@ -39,22 +58,38 @@ def _whole(ratio: float, what: str) -> int:
     return whole
 
 
-def _schema(robot: Robot, *, truth: bool) -> pa.Schema:
+def _schema(robot: Robot, *, truth: bool, jitter: bool) -> pa.Schema:
     torque = [joint.torque_unit for joint in robot.joints]
     units = [joint.unit for joint in robot.joints]
     fields = [number("t", "s"), *numbers("q{i}", units), *numbers("tau{i}", torque)]
     fields += motion_fields(units, "_ref")
     if truth:
         fields += [*motion_fields(units, "_true"), *numbers("tau{i}_true", torque)]
+        fields += [number("t_true", "s")] if jitter else []
     return pa.schema(fields)
 
 
+Timed = tuple[float, Rows]  # rows, and the time of the first tick [s]
+
+
+def _batches(rows: Iterator[Timed], schema: pa.Schema) -> Iterator[pa.RecordBatch]:
+    """The rows as batches with as many columns as the schema has."""
+    for start, part in rows:
+        if not len(part.t):
+            continue
+        signals = [row for signal in (*part.logged, *part.true) for row in signal]
+        columns = [start + part.t, *signals, start + part.t_true]
+        arrays = [doubles(column) for column in columns[: len(schema)]]
+        yield pa.RecordBatch.from_arrays(arrays, schema=schema)
+
+
 def _rows(
-    table: Table, loop: ClosedLoop, ratio: int, keep: int, schema: pa.Schema
-) -> Iterator[pa.RecordBatch]:
+    references: Iterator[tuple[float, Motion]], loop: ClosedLoop, recorder: Recorder
+) -> Iterator[Timed]:
     state: LoopState | None = None
-    tick = 0
-    for start, reference in _references(table, len(loop.robot.joints), ratio):
+    recording = recorder.init(loop.seed)
+    tick, start = 0, 0.0
+    for start, reference in references:
         if state is None:
             state = loop.init(reference[0][:, 0])
         try:
@@ -65,13 +100,10 @@ def _rows(
                 f"the closed loop became unstable at t = {when:.4g} s; lower the gains or raise "
                 "the control rate"
             ) from None
-        ticks = np.arange(-tick % keep, log.q.shape[1], keep)
-        t = start + (tick + ticks) / loop.control_rate
-        signals = (log.q, log.tau, *reference, log.q_true, log.dq_true, log.ddq_true, log.tau_true)
-        columns = [t, *(row[ticks] for signal in signals for row in signal)]
-        arrays = [doubles(column) for column in columns[: len(schema)]]
-        yield pa.RecordBatch.from_arrays(arrays, schema=schema)
+        recording, rows = recorder.step(recording, log, reference)
         tick += log.q.shape[1]
+        yield start, rows
+    yield start, recorder.finish(recording)
 
 
 def _references(table: Table, joints: int, ratio: int) -> Iterator[tuple[float, Motion]]:

@@ -8,16 +8,16 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
 
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning import judges, search
+from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, TooShort
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, matrix, segments
+from scarid_cli.io.table import Table, matrix, segments, table_of
 
 Settings = dict[str, list[float]]
 LIKELIHOOD, SMOOTHER, TORQUES = "likelihood", "smoother", "torques"
@@ -98,7 +98,7 @@ def _for_positions(
     judge = judges.distance_to_smoother(q, h)
     if method.HAS_LIKELIHOOD:
         likelihood = judges.negative_log_likelihood(q, h)
-        fitted = judges.fit(method, q, h)
+        fitted = best_model(method, q, h)
         for tried in (method, fitted) if values(method)["noise"] else (fitted,):
             trial = search.Trial(tried, likelihood(tried))
             yield Tried(name, joint, LIKELIHOOD, trial, tried is fitted)
@@ -116,7 +116,7 @@ def _for_torques(
     ranges = method.TUNED
     if method.HAS_LIKELIHOOD:
         # The most likely intensity also follows vibrations; a lower one may identify better.
-        method = judges.fit(method, record.q, record.h)
+        method = best_model(method, record.q, record.h)
         ranges = {"intensity": Range(1e-12 * method.intensity, 1e2 * method.intensity)}
     trials = search.search(method, ranges, judge, record.h, seed)
     yield from _marked(name, None, TORQUES, trials, progress)
@@ -166,16 +166,8 @@ def chosen(rows: list[Tried], joints: int) -> tuple[str, dict[str, Settings]]:
 def trials(table: Table, rows: list[Tried]) -> Table:
     """The table of all trials."""
     schema = schemas.load("trials").arrow()
-    losses = [row.trial.loss if isfinite(row.trial.loss) else None for row in rows]
-    batch = pa.RecordBatch.from_arrays(
-        [
-            pa.array([row.name for row in rows], pa.string()),
-            pa.array([row.joint for row in rows], pa.int64()),
-            pa.array([row.settings for row in rows], pa.string()),
-            pa.array([row.judge for row in rows], pa.string()),
-            pa.array(losses, pa.float64()),
-            pa.array([int(row.best) for row in rows], pa.int64()),
-        ],
-        schema=schema,
+    found = (
+        (row.name, row.joint, row.settings, row.judge, float(row.trial.loss), int(row.best))
+        for row in rows
     )
-    return Table("tune", schema, replace(table.meta, kind="trials"), iter([batch]))
+    return table_of("tune", schema, found, replace(table.meta, kind="trials"))

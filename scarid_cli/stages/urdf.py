@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.physical import Physical, chi_square, inertia_of, nearest
 from scarid_cli.arrays import Array
-from scarid_cli.io.table import Table, doubles, number
+from scarid_cli.io.table import Table, number, table_of
 from scarid_cli.io.urdf import Inertial, rewritten
 from scarid_cli.stages.estimates import Estimates
-from scarid_cli.stages.parameters import Identified, known
+from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.prediction import qualities
-from scarid_cli.stages.rows import Treatment
 
 SHOWN = 5  # parameters that a message names at most
 COLLAPSE = 2.0  # ratio of residual variances above which a warning is given: physical consistency
@@ -54,16 +54,12 @@ def base_table(table: Table, identified: Estimates, found: Physical) -> Table:
     """The base parameters of the new bodies, as a parameter table that `validate` reads."""
     schema = pa.schema([pa.field("parameter", pa.string()), pa.field("unit", pa.string()),
                         number("estimate"), number("moved")])  # fmt: skip
-    robot, fixed = identified.robot, identified.fixed
-    arrays = [
-        pa.array([*robot.names, *(name for name, _, _ in fixed)], pa.string()),
-        pa.array([*(p.unit for p in robot.parameters), *(unit for _, unit, _ in fixed)]),
-        doubles(np.append(found.base, [value for _, _, value in fixed])),
-        known(np.append(_moved(identified, found), np.zeros(len(fixed)))),
-    ]
-    batch = pa.RecordBatch.from_arrays(arrays, schema=schema)
+    robot = identified.robot
+    moved = zip(robot.parameters, found.base, _moved(identified, found), strict=True)
+    rows = [(p.name, p.unit, value, by) for p, value, by in moved]
+    rows += [(*row, 0.0) for row in identified.fixed]
     meta = replace(table.meta, kind="parameters", robot=robot.name, extra={})
-    return Table("urdf", schema, meta, iter([batch]))
+    return table_of("urdf", schema, rows, meta)
 
 
 def r2_before_and_after(

@@ -5,19 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.prediction import Quality
+from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
+from scarid_cli.algorithms.statistics.prediction import Quality, empty
 from scarid_cli.io import schemas
-from scarid_cli.io.table import Table, number, numbers, segment_field, with_columns
+from scarid_cli.io.table import Table, number, numbers, segment_field, table_of, with_columns
 from scarid_cli.stages import Sink
 from scarid_cli.stages.changes import Known, verdict
-from scarid_cli.stages.identify import Checkpoint
-from scarid_cli.stages.parameters import Identified, known
-from scarid_cli.stages.prediction import Tally, predicted
-from scarid_cli.stages.rows import Treatment
+from scarid_cli.stages.parameters import Identified
+from scarid_cli.stages.prediction import added, predicted
 
 
 def validate(
@@ -36,14 +35,14 @@ def validate(
     has changed since then.
     """
     robot = model.robot
-    tally = Tally(len(robot.joints))
+    sums = [empty() for _ in robot.joints]
     schema = _prediction_schema(robot, table)
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
     subsample = Checkpoint.at_start(None, table.period, holds=False).subsample
     for batch, rows, (torques,) in predicted(table, [model], treatment or Treatment()):
-        tally.add(rows, torques)
+        sums = added(sums, rows, torques)
         if before:
             subsample = subsample.add(rows)
         if predictions and batch is not None:
@@ -52,7 +51,7 @@ def validate(
     extra: dict[str, Any] = {"delay": model.delay} if model.delay else {}
     if before:
         extra["change"] = verdict(subsample.rows(), model, before).extra
-    return _metrics(table, robot, tally.qualities, extra)
+    return _metrics(table, robot, [Quality.of(joint) for joint in sums], extra)
 
 
 def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
@@ -63,17 +62,10 @@ def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:
 
 def _metrics(table: Table, robot: Robot, qualities: list[Quality], extra: dict[str, Any]) -> Table:
     schema = schemas.load("metrics").arrow()
-    batch = pa.RecordBatch.from_arrays(
-        [
-            pa.array(range(1, len(qualities) + 1), pa.int64()),
-            known(np.array([quality.r2 for quality in qualities])),
-            known(np.array([quality.rmse for quality in qualities])),
-            pa.array([joint.torque_unit for joint in robot.joints]),
-            known(np.array([quality.relative_error for quality in qualities])),
-            pa.array([quality.samples for quality in qualities], pa.int64()),
-        ],
-        schema=schema,
+    rows = (
+        (i, q.r2, q.rmse, joint.torque_unit, q.relative_error, q.samples)
+        for i, (q, joint) in enumerate(zip(qualities, robot.joints, strict=True), start=1)
     )
     extra = {**table.meta.extra, **extra}
     meta = replace(table.meta, kind="metrics", robot=robot.name, extra=extra)
-    return Table("validate", schema, meta, iter([batch]))
+    return table_of("validate", schema, rows, meta)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from memory import peak, stages
+from memory import SCARID, measured, peak, stages
 
 
 @pytest.mark.parametrize("name", ["resample", "filter", "differentiate", "identify", "validate"])
@@ -14,3 +14,17 @@ def test_memory_does_not_grow_with_the_log(name: str, tmp_path: Path) -> None:
     short, _ = peak(words, 100_000)
     long, _ = peak(words, 1_000_000)
     assert long < 1.1 * short
+
+
+def test_memory_of_the_simulator_does_not_grow_with_a_standstill() -> None:
+    def peak_of(seconds: int) -> float:
+        source = [SCARID, "trajgen", "-q", "--duration", "2", "--format", "arrow"]
+        stage = [
+            SCARID,
+            "simulate",
+            f"--with=standstill-after={seconds}",
+            "--with=torque-delay=0.1",
+        ]
+        return measured(source, [*stage, "--with=stamp-jitter=1e-4", "--format", "arrow"])[0]
+
+    assert peak_of(1000) < 1.1 * peak_of(20)

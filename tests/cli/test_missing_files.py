@@ -34,9 +34,7 @@ def inputs() -> Iterator[tuple[list[str], click.Parameter, str]]:
     for words, command in commands():
         for parameter in command.params:
             if isinstance(parameter.type, options.InputFile):
-                yield words, parameter, ""
-            elif isinstance(parameter.type, options.RobotName):
-                yield from ((words, parameter, ending) for ending in options.ROBOT.endings)
+                yield from ((words, parameter, ending) for ending in parameter.type.endings)
 
 
 CASES = [

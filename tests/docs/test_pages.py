@@ -11,6 +11,7 @@ from conftest import ROOT
 from docs.pages import PAGES, prose
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, EXCITATIONS
+from scarid_cli.algorithms.imperfections.registry import IMPERFECTIONS
 from scarid_cli.algorithms.robots.reading import built_in
 from scarid_cli.cli import COMMANDS
 
@@ -19,6 +20,7 @@ NAMES = {
     "differentiator": DIFFERENTIATORS.names,
     "estimator": ESTIMATORS.names,
     "excitation": EXCITATIONS.names,
+    "imperfection": list(IMPERFECTIONS),
     "robot": built_in(),
 }
 USERS = [page for page in PAGES if page not in ("CONTRIBUTING.md", "DESIGN.md")]
@@ -44,6 +46,12 @@ def tracked() -> list[Path]:
 def test_the_documentation_names_every_choice(kind: str, name: str) -> None:
     pages = [page for page in USERS if re.search(rf"`{name}[` ]", (ROOT / page).read_text("utf-8"))]
     assert pages, f"no page names the {kind} `{name}`"
+
+
+def test_the_page_on_the_simulator_has_a_row_for_every_imperfection_with_its_unit() -> None:
+    page = (ROOT / "docs" / "simulator.md").read_text("utf-8")
+    rows = re.findall(r"^\| `([a-z-]+)` \| ([^|]*?) ?\|", page, flags=re.MULTILINE)
+    assert sorted(rows) == sorted((name, kind.unit()) for name, kind in IMPERFECTIONS.items())
 
 
 def test_pages_that_anything_names_are_there() -> None:

@@ -7,7 +7,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.excitations.quintic import Excitation
 from scarid_cli.algorithms.robots import reading
+from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.io.table import Metadata, Table, doubles, number
 
 PERIOD = 0.005
@@ -74,3 +76,13 @@ def motion(rows: int = 400, seed: int = 0) -> dict[str, np.ndarray]:
     for i, tau in enumerate(SCARA.torques(W, SCARA.apriori), start=1):
         columns[f"tau{i}"] = tau + 0.1 * rng.standard_normal(rows)
     return columns
+
+
+def references() -> dict[str, np.ndarray]:
+    """Two seconds of a reference within generous limits."""
+    limits = Limits(-np.ones(2), np.ones(2), np.full(2, 3.0), np.full(2, 20.0))
+    path = Excitation(0.5, 1.0).trajectory(limits, limits.home, 2.0, np.random.default_rng(1))
+    t = np.arange(401) * PERIOD
+    rows = [row for signal in path.sample(t) for row in signal]
+    names = [f"{signal}{i}_ref" for signal in ("q", "dq", "ddq") for i in (1, 2)]
+    return {"t": t, **dict(zip(names, rows, strict=True))}

@@ -10,13 +10,11 @@ import pyarrow as pa
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from stages.tables import PERIOD, SCARA, Kept, collected, motion, table
+from stages.tables import SCARA, Kept, collected, motion, references, table
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
-from scarid_cli.algorithms.excitations.quintic import Excitation
 from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
 from scarid_cli.algorithms.plants.loop import ClosedLoop
-from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.io.table import Table
 from scarid_cli.stages.differentiate import differentiate, matched
 from scarid_cli.stages.filter import filtered
@@ -69,15 +67,6 @@ STAGES: dict[str, Stage] = {
     **{f"differentiate {name} --match": matching(name) for name in DIFFERENTIATORS.names},
     **{f"identify {name}": identified(name) for name in ESTIMATORS.names},
 }
-
-
-def references() -> dict[str, np.ndarray]:
-    limits = Limits(-np.ones(2), np.ones(2), np.full(2, 3.0), np.full(2, 20.0))
-    path = Excitation(0.5, 1.0).trajectory(limits, limits.home, 2.0, np.random.default_rng(1))
-    t = np.arange(401) * PERIOD
-    rows = [row for signal in path.sample(t) for row in signal]
-    names = [f"{signal}{i}_ref" for signal in ("q", "dq", "ddq") for i in (1, 2)]
-    return {"t": t, **dict(zip(names, rows, strict=True))}
 
 
 @pytest.mark.parametrize("name", STAGES)

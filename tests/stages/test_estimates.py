@@ -16,7 +16,6 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Metadata, Table
 from scarid_cli.stages.estimates import estimates_with_covariance
-from scarid_cli.stages.parameters import known
 from scarid_cli.stages.urdf import base_table, physical, r2_report
 
 pytest.importorskip("pinocchio")
@@ -37,7 +36,7 @@ def table(robot: Robot, errors: Array | None = None, **extra: Any) -> Table:
         "estimate": pa.array(robot.apriori),
     }
     if errors is not None:
-        columns["robust_error"] = known(errors)
+        columns["robust_error"] = pa.array(errors, from_pandas=True)
     batch = pa.RecordBatch.from_pydict(columns)
     return Table("p.parquet", batch.schema, Metadata(extra=extra), iter([batch]))
 

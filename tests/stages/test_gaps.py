@@ -15,6 +15,7 @@ from stages.tables import PERIOD, SCARA, Kept, collected, cut, motion, table
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
 from scarid_cli.algorithms.processes.resampling import Clock
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, TooShort
 from scarid_cli.io.reader import checked
@@ -24,7 +25,6 @@ from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
 from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.resample import resample
-from scarid_cli.stages.rows import Treatment
 from scarid_cli.stages.validate import validate
 
 Stage = Callable[[Table], Table]

@@ -76,7 +76,7 @@ ARM = [3.42, 0.064, 0.131, 0.03]
 def coast(model: list[float], q: list[float], dq: list[float], ticks: int) -> Array:
     """The log without control, at 1 kHz."""
     state, log = np.array([*q, *dq, *q, *np.zeros(4)]), np.empty((ticks, 10))
-    control = np.array([0.0] * 6 + [1e300] * 2 + [0.0] * 3)
+    control = np.array([0.0] * 6 + [1e300] * 2 + [0.0] * 9)
     reference, noise = np.zeros((ticks, 4)), np.zeros((ticks, 2))
     assert plant.run(reference, noise, log, state, np.array(model), control, 1e-3, 4) == ticks
     return log

@@ -153,16 +153,33 @@ def plant(rng: np.random.Generator, *, resolution: float = 1e-5) -> Arguments:
     reference = np.zeros((ticks, 4))
     reference[:, :2] = np.repeat(rng.uniform(-0.3, 0.3, (2, 2)), 1000, axis=0)
     gains = [800.0, 25.0, 100.0, 2.5, 5.0, 0.5, 30.0, 2.0, resolution, resolution, 0.7]
+    eccentricity = [0.0, 1e-3, 1.0, 50.0, 0.0, 0.3]
     return [
         reference,
         1e-6 * rng.standard_normal((ticks, 2)),
         np.empty((ticks, 10)),
         np.concatenate((0.1 * rng.standard_normal(4), np.zeros(6))),
         mechanism(load("scara2")),
-        np.array(gains),
+        np.array(gains + eccentricity),
         0.001,
         4,
     ]
+
+
+def chain(rng: np.random.Generator) -> Arguments:
+    """Revolute and prismatic axes of any direction."""
+    joints, samples = 4, 5
+    axes = rng.standard_normal((joints, 16))
+    axes[:, 15] = [0.0, 1.0, 0.0, 1.0]
+    W = np.empty((samples * joints, 10 * joints))
+    motion = rng.standard_normal((3, joints, samples))
+    return [axes, rng.standard_normal(3), *motion, W, np.zeros((joints + 1, 21 + 6 * joints))]
+
+
+def chain_gradient(rng: np.random.Generator) -> Arguments:
+    *motion, W, links = chain(rng)
+    slopes = np.empty((3, 4, 5))
+    return [*motion, rng.standard_normal(W.shape), *slopes, links, np.zeros_like(links)]
 
 
 CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = {
@@ -200,6 +217,8 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
         lambda rng: information(rng, (0.9, 1.0, 0.97, 0.99, 0.5), trace=True),
     ),
     "moments": ("moments", "accumulate", moments),
+    "chain": ("chain", "regressor", chain),
+    "chain, gradient": ("chain", "gradient", chain_gradient),
     "plant": ("plant", "run", plant),
     "plant, perfect encoder": ("plant", "run", lambda rng: plant(rng, resolution=0.0)),
 }

@@ -124,7 +124,7 @@ def test_noise_is_that_of_the_seed() -> None:
 def test_noise_has_the_size_it_is_given() -> None:
     loop = replace(NOISY, encoder_resolution=np.zeros(2))
     ticks = 20000
-    q, tau, q_true, _, _, tau_true = run(loop, ticks)
+    q, tau, q_true, _, _, tau_true, *_ = run(loop, ticks)
     # The standard deviation of a sample deviates by 1 / sqrt(2 n), 0.5 %; four times that.
     np.testing.assert_allclose((q - q_true).std(axis=1), loop.position_noise, rtol=0.02)
     np.testing.assert_allclose((tau - tau_true).std(axis=1), loop.torque_noise, rtol=0.02)

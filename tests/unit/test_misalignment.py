@@ -32,7 +32,7 @@ def test_the_neighbours_explain_torques_of_another_instant(late: int) -> None:
 )
 def test_too_few_rows_give_no_lag_share(places: Numbers) -> None:
     """Not 0, the best that can be said of a record; nor 1, where nine unknowns fit nine rows."""
-    assert np.isnan(share(regression(8000).taken(places)))
+    assert np.isnan(share(regression(8000).part(places)))
 
 
 @given(lead=st.floats(-2e-3, 2e-3))

@@ -95,7 +95,7 @@ def test_both_joints_leave_rest_as_complementarity_says() -> None:
         model = np.array([*ARM, 0.0, 0.0, *coulomb, 0.0, 0.0])
         state = np.array([0.0, q2, 0.0, 0.0, 0.0, q2, *np.zeros(4)])
         reference = np.array([[*(np.sign(tau) * 1e6), 0.0, 0.0]])
-        control = np.array([1e9, 1e9, 0.0, 0.0, 0.0, 0.0, *np.abs(tau), 0.0, 0.0, 0.0])
+        control = np.array([1e9, 1e9, 0.0, 0.0, 0.0, 0.0, *np.abs(tau), *np.zeros(9)])
         log = np.empty((1, 10))
         plant.run(reference, np.zeros((1, 2)), log, state, model, control, 1e-3, 4)
         np.testing.assert_allclose(log[0, 2:4], tau)

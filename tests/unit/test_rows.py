@@ -79,7 +79,7 @@ def test_a_subsample_is_thinned_before_segments_are_dropped() -> None:
 @pytest.mark.parametrize("sizes", SIZES)
 def test_blocks_have_the_same_bits_however_rows_arrive(sizes: tuple[int, ...]) -> None:
     rows = regression(60_000)
-    gapped = rows.taken(np.flatnonzero((rows.at < 20_000) | (rows.at > 31_234)))
+    gapped = rows.part(np.flatnonzero((rows.at < 20_000) | (rows.at > 31_234)))
     whole, cut = (fed(Blocks.every(H), gapped, s).whole() for s in ((10**6,), sizes))
     assert isinstance(cut, Blocks)
     assert isinstance(whole, Blocks)

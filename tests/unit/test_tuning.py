@@ -16,6 +16,7 @@ from scarid_cli.algorithms.processes.delays import reference
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.tuning import judges, search
+from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
 from scarid_cli.stages.tune import Record, chosen, online, tune
@@ -95,7 +96,7 @@ def test_the_smoother_is_nearer_to_the_truth_than_what_it_judges() -> None:
 def test_likelihood_prefers_its_fit(name: str) -> None:
     q, _, _ = readings()
     method = DIFFERENTIATORS.load(name)()
-    fitted = judges.fit(method, q, PERIOD)
+    fitted = best_model(method, q, PERIOD)
     judge = judges.negative_log_likelihood(q, PERIOD)
     for factor in (0.3, 3.0):
         assert judge(fitted) < judge(replace(fitted, intensity=factor * fitted.intensity))
@@ -125,7 +126,7 @@ def test_settings_for_all_joints_come_from_all_joints(
 
 def test_joints_that_move_alike_are_tuned_as_one_of_them() -> None:
     q = two_joints(3e-4)
-    alone, both = (judges.fit(DIFFERENTIATORS.load("kalman")(), x, PERIOD) for x in (q, [*q, *q]))
+    alone, both = (best_model(DIFFERENTIATORS.load("kalman")(), x, PERIOD) for x in (q, [*q, *q]))
     assert both.states == alone.states
     assert both.noise == pytest.approx(alone.noise, rel=1e-2)
 
@@ -133,9 +134,9 @@ def test_joints_that_move_alike_are_tuned_as_one_of_them() -> None:
 def test_a_record_needs_more_rows_than_its_model_has_states_and_settings() -> None:
     """Five states, and noise, intensity, damping and frequency: ten rows, as the message says."""
     method, (q,) = DIFFERENTIATORS.load("kalman")(), two_joints(3e-4)
-    assert judges.fit(method, q[100:110], PERIOD).noise > 1e-6
+    assert best_model(method, q[100:110], PERIOD).noise > 1e-6
     with pytest.raises(TooShort, match=r"^9 rows are too few .* at least 10 rows$"):
-        judges.fit(method, q[100:109], PERIOD)
+        best_model(method, q[100:109], PERIOD)
 
 
 def test_the_same_seed_gives_the_same_trials() -> None:

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from scarid_cli.algorithms.regression.information import weakest
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.residuals import JointResidual
-from scarid_cli.algorithms.statistics.verdict import Evidence, InUse, combination, verdict
+from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 
 P = 3
 SCARA = load("scara2")
@@ -35,6 +36,8 @@ def evidence(**changes: object) -> Evidence:
         scaled_condition=5.0,
         weak="Fv1 - Fs1",
         diagnostics=diagnostics,
+        treatment=Treatment(),
+        weighted=False,
     )
     changed = {k: v for k, v in changes.items() if k in vars(plain_evidence)}
     others = {k: v for k, v in changes.items() if k not in changed}
@@ -86,20 +89,20 @@ def test_the_verdict_says_what_is_wrong(
 
 
 @pytest.mark.parametrize(
-    ("in_use", "advice"),
+    ("used", "advice"),
     [
-        (InUse(), "(--drop-slow 0.1,0.1 --align)"),
-        (InUse(slow=(0.1, 0.1)), "(--align)"),
-        (InUse(slow=(0.1, 0.05), align=True), "(--drop-slow 0.1,0.1)"),
-        (InUse(slow=(0.2, 0.1), align=True), "(--estimator wls)"),
-        (InUse(slow=(0.2, 0.1), align=True, weighted=True), None),
+        ({}, "(--drop-slow 0.1,0.1 --align)"),
+        ({"treatment": Treatment(slow=(0.1, 0.1))}, "(--align)"),
+        ({"treatment": Treatment(slow=(0.1, 0.05), align=True)}, "(--drop-slow 0.1,0.1)"),
+        ({"treatment": Treatment(slow=(0.2, 0.1), align=True)}, "(--estimator wls)"),
+        ({"treatment": Treatment(slow=(0.2, 0.1), align=True), "weighted": True}, None),
     ],
     ids=["nothing", "slow rows", "slower rows", "both", "both and weights"],
 )
-def test_the_advice_is_what_was_not_tried(in_use: InUse, advice: str | None) -> None:
+def test_the_advice_is_what_was_not_tried(used: dict[str, object], advice: str | None) -> None:
     """Velocities are advised with one digit: 0.1 for 0.14, and 0.1 given is then as advised."""
     moved = {"moved": np.eye(8)[1] * 4.0, "slow": np.array([0.14, 0.1])}
-    reason = verdict(evidence(in_use=in_use, **moved), SCARA).reasons[0]
+    reason = verdict(evidence(**used, **moved), SCARA).reasons[0]
     assert "Fv1 would move by up to 4.0 deviations" in reason
     assert reason.endswith(advice) if advice else "--" not in reason
 
@@ -108,7 +111,7 @@ def test_essential_parameters_are_not_advised_twice() -> None:
     poor = {"errors": np.array([0.01] * 3 + [0.5] * 5)}
     hint = "--essential leaves out what is not known"
     assert hint in verdict(evidence(**poor), SCARA).reasons
-    assert hint not in verdict(evidence(in_use=InUse(essential=True), **poor), SCARA).reasons
+    assert hint not in verdict(evidence(treatment=Treatment(essential=True), **poor), SCARA).reasons
 
 
 def test_a_parameter_of_zero_is_named_but_no_reason_for_doubt() -> None:

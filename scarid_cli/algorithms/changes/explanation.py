@@ -43,13 +43,15 @@ class Change:
     """Whether two logs of a robot differ by more than noise, and what explains it.
 
     `p_value` is the smallest of all tests, multiplied by their number `tests` (Bonferroni).
-    `explained` is the share of the difference that the explanations account for.
+    `explained` is the share of the difference that the explanations account for, and `left` the
+    p-value of the rest.
     """
 
     p_value: float
     tests: int
-    explanations: tuple[Explanation, ...]
-    explained: float
+    explanations: tuple[Explanation, ...] = ()
+    explained: float = 0.0
+    left: float = 0.0
 
     @property
     def changed(self) -> bool:
@@ -58,7 +60,8 @@ class Change:
     @property
     def complete(self) -> bool:
         """Whether the explanations account for the difference."""
-        return bool(self.explanations) and self.explained >= 1.0 - LEFT
+        enough = self.explained >= 1.0 - LEFT or self.left >= FALSE_ALARMS
+        return bool(self.explanations) and enough
 
 
 def change(difference: Difference, possible: list[Hypothesis]) -> Change:
@@ -67,13 +70,16 @@ def change(difference: Difference, possible: list[Hypothesis]) -> Change:
     log_ps = [whole.log_p, *(tested(difference, [h]).log_p for h in possible)]
     log_p = min(min(log_ps) + log(len(log_ps)), 0.0)
     if not log_p < log(FALSE_ALARMS):
-        return Change(exp(log_p), len(log_ps), (), 0.0)
+        return Change(exp(log_p), len(log_ps))
     chosen, rivals = _chosen(difference, possible, whole)
     if not chosen:
-        return Change(exp(log_p), len(log_ps), (), 0.0)
+        return Change(exp(log_p), len(log_ps))
     found = tested(difference, chosen)
-    share = min(found.raw / whole.raw, 1.0) if whole.raw > 0.0 else 0.0
-    return Change(exp(log_p), len(log_ps), _described(chosen, rivals, found), share)
+    rest, rank = max(whole.raw - found.raw, 0.0), max(whole.rank - found.rank, 1)
+    left = log_tail_f(rest / whole.excess / rank, rank, difference.freedom)
+    share = found.beyond_noise / (found.beyond_noise + max(rest - rank * whole.excess, 0.0))
+    explanations = _described(chosen, rivals, found)
+    return Change(exp(log_p), len(log_ps), explanations, share, exp(left))
 
 
 def _chosen(
@@ -86,7 +92,7 @@ def _chosen(
     while len(chosen) < MOST:
         rest = [h for h in possible if not any(h is c for c in chosen)]
         tests = [tested(difference, [*chosen, h]) for h in rest]
-        gains = [t.raw - penalty(difference, t.rank) for t in tests]
+        gains = [t.raw / t.excess - penalty(difference, t.rank) for t in tests]
         best = int(np.argmax(gains))
         if not _significant(difference, before, tests[best], whole, len(possible) + 1):
             break

@@ -65,6 +65,11 @@ class Test:
     amounts: Array
     covariance: Array
 
+    @property
+    def beyond_noise(self) -> float:
+        """The part of the statistic that noise alone would not give."""
+        return max(self.raw - self.rank * self.excess, 1.0)
+
     @classmethod
     def nothing(cls, k: int = 0) -> Test:
         """The test of no directions, or of directions that no log says anything about."""

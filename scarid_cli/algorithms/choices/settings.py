@@ -5,6 +5,7 @@ Every check raises a UsageFault whose message names the setting and its value.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import fields
 from math import inf
 from typing import Any
@@ -42,50 +43,43 @@ def names_of(method: Any) -> list[str]:
 
 def require_positive(settings: Any, *names: str) -> None:
     """Each named setting must be finite and above zero."""
-    for name in names:
-        if not 0.0 < getattr(settings, name) < inf:
-            raise UsageFault(f"{name} must be positive, not {getattr(settings, name):g}")
+    _require(settings, names, lambda x: 0.0 < x < inf, "be positive")
 
 
 def require_positive_or_infinite(settings: Any, *names: str) -> None:
     """Each named setting is a limit: it must be above zero, and may be infinite."""
-    for name in names:
-        if not getattr(settings, name) > 0.0:
-            raise UsageFault(f"{name} must be positive, not {getattr(settings, name):g}")
+    _require(settings, names, lambda x: x > 0.0, "be positive")
 
 
 def require_not_negative(settings: Any, *names: str) -> None:
     """Each named setting must be finite, and zero or above."""
-    for name in names:
-        if not 0.0 <= getattr(settings, name) < inf:
-            raise UsageFault(f"{name} must not be negative, not {getattr(settings, name):g}")
+    _require(settings, names, lambda x: 0.0 <= x < inf, "not be negative")
 
 
 def require_odd(settings: Any, *names: str) -> None:
     """Each named setting must be an odd number."""
-    for name in names:
-        if getattr(settings, name) % 2 != 1:
-            raise UsageFault(f"{name} must be odd, not {getattr(settings, name):g}")
+    _require(settings, names, lambda x: x % 2 == 1, "be odd")
 
 
 def require_between(settings: Any, low: int, high: int, *names: str) -> None:
     """Each named setting, declared `int`, must be from low to high."""
+    what = f"be a whole number from {low} to {high}"
+    _require(settings, names, lambda x: low <= x <= high, what)
+
+
+def require_above(settings: Any, low: float, *names: str) -> None:
+    """Each named setting must be finite and above low."""
+    _require(settings, names, lambda x: low < x < inf, f"be above {low:g}")
+
+
+def _require(settings: Any, names: Sequence[str], fits: Callable[[float], bool], what: str) -> None:
     for name in names:
-        if not low <= getattr(settings, name) <= high:
-            raise UsageFault(
-                f"{name} must be a whole number from {low} to {high}, "
-                f"not {getattr(settings, name):g}"
-            )
+        value = getattr(settings, name)
+        if not fits(value):
+            raise UsageFault(f"{name} must {what}, not {value:g}")
 
 
 def require_below_nyquist(cutoff: float, h: float) -> None:
     """The cutoff [Hz] must be below half the rate of a signal sampled every h [s]."""
     if cutoff * h >= 0.5:
         raise UsageFault(f"cutoff {cutoff:g} Hz is not below half the rate, {0.5 / h:g} Hz")
-
-
-def require_above(settings: Any, low: float, *names: str) -> None:
-    """Each named setting must be finite and above low."""
-    for name in names:
-        if not low < getattr(settings, name) < inf:
-            raise UsageFault(f"{name} must be above {low:g}, not {getattr(settings, name):g}")

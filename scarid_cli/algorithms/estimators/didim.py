@@ -10,17 +10,15 @@ controller of the robot. All rows are held in memory. No settings.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.plants.following import simulated
-from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator
+from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, RobotEstimator
 from scarid_cli.algorithms.regression.rows import Rows, joined
-from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.errors import UsageFault
 
 ITERATIONS = 20
@@ -28,24 +26,18 @@ CONVERGED = 1e-3  # standard errors
 
 
 @dataclass(frozen=True)
-class Estimator(HoldingEstimator):
-    robot: Robot | None = field(default=None, metadata=GIVEN)
-
+class Estimator(RobotEstimator, HoldingEstimator):
     REFERENCE: ClassVar[bool] = True
     FOLLOWS: ClassVar[bool] = True
     ALIGNS: ClassVar[bool] = False
 
-    def for_robot(self, robot: Robot) -> Estimator:
-        return replace(self, robot=robot)
-
     def fit(self, state: list[Rows]) -> Estimation:
         """Start from the motion of the reference, and end with the simulated motion."""
-        assert self.robot is not None
         logged = joined(state)
-        found = _weighted(logged)
+        found = wls.Estimator().of_rows(logged)
         for _ in range(ITERATIONS):
             rows = simulated(self.robot, found.fit.estimates, logged)
-            before, found = found, _weighted(rows)
+            before, found = found, wls.Estimator().of_rows(rows)
             moved = np.abs(found.fit.estimates - before.fit.estimates)
             if np.all(moved <= CONVERGED * found.fit.standard_errors()):
                 assert found.scores is not None
@@ -55,8 +47,3 @@ class Estimator(HoldingEstimator):
             f"description, {self.robot.name} does not follow the reference as the log does; "
             "correct [control], or use --estimator wls on the measured motion"
         )
-
-
-def _weighted(rows: Rows) -> Estimation:
-    estimator = wls.Estimator()
-    return estimator.fit(estimator.step(estimator.init(np.zeros(rows.W.shape[2])), rows)[0])

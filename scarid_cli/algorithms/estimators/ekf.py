@@ -12,13 +12,13 @@ smoothing = 0.05: velocity over which Coulomb friction changes its sign [rad/s o
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from dataclasses import dataclass
+from typing import ClassVar, Self
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.settings import GIVEN, require_positive
-from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
+from scarid_cli.algorithms.choices.settings import require_positive
+from scarid_cli.algorithms.regression.estimation import Estimation, RobotEstimator
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
@@ -38,12 +38,10 @@ class FilterState:
 
 
 @dataclass(frozen=True)
-class Estimator(BaseEstimator):
+class Estimator(RobotEstimator):
     spread: float = 0.5
     acceleration_noise: float = 2.0
     smoothing: float = 0.05
-    robot: Robot | None = field(default=None, metadata=GIVEN)
-
     RECURSIVE: ClassVar[bool] = True
     INITIAL: ClassVar[bool] = True
     ALIGNS: ClassVar[bool] = False
@@ -51,13 +49,12 @@ class Estimator(BaseEstimator):
     def check(self) -> None:
         require_positive(self, "spread", "acceleration_noise", "smoothing")
 
-    def for_robot(self, robot: Robot) -> Estimator:
-        return replace(self, robot=robot.smoothed(self.smoothing))
+    def for_robot(self, robot: Robot) -> Self:
+        return super().for_robot(robot.smoothed(self.smoothing))
 
     def init(self, initial: Array) -> FilterState:
         if not np.any(initial):
             raise UsageFault("ekf needs initial parameters: give --initial apriori, or a table")
-        assert self.robot is not None
         n = len(self.robot.joints)
         deviations = self.spread * np.where(initial == 0.0, 0.1, np.abs(initial))
         # Velocities are not known at the start: nan until the first sample.
@@ -67,7 +64,6 @@ class Estimator(BaseEstimator):
     def step(
         self, state: FilterState, rows: Rows, *, trace: bool = False
     ) -> tuple[FilterState, Array]:
-        assert self.robot is not None
         n = len(self.robot.joints)
         noise = self._position_noise()
         x: Array = state.x.copy()
@@ -86,7 +82,6 @@ class Estimator(BaseEstimator):
         return FilterState(x, covariance), estimates
 
     def fit(self, state: FilterState) -> Estimation:
-        assert self.robot is not None
         n = 2 * len(self.robot.joints)
         if not np.isfinite(state.x).all():
             raise UsageFault(
@@ -103,14 +98,12 @@ class Estimator(BaseEstimator):
 
     def _position_noise(self) -> Array:
         """The variance of each position, which an encoder rounds."""
-        assert self.robot is not None
         steps = np.array([joint.encoder_resolution for joint in self.robot.joints])
         variance: Array = np.maximum(steps / np.sqrt(12.0), TINY) ** 2
         return variance
 
     def _predicted(self, x: Array, covariance: Array, tau: Array, h: float) -> tuple[Array, Array]:
         """The state one period later, from the model's acceleration and its derivatives."""
-        assert self.robot is not None
         n = len(self.robot.joints)
         with np.errstate(all="ignore"):
             acceleration, slope = self._acceleration(x, tau)
@@ -130,7 +123,6 @@ class Estimator(BaseEstimator):
 
     def _acceleration(self, x: Array, tau: Array) -> tuple[Array, Array]:
         """The model's acceleration (joints), and its derivatives by the state (joints, states)."""
-        assert self.robot is not None
         n = len(self.robot.joints)
         theta = x[2 * n :]
         # The state, then each position and velocity a step forwards, then a step backwards.

@@ -9,15 +9,14 @@ held in memory. No settings.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.plants.following import simulated
-from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator
+from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, RobotEstimator
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.algorithms.robots.description import Robot
@@ -29,19 +28,17 @@ ITERATIONS = 10
 
 
 @dataclass(frozen=True)
-class Estimator(HoldingEstimator):
-    robot: Robot | None = field(default=None, metadata=GIVEN)
-
+class Estimator(RobotEstimator, HoldingEstimator):
     REFERENCE: ClassVar[bool] = True
     ALIGNS: ClassVar[bool] = False
 
-    def for_robot(self, robot: Robot) -> Estimator:
+    def for_robot(self, robot: Robot) -> Self:
         if robot.control is None:
             raise UsageFault(
                 f"iv: robot {robot.name} has no controller to simulate it with; add [control] to "
                 "its description"
             )
-        return replace(self, robot=robot)
+        return super().for_robot(robot)
 
     def step(
         self, state: list[Rows], rows: Rows, *, trace: bool = False
@@ -54,10 +51,8 @@ class Estimator(HoldingEstimator):
         return super().step(state, rows, trace=trace)
 
     def fit(self, state: list[Rows]) -> Estimation:
-        assert self.robot is not None
         rows = joined(state)
-        start = wls.Estimator()
-        plain = start.fit(start.step(start.init(np.zeros(rows.W.shape[2])), rows)[0])
+        plain = wls.Estimator().of_rows(rows)
         theta = plain.fit.estimates
         for _ in range(ITERATIONS):
             instruments = simulated(self.robot, theta, rows).W

@@ -9,13 +9,17 @@ rows are held in memory. No settings.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.settings import GIVEN
-from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, Scores
+from scarid_cli.algorithms.regression.estimation import (
+    Estimation,
+    HoldingEstimator,
+    RobotEstimator,
+    Scores,
+)
 from scarid_cli.algorithms.regression.information import (
     NotIdentifiableError,
     inverse_deviations,
@@ -33,21 +37,18 @@ FADED = 3.0  # velocities after which this friction has faded to 1e-4: no row wo
 
 
 @dataclass(frozen=True)
-class Estimator(HoldingEstimator):
-    robot: Robot | None = field(default=None, metadata=GIVEN)
-
+class Estimator(RobotEstimator, HoldingEstimator):
     ALIGNS: ClassVar[bool] = False
 
-    def for_robot(self, robot: Robot) -> Estimator:
+    def for_robot(self, robot: Robot) -> Self:
         if not any(isinstance(p.term, Coulomb) for p in robot.parameters):
             raise UsageFault(
                 f"separable: robot {robot.name} has no joint with Coulomb friction; use another "
                 "estimator"
             )
-        return replace(self, robot=robot)
+        return super().for_robot(robot)
 
     def fit(self, state: list[Rows]) -> Estimation:
-        assert self.robot is not None
         joints = [p.term.joint for p in self.robot.parameters if isinstance(p.term, Coulomb)]
         units = [self.robot.joints[j - 1] for j in joints]
         added = (

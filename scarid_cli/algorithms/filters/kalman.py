@@ -99,11 +99,6 @@ def filtered(state: KalmanState, x: Array) -> tuple[KalmanState, Array]:
     return state, rows
 
 
-def derivatives(rows: Array) -> tuple[Array, Array]:
-    """The velocities and accelerations in filtered states (rows, m)."""
-    return np.ascontiguousarray(rows[:, 1]), np.ascontiguousarray(rows[:, 2])
-
-
 @dataclass(frozen=True)
 class Records:
     """What a smoother needs of each row of the filter.

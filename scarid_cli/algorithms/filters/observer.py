@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.kalman import KalmanState, derivatives, filtered
+from scarid_cli.algorithms.filters.kalman import KalmanState, filtered
 from scarid_cli.algorithms.processes.matching import CentralDifferences
 from scarid_cli.algorithms.processes.method import Matching, Method
 from scarid_cli.algorithms.processes.process import Causal
@@ -32,7 +32,7 @@ class ObserverMethod(Causal, Method):
 
     def step(self, state: KalmanState, x: Array) -> tuple[KalmanState, tuple[Array, ...]]:
         state, rows = filtered(state, x)
-        return state, derivatives(rows)
+        return state, tuple(np.ascontiguousarray(rows[:, 1:3].T))
 
     def matched(self) -> CentralDifferences:
         return CentralDifferences(ObserverLowpass(self), ObserverLowpass(self.ungated()))

@@ -19,13 +19,6 @@ class SectionState:
     values: Array
     sections: Array
 
-    @classmethod
-    def at_rest(cls, sections: Array, x: float) -> SectionState:
-        """Sections, each of unit gain at rest, that have always seen x."""
-        _, b1, b2, a1, a2 = sections.T
-        second = (b2 - a2) * x
-        return cls(np.column_stack(((b1 - a1) * x + second, second)), sections)
-
 
 class SectionFilter(Causal):
     """A causal low-pass of second-order sections, at rest at the first sample."""
@@ -35,7 +28,10 @@ class SectionFilter(Causal):
         """Rows b0, b1, b2, a1, a2 (a0 = 1), each section of unit gain at rest; h [s]."""
 
     def init(self, x: float, h: float) -> SectionState:
-        return SectionState.at_rest(self.sections(h), x)
+        sections = self.sections(h)
+        _, b1, b2, a1, a2 = sections.T
+        second = (b2 - a2) * x
+        return SectionState(np.column_stack(((b1 - a1) * x + second, second)), sections)
 
     def step(self, state: SectionState, x: Array) -> tuple[SectionState, tuple[Array, ...]]:
         values = state.values.copy()

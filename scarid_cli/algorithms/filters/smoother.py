@@ -19,15 +19,14 @@ from scarid_cli.arrays import Array
 
 @dataclass(frozen=True)
 class SmootherLowpassState:
-    """The filter, and its low-passed predictions and innovations of the last rows.
+    """The filter, and its low-passed predictions and innovations of the last rows (`held`).
 
     readouts: the weights that read either from the filter's state. taps: what the innovations
     weigh in the smoothed acceleration. drop: the number of outputs that belong to no row yet.
     """
 
     observer: KalmanState
-    predictions: Array
-    innovations: Array
+    held: tuple[Array, ...]
     readouts: tuple[Array, Array]
     taps: Array
     drop: int
@@ -57,8 +56,8 @@ class SmootherLowpass(Process):
         # Of unit gain, for a model with damping does not quite follow a constant acceleration.
         gain = prediction[0] + innovation[0] * taps.sum()
         readouts = (prediction / gain, innovation / gain)
-        predictions, innovations = (np.full(lag, u[0] * x) for u in readouts)
-        return SmootherLowpassState(observer, predictions, innovations, readouts, taps, lag)
+        held = tuple(np.full(lag, u[0] * x) for u in readouts)
+        return SmootherLowpassState(observer, held, readouts, taps, lag)
 
     def step(
         self, state: SmootherLowpassState, x: Array
@@ -66,17 +65,12 @@ class SmootherLowpass(Process):
         observer, rows = filtered(state.observer, x)
         predictions, innovations = (
             np.concatenate((held, read(u, rows)))
-            for held, u in zip((state.predictions, state.innovations), state.readouts, strict=True)
+            for held, u in zip(state.held, state.readouts, strict=True)
         )
         y = predictions[: len(x)] + convolved(innovations, state.taps)
-        after = replace(
-            state,
-            observer=observer,
-            predictions=predictions[len(x) :],
-            innovations=innovations[len(x) :],
-            drop=max(state.drop - len(x), 0),
-        )
-        return after, (y[state.drop :],)
+        held = (predictions[len(x) :], innovations[len(x) :])
+        drop = max(state.drop - len(x), 0)
+        return replace(state, observer=observer, held=held, drop=drop), (y[state.drop :],)
 
     def finish(self, state: SmootherLowpassState) -> tuple[Array, ...]:
         standing = np.full(len(state.taps) - 1, state.observer.x[0])

@@ -9,12 +9,14 @@ the robot is integrated by the Runge-Kutta method of fourth order, and Coulomb f
 from __future__ import annotations
 
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.planar import HORIZONTAL
+from scarid_cli.algorithms.sensors.motion import Encoder
+from scarid_cli.algorithms.sensors.noise import GaussMarkov, NoiseState, Source
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.kernels import plant
@@ -30,11 +32,15 @@ class LoopState:
     values: Array
     position_noise: np.random.Generator
     torque_noise: np.random.Generator
+    coloured: NoiseState | None = None
 
 
 @dataclass(frozen=True)
 class LoopLog:
-    """The signals at each tick of the controller: arrays (joints, ticks), in SI units."""
+    """The signals at each tick of the controller: arrays (joints, ticks), in SI units.
+
+    `q` and `tau` are measured; `q_noise` and `tau_noise` are the noise in them.
+    """
 
     q: Array
     tau: Array
@@ -42,6 +48,8 @@ class LoopLog:
     dq_true: Array
     ddq_true: Array
     tau_true: Array
+    q_noise: Array
+    tau_noise: Array
 
 
 class DivergedError(ValueError):
@@ -57,7 +65,8 @@ class ClosedLoop:
     """A robot with its controller and sensors; arrays have one value per joint.
 
     Gains [N m/rad, N m s/rad, N m/(rad s)], rates and the cut-off [Hz], resolution [rad or m], and
-    noise as standard deviations [rad or m, N m or N].
+    noise as standard deviations [rad or m, N m or N]. `eccentricity` has the amplitude [rad or m],
+    turns and phase [rad] of the encoders (see `Encoder`), `coloured` further noise of the position.
     """
 
     robot: Robot
@@ -71,6 +80,8 @@ class ClosedLoop:
     seed: int
     control_rate: float = 1000.0
     substeps: int = 4
+    eccentricity: tuple[Array, Array, Array] | None = None
+    coloured: GaussMarkov | None = None
 
     def __post_init__(self) -> None:
         if not self.control_rate > 0.0 or self.substeps < 1:
@@ -82,16 +93,21 @@ class ClosedLoop:
     def init(self, q: Array) -> LoopState:
         """The state at rest at q (joints) [rad or m]."""
         position_seed, torque_seed = np.random.SeedSequence(self.seed).spawn(2)
-        q = padded(q)
-        resolution = padded(self.encoder_resolution)
-        steps = np.where(resolution > 0.0, resolution, 1.0)
         # Rounded as the kernel does, or the first velocity would be that of a jump.
-        reading = np.where(resolution > 0.0, np.floor(q / steps + 0.5) * steps, q)
+        reading = padded(self.encoder.reading(q[:, None], np.zeros((len(q), 1)))[:, 0])
+        source = Source.named(self.seed, "coloured-position-noise")
         return LoopState(
-            np.concatenate((q, np.zeros(2), reading, np.zeros(4))),
+            np.concatenate((padded(q), np.zeros(2), reading, np.zeros(4))),
             np.random.default_rng(position_seed),
             np.random.default_rng(torque_seed),
+            self.coloured.init(source) if self.coloured else None,
         )
+
+    @property
+    def encoder(self) -> Encoder:
+        """The encoders of the joints."""
+        none = np.zeros_like(self.encoder_resolution)
+        return Encoder(self.encoder_resolution, *(self.eccentricity or (none, none, none)))
 
     def step(self, state: LoopState, q_ref: Array, dq_ref: Array) -> tuple[LoopState, LoopLog]:
         """The state and the signals after the ticks of a reference (joints, ticks)."""
@@ -103,6 +119,10 @@ class ClosedLoop:
         noise = np.zeros((ticks, JOINTS))
         noise[:, :joints] = state.position_noise.standard_normal((ticks, joints))
         noise[:, :joints] *= self.position_noise
+        if self.coloured and state.coloured:
+            after, coloured = self.coloured.step(state.coloured, ticks)
+            state = replace(state, coloured=after)
+            noise[:, :joints] += coloured.T
         log = np.empty((ticks, 10))
         done = plant.run(
             reference,
@@ -117,9 +137,10 @@ class ClosedLoop:
         if done < ticks:
             raise DivergedError(done)
         torque_noise = state.torque_noise.standard_normal((ticks, joints)) * self.torque_noise
+        noises = np.ascontiguousarray(noise[:, :joints].T), np.ascontiguousarray(torque_noise.T)
         columns = [np.ascontiguousarray(log[:, i : i + joints].T) for i in range(0, 10, JOINTS)]
         q, tau, q_true, dq_true, ddq_true = columns
-        return state, LoopLog(q, tau + torque_noise.T, q_true, dq_true, ddq_true, tau)
+        return state, LoopLog(q, tau + torque_noise.T, q_true, dq_true, ddq_true, tau, *noises)
 
     def _control(self) -> Array:
         limits = [min(joint.torque_limit, LARGE) for joint in self.robot.joints]
@@ -127,7 +148,9 @@ class ClosedLoop:
         smoothing = 0.0
         if self.velocity_cutoff > 0.0:
             smoothing = np.exp(-2.0 * np.pi * self.velocity_cutoff / self.control_rate)
-        return np.concatenate((*rows, padded(self.encoder_resolution), [smoothing]))
+        encoder = self.encoder
+        eccentricity = map(padded, (encoder.amplitude, encoder.turns, encoder.phase))
+        return np.concatenate((*rows, padded(encoder.resolution), [smoothing], *eccentricity))
 
 
 def padded(row: Array) -> Array:

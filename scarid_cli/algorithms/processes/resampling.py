@@ -20,7 +20,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Clock:
-    """Statistics of a log's clock: the number of intervals, their sums and extremes [s].
+    """Statistics of a log's clock: the number of intervals, their sums and the longest [s].
 
     `repeated` counts the rows left out because their time repeats. `gaps` counts the intervals that
     split the record and `missing` is their sum [s]; the other numbers are without them.
@@ -29,7 +29,6 @@ class Clock:
     intervals: int = 0
     total: float = 0.0
     squares: float = 0.0
-    shortest: float = np.inf
     longest: float = 0.0
     repeated: int = 0
     gaps: int = 0
@@ -47,7 +46,6 @@ class Clock:
             # Summed one by one, so that batches do not change a bit.
             total=float(np.cumsum(np.append(self.total, steps))[-1]),
             squares=float(np.cumsum(np.append(self.squares, steps * steps))[-1]),
-            shortest=min(self.shortest, float(steps.min())),
             longest=max(self.longest, float(steps.max())),
         )
 
@@ -88,14 +86,14 @@ class Resampler:
 
     period: float
 
-    def init(self, t: float, x: Array) -> ResamplerState:
-        """The state at the first sample: its time [s] and values (columns)."""
-        return ResamplerState(np.array([t]), x[:, None], t)
+    def init(self, t: float, x: Array, before: ResamplerState | None = None) -> ResamplerState:
+        """The state at the first sample of a segment: its time [s] and values (columns).
 
-    def after_gap(self, state: ResamplerState, t: float, x: Array) -> ResamplerState:
-        """The state at the first sample after a gap; rows keep the times they would have had."""
-        row = max(state.row, int(np.ceil((t - state.start) / self.period - 1e-9)))
-        return ResamplerState(np.array([t]), x[:, None], state.start, row)
+        Rows keep the times that they would have had without the gap after the state `before`.
+        """
+        start, row = (before.start, before.row) if before else (t, 0)
+        row = max(row, int(np.ceil((t - start) / self.period - 1e-9)))
+        return ResamplerState(np.array([t]), x[:, None], start, row)
 
     def step(
         self, state: ResamplerState, t: Array, x: Array

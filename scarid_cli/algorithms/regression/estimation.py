@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.settings import Validated
+from scarid_cli.algorithms.choices.settings import GIVEN, Validated
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
@@ -86,6 +86,27 @@ class BaseEstimator(Validated, ABC):
     @abstractmethod
     def fit(self, state: Any) -> Estimation:
         """The result from all rows so far."""
+
+    def of_rows(self, rows: Rows, initial: Array | None = None) -> Estimation:
+        """The result from these rows alone; the initial parameters are zeros by default."""
+        start = np.zeros(rows.W.shape[2]) if initial is None else initial
+        return self.fit(self.step(self.init(start), rows)[0])
+
+
+@dataclass(frozen=True)
+class RobotEstimator(BaseEstimator):
+    """An estimator that needs the robot itself, which `for_robot` gives it."""
+
+    given: Robot | None = field(default=None, metadata=GIVEN)
+
+    def for_robot(self, robot: Robot) -> Self:
+        return replace(self, given=robot)
+
+    @property
+    def robot(self) -> Robot:
+        """The robot that was given."""
+        assert self.given is not None
+        return self.given
 
 
 class HoldingEstimator(BaseEstimator):

@@ -35,24 +35,12 @@ class Rows:
     def samples(self) -> int:
         return len(self.W)
 
-    def part(self, chosen: slice) -> Rows:
-        """The rows of a slice of the samples."""
+    def part(self, chosen: slice | Numbers) -> Rows:
+        """The rows of some samples: of a slice, or copies of those at these indices."""
         return Rows(
             np.ascontiguousarray(self.W[chosen]),
             np.ascontiguousarray(self.y[chosen]),
             np.ascontiguousarray(self.scales[chosen]),
-            self.at[chosen],
-            self.h,
-            self.motion[:, :, chosen],
-            None if self.reference is None else self.reference[:, :, chosen],
-        )
-
-    def taken(self, chosen: Numbers) -> Rows:
-        """The rows of the samples at these indices, as copies."""
-        return Rows(
-            self.W[chosen],
-            self.y[chosen],
-            self.scales[chosen],
             self.at[chosen],
             self.h,
             np.ascontiguousarray(self.motion[:, :, chosen]),

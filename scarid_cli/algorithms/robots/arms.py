@@ -10,6 +10,12 @@ terms = ["viscous", "coulomb"]  # from TERMS; or with a priori values: { viscous
 
 [[coupling]]
 joints = [5, 6]                 # the motor of joint 6 also turns with joint 5
+
+[[capsule]]                     # what must not touch another link, beside the URDF's own shapes
+link = "forearm"                # in the URDF
+from = [0.0, 0.0, 0.0]          # m, in the frame of the link
+to = [0.3, 0.0, 0.0]            # left out for a sphere
+radius = 0.06                   # m
 """
 
 from __future__ import annotations
@@ -18,8 +24,10 @@ from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
+from scarid_cli.algorithms.imperfections.registry import imperfections_of
 from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.base import with_base_parameters
+from scarid_cli.algorithms.robots.capsules import capsule_of
 from scarid_cli.algorithms.robots.coupled import COUPLED_TERMS
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.joints import JOINT_UNITS, Joint, joint_of
@@ -40,7 +48,7 @@ TERMS: dict[str, type[AxisTerm]] = {
     if _complete(term)
 }
 DEFAULT_TERMS = ("inertia", "viscous", "coulomb", "offset")
-KEYS = ("title", "urdf", "gravity", "joint", "coupling", "log")
+KEYS = ("title", "urdf", "gravity", "joint", "coupling", "capsule", "log", "imperfections")
 
 
 def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
@@ -51,7 +59,10 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
         str(folder / values.text("urdf", document["urdf"])),
         gravity=values.row("gravity", document.get("gravity", list(GRAVITY)), 3),
         joints=_names(entries),
+        added=tuple(map(capsule_of, values.tables("capsule", document.get("capsule", [])))),
     )
+    for capsule in body.added:
+        values.choice("link of a [[capsule]]", capsule.link, body.frames)
     found = body.joints_found
     entries = entries or [{} for _ in found]
     if len(entries) != len(found):
@@ -75,6 +86,7 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
             control=None,
             body=body,
             log=log_of(document, len(found)),
+            imperfections=imperfections_of(document, len(found)),
         )
     )
 

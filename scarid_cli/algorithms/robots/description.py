@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.logs import LogFormat
-from scarid_cli.algorithms.robots.terms import Coulomb, JointMotion, Stribeck, Term
+from scarid_cli.algorithms.robots.terms import Coulomb, JointMotion, StandardTerm, Stribeck, Term
 from scarid_cli.arrays import Array
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.rigid import Body
+
+BLOCK = 512  # samples whose columns are written together, so that they stay in the cache
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,7 @@ class Robot:
     control: Control | None
     body: Body | None = None
     log: LogFormat | None = None
+    imperfections: dict[str, tuple[float, ...]] = field(default_factory=dict)  # see simulate
 
     @property
     def names(self) -> list[str]:
@@ -114,11 +117,23 @@ class Robot:
         """
         joints, samples = q.shape
         W = np.zeros((samples, joints, len(self.parameters)))
-        motion = JointMotion(q, dq, ddq, self.body.columns(q, dq, ddq) if self.body else None)
+        for start in range(0, samples, BLOCK):
+            part = slice(start, start + BLOCK)
+            self._fill(W[part], JointMotion(q[:, part], dq[:, part], ddq[:, part]))
+        return W
+
+    def _fill(self, W: Array, motion: JointMotion) -> None:
+        """Write the columns of all parameters to W, which is zero."""
+        rigid = {}
         for index, parameter in enumerate(self.parameters):
+            if isinstance(parameter.term, StandardTerm):
+                rigid[index] = parameter.term.place
+                continue
             for joint, values in parameter.term.column(motion).items():
                 W[:, joint, index] = values
-        return W
+        if self.body:
+            columns = self.body.columns(motion.q, motion.dq, motion.ddq)
+            W[:, :, list(rigid)] = columns.take(list(rigid.values()), axis=2)
 
     def torques(self, W: Array, theta: Array) -> Array:
         """The torques W theta (joints, samples) [N m or N].

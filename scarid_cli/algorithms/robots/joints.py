@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import inf
 from typing import Any
 
@@ -10,13 +10,6 @@ from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.logs import AXIS
 
 JOINT_UNITS = {"revolute": ("rad", "N m"), "prismatic": ("m", "N")}
-NUMERIC_KEYS = (
-    "velocity_limit",
-    "acceleration_limit",
-    "torque_limit",
-    "encoder_resolution",
-    "torque_noise",
-)
 
 
 @dataclass(frozen=True)
@@ -45,6 +38,10 @@ class Joint:
     def torque_unit(self) -> str:
         """The unit of the torque or force."""
         return JOINT_UNITS[self.type][1]
+
+
+# The keys of [[joint]] whose values are numbers.
+NUMERIC_KEYS = [f.name for f in fields(Joint) if f.name not in ("type", "lower", "upper")]
 
 
 def joint_of(entry: dict[str, Any], known: Joint | None = None) -> Joint:

@@ -95,7 +95,5 @@ class MX2(PlanarTerm):
         return {joint: self.length * inertial[joint] + weight for joint in (0, 1)}
 
 
-PLANAR_TERMS: dict[str, type[PlanarTerm]] = {
-    term.NAME: term for term in (ZZ1R, ZZ2, L1MX2, L1MY2, MX1R, MX2)
-}
+PLANAR_TERMS = {term.NAME: term for term in PlanarTerm.__subclasses__()}
 HORIZONTAL = ("ZZ1R", "ZZ2", "L1MX2", "L1MY2")  # all that an arm without gravity has

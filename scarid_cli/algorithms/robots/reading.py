@@ -7,6 +7,7 @@ from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
+from scarid_cli.algorithms.imperfections.registry import imperfections_of
 from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.description import Control, Parameter, Robot
 from scarid_cli.algorithms.robots.joints import joint_of
@@ -18,6 +19,7 @@ from scarid_cli.errors import UsageFault
 ROBOTS = Path(__file__).parent
 NAMED_TERMS: dict[str, type[Term]] = {**AXIS_TERMS, **PLANAR_TERMS}  # that [[parameter]] may name
 DEFAULT_ROBOT = "scara2"
+KEYS = ("title", "joint", "parameter", "control", "coupling", "log", "imperfections")
 
 
 def built_in() -> list[str]:
@@ -51,7 +53,7 @@ def load(name: str) -> Robot:
 
 
 def _robot(name: str, document: dict[str, Any]) -> Robot:
-    values.only("a robot", document, ("title", "joint", "parameter", "control", "coupling", "log"))
+    values.only("a robot", document, KEYS)
     joints = tuple(joint_of(entry) for entry in values.tables("joint", document["joint"]))
     terms = values.tables("parameter", document["parameter"])
     parameters = tuple(_parameter(entry, len(joints)) for entry in terms)
@@ -67,6 +69,7 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
         parameters=parameters,
         control=_control(control, len(joints)) if control else None,
         log=log_of(document, len(joints)),
+        imperfections=imperfections_of(document, len(joints)),
     )
 
 

@@ -1,4 +1,4 @@
-"""The rigid-body part of the regressor of a robot with a URDF, by Pinocchio (the extra `urdf`).
+"""The rigid bodies of a robot with a URDF, which Pinocchio reads (the extra `urdf`).
 
 Each link has ten standard parameters, in the order of SYMBOLS: moments and products of inertia in
 the frame of the link [kg m2], first moments [kg m], mass [kg].
@@ -6,16 +6,20 @@ the frame of the link [kg m2], first moments [kg m], mass [kg].
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from math import inf
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
-from scarid_cli.algorithms.robots.chain import Chain, named, serial
+from scarid_cli.algorithms.robots import newton_euler
+from scarid_cli.algorithms.robots.axes import Chain, named, serial
+from scarid_cli.algorithms.robots.capsules import Capsule, capsules_of
 from scarid_cli.algorithms.robots.joints import Joint
+from scarid_cli.algorithms.robots.pose import Points
 from scarid_cli.algorithms.robots.tree import ENDLESS, link, read
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -38,7 +42,7 @@ def _chain(path: str, wanted: tuple[str, ...]) -> Chain:
                 f"{path}: no joints {', '.join(wanted)} in this order; it has {', '.join(names)}"
             )
         return named(names, wanted)
-    chain = serial(names, list(tree.model.parents)[1:], tree.drivers, tree.frames)
+    chain = serial(names, list(tree.model.parents)[1:], tree.drivers, set(tree.frames.values()))
     if not chain.axes:
         raise UsageFault(
             f"{path}: the moving joints branch at the base, so that it is not clear which are the "
@@ -77,12 +81,33 @@ def _interval(lower: float, upper: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
+class Frame:
+    """A link as it is fixed to an axis (from 1; 0 is the base).
+
+    `turn` (3, 3) and `origin` (3) [m] are in the frame of the axis.
+    """
+
+    axis: int
+    turn: Array
+    origin: Array
+
+    def carried(self, place: Sequence[float]) -> Array:
+        """A place in the frame of the link (3), in the frame of the axis [m]."""
+        return np.asarray(self.origin + self.turn @ np.array(place))
+
+
+@dataclass(frozen=True)
 class Body:
-    """A serial arm as a URDF describes it; `joints` names its axes, or leaves them to chain.py."""
+    """A serial arm as a URDF describes it.
+
+    `joints` names its axes, or leaves them to axes.py; `added` are capsules of its links beside
+    those of the URDF.
+    """
 
     path: str
     gravity: tuple[float, ...] = GRAVITY
     joints: tuple[str, ...] = ()
+    added: tuple[Capsule, ...] = ()
 
     @property
     def model(self) -> Any:
@@ -106,7 +131,7 @@ class Body:
             for name, interval, velocity, torque in limits
         ]
 
-    @property
+    @cached_property
     def axes(self) -> Array:
         """The geometry of the axes (joints, 16), as mechanism.Mechanism describes it."""
         model = self.model
@@ -155,19 +180,47 @@ class Body:
             found.append((own, [link for link in together[i] if link != own]))
         return found
 
+    @cached_property
+    def frames(self) -> dict[str, Frame]:
+        """Where each link is."""
+        return {
+            frame.name: Frame(
+                frame.parentJoint,
+                frame.placement.rotation.copy(),
+                frame.placement.translation.copy(),
+            )
+            for frame in self.model.frames
+            if str(frame.type) == "BODY"
+        }
+
+    @property
+    def tool(self) -> str:
+        """The link that is the tool frame: the last one that is fixed to the last axis.
+
+        Massless frames come before links with a mass.
+        """
+        tree = read(self.path)
+        last = tree.model.getJointId(self.joint_names[-1])
+        tips = [name for name, number in tree.frames.items() if number == last]
+        fixed = [
+            f.name for f in tree.model.frames if f.parentJoint == last and f.name in self.frames
+        ]
+        return (tips or fixed)[-1]
+
+    @property
+    def capsules(self) -> list[Capsule]:
+        """The capsules of the links, those of the URDF first."""
+        return [*capsules_of(self.path), *self.added]
+
+    def points(self, link: str, places: Sequence[Sequence[float]] = ((0.0, 0.0, 0.0),)) -> Points:
+        """Points in the frame of a link [m], by default its origin."""
+        frame = self.frames[link]
+        numbers = np.full(len(places), frame.axis)
+        return Points(numbers, np.array([frame.carried(place) for place in places]))
+
     def columns(self, q: Array, dq: Array, ddq: Array) -> Array:
         """The regressor of the standard parameters (samples, joints, 10 joints).
 
         q, dq and ddq are (joints, samples), in rad or m, and per s and s2.
         """
-        import pinocchio
-
-        model = self.model
-        data = model.createData()
-        joints, samples = q.shape
-        W = np.empty((samples, joints, 10 * joints))
-        order = (10 * np.arange(joints)[:, None] + PINOCCHIO).ravel()
-        for k in range(samples):
-            Y = pinocchio.computeJointTorqueRegressor(model, data, q[:, k], dq[:, k], ddq[:, k])
-            W[k] = Y.reshape(joints, -1)[:, order]
-        return W
+        return newton_euler.regressor(self.axes, np.array(self.gravity), q, dq, ddq)

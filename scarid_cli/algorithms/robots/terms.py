@@ -1,7 +1,6 @@
 """The terms of a robot's torques: each is one column of the regressor (docs/theory.md).
 
-A new friction term is a subclass of `AxisTerm` and its entry in `AXIS_TERMS`: descriptions with and
-without a URDF then take it.
+A new friction term is a subclass of `AxisTerm`: descriptions with and without a URDF then take it.
 """
 
 from __future__ import annotations
@@ -23,16 +22,11 @@ TORQUE = ("N m", "N")
 
 @dataclass(frozen=True)
 class JointMotion:
-    """Positions, velocities and accelerations, each (joints, samples) in rad or m, s.
-
-    `rigid` is the regressor of the standard parameters (samples, joints, standard parameters), for
-    robots with a URDF.
-    """
+    """Positions, velocities and accelerations, each (joints, samples) in rad or m, s."""
 
     q: Array
     dq: Array
     ddq: Array
-    rigid: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -59,7 +53,10 @@ class Term:
 
 @dataclass(frozen=True)
 class StandardTerm(Term):
-    """One of the ten standard parameters of each link of a URDF, at its place among all of them."""
+    """One of the ten standard parameters of each link of a URDF, at its place among all of them.
+
+    Its column is that of Body.columns.
+    """
 
     NAME = "standard"
     place: int
@@ -67,10 +64,6 @@ class StandardTerm(Term):
     @property
     def joints(self) -> tuple[int, ...]:
         return ()
-
-    def column(self, samples: JointMotion) -> Column:
-        assert samples.rigid is not None
-        return dict(enumerate(samples.rigid[:, :, self.place].T))
 
 
 # Terms of one axis
@@ -206,18 +199,5 @@ class Mass(AxisTerm):
         return {self.joint - 1: samples.ddq[self.joint - 1]}
 
 
-# The terms that [[parameter]] may name; those of the planar arm are in planar.py.
-AXIS_TERMS: dict[str, type[AxisTerm]] = {
-    term.NAME: term
-    for term in (
-        Viscous,
-        Coulomb,
-        Stribeck,
-        ViscousForward,
-        ViscousBackward,
-        CoulombForward,
-        CoulombBackward,
-        Offset,
-        Mass,
-    )
-}
+# The terms that [[parameter]] may name, in the order of this file; planar.py has those of its arm.
+AXIS_TERMS = {term.NAME: term for term in AxisTerm.__subclasses__()}

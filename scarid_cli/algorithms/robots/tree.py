@@ -20,14 +20,14 @@ class Tree:
     """A URDF as Pinocchio reads it, and what Pinocchio does not keep of it.
 
     `model` has all joints that move. `drivers` has the joint that each joint with a <mimic>
-    follows, `offsets` where it is when that joint is at 0 [rad or m], `frames` the numbers of the
-    joints whose links carry a massless frame.
+    follows, `offsets` where it is when that joint is at 0 [rad or m], `frames` the massless frames
+    at the ends of links: their names, and the numbers of the joints that carry them.
     """
 
     model: Any
     drivers: dict[str, str]
     offsets: dict[str, float]
-    frames: frozenset[int]
+    frames: dict[str, int]
 
 
 @cache
@@ -42,6 +42,7 @@ def read(path: str) -> Tree:
     try:
         tree = ElementTree.fromstring(Path(path).read_text("utf-8"))
         _turn_endless_joints_into_angles(tree)
+        _drop_shapes(tree)
         model = pinocchio.buildModelFromXML(ElementTree.tostring(tree, encoding="unicode"))
         mimics = {j.get("name", ""): m for j in tree.findall("joint") for m in j.findall("mimic")}
         drivers = {name: mimic.get("joint", "") for name, mimic in mimics.items()}
@@ -50,8 +51,9 @@ def read(path: str) -> Tree:
         raise UsageFault(f"{path}: not a URDF: {' '.join(str(error).split())}") from None
     if not model.nq or model.nq != model.nv:
         raise UsageFault(f"{path}: only revolute, continuous and prismatic joints are supported")
-    frames = {model.frames[model.getFrameId(name)].parentJoint for name in _massless_tips(tree)}
-    return Tree(model, drivers, offsets, frozenset(frames))
+    tips = _massless_tips(tree)
+    frames = {name: model.frames[model.getFrameId(name)].parentJoint for name in tips}
+    return Tree(model, drivers, offsets, frames)
 
 
 def _turn_endless_joints_into_angles(tree: ElementTree.Element) -> None:
@@ -65,6 +67,13 @@ def _turn_endless_joints_into_angles(tree: ElementTree.Element) -> None:
                 limit.set(key, str(value))
             for key in ("effort", "velocity"):
                 limit.set(key, limit.get(key, "0"))
+
+
+def _drop_shapes(tree: ElementTree.Element) -> None:
+    """Drops what is not needed here; Pinocchio complains about shapes that it does not know."""
+    for own in tree.findall("link"):
+        for shape in (*own.findall("visual"), *own.findall("collision")):
+            own.remove(shape)
 
 
 def _massless_tips(tree: ElementTree.Element) -> Iterator[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -11,10 +10,11 @@ from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, with_delay
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
-from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.arrays import Array
 
 ALIGNMENTS = 3  # times that the delay is fitted, each time from the previous estimates
@@ -75,31 +75,24 @@ class Outcome:
 
 
 def outcome(
-    estimator: BaseEstimator,
-    initial: Array,
-    state: Any,
-    subsample: Subsample,
-    record: Blocks | None,
-    *,
-    align: bool = False,
-    reduce: bool = False,
+    estimator: BaseEstimator, initial: Array, end: Checkpoint, treatment: Treatment
 ) -> Outcome:
-    """The outcome, from the final state of an estimator and a subsample of its rows.
+    """The outcome, from the checkpoint at the end of a record.
 
-    `align` also fits the delay of the torques; `reduce` drops parameters that are not essential.
+    The treatment says whether the delay of the torques is fitted too, and parameters are dropped.
     """
-    whole = _problem(estimator, initial, state, subsample, record, align=align)
+    whole = _problem(estimator, initial, end, align=treatment.align)
     problem, diagnostics = whole, whole.diagnostics()
     errors, reduction = diagnostics.errors[: whole.own], None
-    if reduce:
-        noise = _noise(whole, diagnostics, float(subsample.counted))
+    if treatment.essential:
+        noise = _noise(whole, diagnostics, float(end.subsample.counted))
         reduction = essential(whole.found.fit, noise, whole.own)
         if reduction.dropped:
             problem = whole.reduced(reduction)
             diagnostics = problem.diagnostics()
     own, fit = problem.own, problem.found.fit
     kept = (reduction.kept if reduction else list(range(own)))[:own]
-    delay = (float(fit.estimates[own]), float(diagnostics.errors[own])) if align else None
+    delay = (float(fit.estimates[own]), float(diagnostics.errors[own])) if treatment.align else None
     return Outcome(
         found=replace(problem.found, fit=fit.part(slice(own))),
         diagnostics=diagnostics.part(own),
@@ -109,37 +102,28 @@ def outcome(
         errors=errors,
         delay=delay,
         excitation=_excitation(whole),
-        samples=subsample.total,
+        samples=end.subsample.total,
         evidence=_evidence(whole, fit.estimates[:own], kept, delay[0] if delay else 0.0),
     )
 
 
 def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -> LogEvidence:
-    """The evidence of all parameters, of which those that were dropped are zero."""
+    """The evidence about all parameters, of which those that were dropped are zero."""
     theta = np.zeros(whole.own)
     theta[kept] = estimates
     W = np.ascontiguousarray(whole.rows.W[:, :, : whole.own])
     return evidence(replace(whole.rows, W=W), theta, delay)
 
 
-def _problem(
-    estimator: BaseEstimator,
-    initial: Array,
-    state: Any,
-    subsample: Subsample,
-    record: Blocks | None,
-    *,
-    align: bool,
-) -> Problem:
-    rows, found = subsample.rows(), estimator.fit(state)
+def _problem(estimator: BaseEstimator, initial: Array, end: Checkpoint, *, align: bool) -> Problem:
+    rows, found = end.subsample.rows(), estimator.fit(end.state)
     own = len(found.fit.estimates)
     if align:
         rows, found = _aligned(estimator.widened(), np.append(initial, 0.0), rows, found)
     if found.scores and found.scores.rows:
         rows = found.scores.rows
-    if record and subsample.complete:
-        record = None
-    return Problem(rows, found, own, record.whole() if record else None)
+    record = None if end.subsample.complete or not end.blocks else end.blocks.whole()
+    return Problem(rows, found, own, record)
 
 
 def _aligned(
@@ -149,7 +133,7 @@ def _aligned(
     wide = rows
     for _ in range(ALIGNMENTS):
         wide = with_delay(rows, found.fit.estimates)
-        found = estimator.fit(estimator.step(estimator.init(start), wide)[0])
+        found = estimator.of_rows(wide, start)
     return wide, found
 
 

@@ -76,7 +76,7 @@ class Subsample:
 def _thinned(parts: list[Rows], thin: int) -> list[Rows]:
     """The samples whose number is a multiple of `thin`, copied so that the rest can be freed."""
     chosen = [(part, np.flatnonzero(part.at % thin == 0)) for part in parts]
-    return [part.taken(at) for part, at in chosen if len(at)]
+    return [part.part(at) for part, at in chosen if len(at)]
 
 
 def _size(rows: Rows) -> int:

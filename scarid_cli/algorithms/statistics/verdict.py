@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.residuals import JointResidual
@@ -29,29 +30,14 @@ class Verdict:
     grade: str
     reasons: tuple[str, ...]
 
-    @property
-    def text(self) -> str:
-        return f"{self.grade}: {'; '.join(self.reasons)}."
-
-
-@dataclass(frozen=True)
-class InUse:
-    """The options that are already in use, so that the verdict does not recommend them again.
-
-    `slow` (joints) are the velocities [rad/s or m/s] below which rows were left out; `align`: the
-    delay of the torques was fitted; `weighted`: joints are weighted by their residuals;
-    `essential`: parameters that are not essential were dropped.
-    """
-
-    slow: tuple[float, ...] = ()
-    align: bool = False
-    weighted: bool = False
-    essential: bool = False
-
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a verdict is based on; `estimates` and errors are in the order of `names`."""
+    """What a verdict is based on; `estimates` and errors are in the order of `names`.
+
+    The verdict does not recommend the options of the `treatment` that are already in use.
+    `weighted`: joints are weighted by their residuals.
+    """
 
     names: Sequence[str]
     estimates: Array
@@ -59,7 +45,8 @@ class Evidence:
     scaled_condition: float
     weak: str
     diagnostics: Diagnostics
-    in_use: InUse = InUse()
+    treatment: Treatment
+    weighted: bool
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
@@ -76,7 +63,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     ]
     most = 2 * len(unknown) > len(evidence.names)
     uncertain = [f"not {_listed(unknown)}"] if unknown and not most else []
-    if most and len(unknown) < len(evidence.names) and not evidence.in_use.essential:
+    if most and len(unknown) < len(evidence.names) and not evidence.treatment.essential:
         uncertain = ["--essential leaves out what is not known"]
     grade = DOUBTFUL if wrong or most else GOOD
     return Verdict(grade, (*wrong, *_summary(evidence), *uncertain))
@@ -120,7 +107,7 @@ def _biased(diagnostics: Diagnostics) -> list[str]:
 
 def _moved(evidence: Evidence, robot: Robot) -> list[str]:
     """Estimates that depend on the Coulomb friction of slow rows, or on a delay."""
-    diagnostics, in_use = evidence.diagnostics, evidence.in_use
+    diagnostics = evidence.diagnostics
     if not any(p.term.JUMPS for p in robot.parameters):
         return []
     if np.isnan(diagnostics.moved).all():
@@ -136,25 +123,25 @@ def _moved(evidence: Evidence, robot: Robot) -> list[str]:
     largest = np.nanmax(np.abs(diagnostics.moved))
     most = f"{largest:.1f}" if largest < READABLE else f"{largest:.1e}"
     slow = [f"{v:.1g}" for v in diagnostics.slow]
-    options = _untried(slow, in_use)
+    options = _untried(slow, evidence.treatment)
     if options:
         return [
             f"{_listed(moved)} would move by up to {most} deviations without the slow rows and "
             f"with the torques' delay fitted ({' '.join(options)})"
         ]
-    advice = "" if in_use.weighted else " (--estimator wls)"
+    advice = "" if evidence.weighted else " (--estimator wls)"
     return [
         f"{_listed(moved)} would move by up to {most} deviations in weighted least squares "
         f"without the rows slower than {', '.join(slow)}{advice}"
     ]
 
 
-def _untried(slow: Sequence[str], in_use: InUse) -> list[str]:
+def _untried(slow: Sequence[str], used: Treatment) -> list[str]:
     """The recommended options that are not in use, or only with a lower velocity."""
     options = []
-    if len(in_use.slow) < len(slow) or any(map(_below, in_use.slow, slow)):
+    if len(used.slow) < len(slow) or any(map(_below, used.slow, slow)):
         options.append(f"--drop-slow {','.join(slow)}")
-    if not in_use.align:
+    if not used.align:
         options.append("--align")
     return options
 

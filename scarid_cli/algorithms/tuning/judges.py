@@ -19,20 +19,12 @@ from scarid_cli.algorithms.processes.matching import over, settling_rows
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.tuning.likelihood import best_model, log_likelihood
+from scarid_cli.algorithms.tuning.likelihood import log_likelihood
 from scarid_cli.algorithms.tuning.search import Judge
 from scarid_cli.arrays import Array
 
 SKIPPED_START = 1.0  # seconds at the start, where a method may still be on its way
 SEGMENTS = 10  # of a record, every second one held out
-
-
-def fit(method: Any, q: Array, h: float) -> Any:
-    """A Kalman method with the noise, the intensity and the acceleration process of the data.
-
-    q: positions of one joint (rows), or of several that share the settings (joints, rows).
-    """
-    return best_model(method, q, h)
 
 
 def negative_log_likelihood(q: Array, h: float) -> Judge:
@@ -120,11 +112,8 @@ def motion(methods: list[Any], q: Array, tau: Array, h: float) -> SettledMotion:
 def identified(robot: Robot, motion: SettledMotion, rows: Any) -> Array | None:
     """The least-squares estimates from some rows; None if they leave a parameter undetermined."""
     *kinematics, tau = (np.ascontiguousarray(signal[:, rows]) for signal in motion.signals)
-    ls = Estimator()
-    start = ls.init(np.zeros(len(robot.parameters)))
     regression = plain(robot.regressor(*kinematics), np.ascontiguousarray(tau.T))
-    state, _ = ls.step(start, regression)
     try:
-        return ls.fit(state).fit.estimates
+        return Estimator().of_rows(regression).fit.estimates
     except NotIdentifiableError:
         return None

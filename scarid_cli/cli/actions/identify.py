@@ -9,7 +9,9 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.pairs import require_known, single_settings
@@ -18,7 +20,6 @@ from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
 from scarid_cli.stages import identify as stage
 from scarid_cli.stages.parameters import identified
-from scarid_cli.stages.rows import Treatment
 
 
 def run(
@@ -49,7 +50,7 @@ def run(
     solver = method(**values, **_single(given["forgetting"], arm.names))
     start = _initial(job, initial, arm)
     fixed = _fixed(table, arm, estimator, solver, treatment, given["smooth_sign"])
-    places: list[stage.Checkpoint] = []
+    places: list[Checkpoint] = []
     checkpoint = None
     if resumed:
         from scarid_cli.stages.continuation import restored  # zipfile takes a while to import

@@ -12,7 +12,6 @@ from scarid_cli.reporting import naming, results, text
 from scarid_cli.reporting import published as printed
 from scarid_cli.reporting import repeated as repetitions
 from scarid_cli.reporting.content import sections
-from scarid_cli.reporting.documents import documents
 
 
 def run(
@@ -29,26 +28,26 @@ def run(
     """Print the tables, and write the documents."""
     paths = files or ("-",)
     _require_distinct(paths, html, markdown)
-    with documents(html, markdown) as (page, plain):
-        tables = [results.reportable(job.read(path, None)) for path in paths]
-        values = printed.read(job.read(published, "published")) if published else None
-        collected = results.collect(tables, repeated=repeated)
-        found = (repetitions.sections if repeated else sections)(collected, values)
-        if page or figures:
-            from scarid_cli.reporting import page as rendering  # matplotlib takes half a second
+    page, plain = job.side_text(html), job.side_text(markdown)
+    tables = [results.reportable(job.read(path, None)) for path in paths]
+    values = printed.read(job.read(published, "published")) if published else None
+    collected = results.collect(tables, repeated=repeated)
+    found = (repetitions.sections if repeated else sections)(collected, values)
+    if page or figures:
+        from scarid_cli.reporting import page as rendering  # matplotlib takes half a second
 
-            drawn = rendering.figures(found)
-            if figures:
-                _save(job, Path(figures), [section.title for section in found], drawn)
-            if page:
-                page.write(rendering.html(title, found, drawn, tables).encode())
-        if plain:
-            plain.write(text.markdown(title, found).encode())
-        if "-" not in (html, markdown):
-            sys.stdout.write(text.terminal(found))
-            sys.stdout.flush()
-        if not html and any(not section.rows for section in found):
-            job.say("some tables have figures only; draw them with --html FILE")
+        drawn = rendering.figures(found)
+        if figures:
+            _save(job, Path(figures), [section.title for section in found], drawn)
+        if page:
+            page.write(rendering.html(title, found, drawn, tables))
+    if plain:
+        plain.write(text.markdown(title, found))
+    if "-" not in (html, markdown):
+        sys.stdout.write(text.terminal(found))
+        sys.stdout.flush()
+    if not html and any(not section.rows for section in found):
+        job.say("some tables have figures only; draw them with --html FILE")
 
 
 def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | None) -> None:

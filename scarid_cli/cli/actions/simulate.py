@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from math import pi
 from typing import Any
 
 import numpy as np
 
 from scarid_cli.algorithms.plants.loop import ClosedLoop
+from scarid_cli.algorithms.sensors import building
+from scarid_cli.cli.imperfections import imperfections as chosen
 from scarid_cli.cli.job import Job, per_joint
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import simulate as stage
@@ -24,11 +25,10 @@ def run(
     control_rate: float,
     log_rate: float,
     substeps: int,
-    encoder_bits: int | None,
-    position_noise: tuple[float, ...],
-    torque_noise: tuple[float, ...] | None,
+    imperfections: tuple[str, ...],
     seed: int,
     truth: bool,
+    **shorthands: tuple[float, ...] | None,
 ) -> None:
     """Write what the simulated sensors measure."""
     table, arm = job.read_for(file, "trajectory", robot)
@@ -41,23 +41,16 @@ def run(
     def each(given: tuple[float, ...] | None, own: Any, option: str) -> Any:
         return np.array(per_joint(given, len(joints), option) if given else own, dtype=float)
 
-    resolutions = [
-        joint.encoder_resolution
-        if encoder_bits is None or joint.type == "prismatic"
-        else (2.0 * pi / 2**encoder_bits if encoder_bits else 0.0)
-        for joint in joints
-    ]
+    given = chosen(imperfections, shorthands, arm.imperfections, len(joints))
     loop = ClosedLoop(
         robot=arm,
         kp=each(kp, arm.control.kp, "--kp"),
         kd=each(kd, arm.control.kd, "--kd"),
         ki=each(ki, arm.control.ki, "--ki"),
         velocity_cutoff=arm.control.velocity_cutoff,
-        encoder_resolution=np.array(resolutions),
-        position_noise=each(position_noise, None, "--position-noise"),
-        torque_noise=each(torque_noise, [j.torque_noise for j in joints], "--torque-noise"),
         seed=seed,
         control_rate=control_rate,
         substeps=substeps,
+        **building.in_the_loop(given, joints, control_rate),
     )
-    job.write(stage.simulate(job.recorded(table), loop, log_rate, truth=truth))
+    job.write(stage.simulate(job.recorded(table), loop, log_rate, truth=truth, given=given))

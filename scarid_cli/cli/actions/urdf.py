@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.cli.job import Job, command_line
 from scarid_cli.cli.treatment import for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import urdf as stage
 from scarid_cli.stages.estimates import estimates_with_covariance
-from scarid_cli.stages.rows import Treatment
 
 
 def run(

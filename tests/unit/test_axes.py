@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from unit.arms import FINGERS, URDF, described_arm
 
-from scarid_cli.algorithms.robots.chain import serial
+from scarid_cli.algorithms.robots.axes import serial
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.cli.robot import described

@@ -1,0 +1,123 @@
+"""`scarid simulate --with`, the same in a description, and what is said about mistakes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import Result, refused
+
+from scarid_cli.algorithms.imperfections.registry import IMPERFECTIONS
+from scarid_cli.algorithms.robots.reading import ROBOTS
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def reference(scarid: Run, tmp_path: Path) -> Path:
+    path = tmp_path / "reference.csv"
+    assert scarid("trajgen", "-q", "--duration", 2, "-o", path).status == 0
+    return path
+
+
+@pytest.fixture
+def simulate(scarid: Run, reference: Path) -> Run:
+    """The log as text, with the true signals and the history left out."""
+    return lambda *words: scarid("simulate", "--truth", *words, reference)
+
+
+def test_the_help_has_a_line_for_every_imperfection(scarid: Run) -> None:
+    lines = scarid("simulate", "--help").out.splitlines()
+    for name, kind in IMPERFECTIONS.items():
+        (line,) = [line for line in lines if line.split()[:1] == [name]]
+        assert line.endswith(kind.summary())
+        assert kind.unit() in line
+        assert len(line) <= 100, line
+
+
+def test_imperfections_of_no_size_change_no_byte(simulate: Run) -> None:
+    kept = {"encoder-bits", "torque-noise", "encoder-turns"}  # whose default is not zero
+    names = [
+        f"--with={name}={','.join(['0'] * len(kind.NUMBERS))}"
+        for name, kind in IMPERFECTIONS.items()
+        if name not in kept and not kind.NUMBERS[0].words
+    ]
+    assert simulate(*names, "--with=encoder-turns=1").out == simulate().out
+
+
+@pytest.mark.parametrize(
+    ("option", "name"),
+    [
+        ("--encoder-bits", "encoder-bits=12"),
+        ("--position-noise", "position-noise=1e-4,2e-4"),
+        ("--torque-noise", "torque-noise=0.5"),
+    ],
+)
+def test_an_option_is_the_same_as_the_imperfection_of_its_name(
+    option: str, name: str, simulate: Run
+) -> None:
+    found = simulate("--with", name)
+    assert found.status == 0
+    assert found.out != simulate().out
+    assert simulate(option, name.partition("=")[2]).out == found.out
+    refused(simulate("--with", name, option, 1), 2, f"{option}: {option[2:]} is given twice")
+
+
+def description(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "mine.toml"
+    path.write_text((ROBOTS / "scara2.toml").read_text("utf-8") + f"\n[imperfections]\n{text}\n")
+    return path
+
+
+def test_a_description_has_imperfections_and_with_replaces_them(
+    simulate: Run, tmp_path: Path
+) -> None:
+    robot = description(tmp_path, "torque-delay = 0.002\nencoder-eccentricity = [1e-4, 2e-4]")
+    ours = simulate("--with", "torque-delay=0.002", "--with", "encoder-eccentricity=1e-4,2e-4")
+    assert simulate("--robot", robot).out == ours.out
+    without = simulate("--robot", robot, "--with", "torque-delay=0")
+    assert without.out == simulate("--with", "encoder-eccentricity=1e-4,2e-4").out
+
+
+def test_robot_check_shows_the_imperfections(scarid: Run, tmp_path: Path) -> None:
+    robot = description(tmp_path, "torque-delay = 0.002\nlost-rows = 0.01")
+    lines = scarid("robot", "check", robot).out.splitlines()
+    at = lines.index("imperfections of the simulated robot")
+    assert lines[at + 1 : at + 3] == ["  torque-delay=0.002,0.002 s", "  lost-rows=0.01"]
+
+
+@pytest.mark.parametrize(
+    ("given", "reported"),
+    [
+        ("torque-delay", "--with torque-delay: write NAME=VALUE"),
+        ("torque-dely=1", "there is no imperfection 'torque-dely'; did you mean torque-delay"),
+        ("torque-delay=-1", "--with torque-delay=-1: -1 is outside its range; give 0 s or more"),
+        ("torque-delay=nan", "nan is not a finite number"),
+        ("torque-delay=inf", "inf is not a finite number"),
+        ("torque-delay=soon", "'soon' is not a number"),
+        ("torque-delay=1,2,3", "3 values; give one for all joints, or one for each of 2 joints"),
+        ("lost-rows=1", "1 is outside its range; give a number from 0 to 0.9"),
+        ("torque-outliers=0.1", "torque-outliers has no effect without torque-outlier-size"),
+    ],
+)
+def test_a_mistake_is_reported_in_one_line(given: str, reported: str, simulate: Run) -> None:
+    refused(simulate("--with", given), 2, reported)
+
+
+def test_a_mistake_in_a_description_is_reported_in_one_line(simulate: Run, tmp_path: Path) -> None:
+    robot = description(tmp_path, "torque-delay = -1")
+    refused(simulate("--robot", robot), 2, "mine.toml: not a robot description: [imperfections] to")
+
+
+def test_lost_rows_and_jitter_are_for_resample(shell: Run) -> None:
+    """The log of a bad clock is refused where a regular one is needed, and resample mends it."""
+    made = shell(
+        "scarid trajgen -q --duration 4 | scarid simulate --with lost-rows=0.01 "
+        "--with sampling-jitter=2e-4 -o log.csv"
+    )
+    assert made.status == 0
+    failed = shell("scarid differentiate log.csv -o motion.csv")
+    refused(failed, 65, "put it on a constant rate with `scarid resample --rate`")
+    mended = shell("scarid resample -q --rate 200 log.csv | scarid differentiate | scarid identify")
+    assert mended.status == 0
