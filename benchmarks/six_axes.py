@@ -34,10 +34,11 @@ AXES = ("0 0 1", "0 1 0", "0 1 0", "1 0 0", "0 1 0", "1 0 0")
 
 @dataclass(frozen=True)
 class Arm:
-    """An arm: its robot, and the true values of its base parameters."""
+    """An arm: its robot, the true values of its base parameters, and its noise (joints) [N m]."""
 
     robot: Robot
     theta: Array
+    noise: Array
 
 
 def arm(number: int) -> Arm:
@@ -47,8 +48,9 @@ def arm(number: int) -> Arm:
         (Path(folder) / "arm.urdf").write_text(_urdf(rng))
         (Path(folder) / "arm.toml").write_text(_description(rng))
         robot = load(f"{folder}/arm.toml")
-        robot.regressor(*np.zeros((3, JOINTS, 1)))  # reads the URDF while it is there
-    return Arm(replace(robot, name="six axes"), robot.apriori)
+        typical = robot.torques(robot.regressor(*motion(rng)), robot.apriori)
+    size = NOISE * np.sqrt(np.mean(typical**2, axis=1))
+    return Arm(replace(robot, name="six axes"), robot.apriori, size)
 
 
 def _urdf(rng: np.random.Generator) -> str:
@@ -128,7 +130,7 @@ def log(
     rng = np.random.default_rng(list(seed))
     q, dq, ddq = motion(rng)
     tau = made.robot.torques(made.robot.regressor(q, dq, ddq), theta)
-    tau = tau + NOISE * np.sqrt(np.mean(tau**2, axis=1, keepdims=True)) * noise(rng, q.shape[1])
+    tau = tau + made.noise[:, None] * noise(rng, q.shape[1])
     if gains is not None:
         tau = tau * gains[:, None]
     q = np.round(q / ENCODER) * ENCODER

@@ -18,7 +18,8 @@ from scarid_cli.arrays import Array, Numbers
 
 REFITS = 3  # times that the joints are weighted by their residuals
 LEAST = 1e-9  # of the rms torque of a joint: a smaller residual is rounding
-MOST_LEVERAGE = 0.9
+TINY = 1e-30  # the least variance, of a joint without torques
+MOST_LEVERAGE = 0.9  # of a block that counts in full
 FLAT = 1e-10  # of the largest eigenvalue: directions below it are not in the motion
 
 
@@ -53,11 +54,11 @@ def evidence(rows: Rows, theta: Array, delay: float = 0.0) -> LogEvidence:
     torque = np.sum((rows.y * (rows.scales > 0.0)) ** 2, axis=0) / counts
     variances = whole[:, -1, -1] / counts
     for _ in range(REFITS):
-        variances = np.maximum(variances, LEAST**2 * torque + 1e-300)
+        variances = np.maximum(variances, LEAST**2 * torque + TINY)
         weighted = np.tensordot(1.0 / variances, whole, 1)
         along = np.append(-solved(weighted[:-1, :-1], weighted[:-1, -1]), 1.0)
         variances = np.einsum("i,jik,k->j", along, whole, along).clip(min=0.0) / counts
-    variances = np.maximum(variances, LEAST**2 * torque + 1e-300)
+    variances = np.maximum(variances, LEAST**2 * torque + TINY)
     scores = np.einsum("jbik,k->jbi", products[:, :, :-1], along)
     scores = _without_leverage(scores, np.tensordot(1.0 / variances, products[:, :, :-1, :-1], 1))
     weights = 1.0 / (variances * _inflations(scores, whole, variances))

@@ -20,6 +20,7 @@ from scarid_cli.algorithms.statistics.tails import log_tail_f
 FALSE_ALARMS = 0.01  # of comparisons in which nothing changed, over all tests together
 MOST = 3  # changes that are named
 WORTH = 0.003  # of the whole difference: a further change that explains less is not named
+MOST_RANK = 0.5  # of all directions: several changes that span more would explain anything
 LEFT = 0.2  # of the whole difference: if more is left, the changes do not explain it
 CLOSE = 6.0  # twice the logarithm of 20: another change is then 20 times less likely
 
@@ -92,9 +93,13 @@ def _chosen(
     while len(chosen) < MOST:
         rest = [h for h in possible if not any(h is c for c in chosen)]
         tests = [tested(difference, [*chosen, h]) for h in rest]
-        gains = [t.raw / t.excess - penalty(difference, t.rank) for t in tests]
+        gains = [t.raw - t.excess * penalty(difference, t.rank) for t in tests]
         best = int(np.argmax(gains))
-        if not _significant(difference, before, tests[best], whole, len(possible) + 1):
+        if chosen and tests[best].rank > MOST_RANK * whole.rank:
+            break
+        # That something changed is settled: the first explanation need not pass for all tests
+        among = len(possible) + 1 if chosen else 1
+        if not _significant(difference, before, tests[best], whole, among):
             break
         chosen.append(rest[best])
         near = [h for h, gain in zip(rest, gains, strict=True) if gain > gains[best] - CLOSE]

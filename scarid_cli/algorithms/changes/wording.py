@@ -13,7 +13,7 @@ from scarid_cli.arrays import Array
 
 SHOWN = 4  # amounts that a message names at most
 CLEAR = 3.0  # errors: a smaller amount is not named
-NOISIER = 1.5  # times the residual at identification
+NOISIER = 2.0  # times the residual at identification
 
 UNCHANGED, CHANGED, UNEXPLAINED = "unchanged", "changed", "unexplained"
 

@@ -22,13 +22,19 @@ class Estimate:
     """Estimates of some parameters: values, standard errors, and the covariance where known.
 
     `freedom` (parameters) are the degrees of freedom of the errors. A parameter without an error is
-    nan there.
+    nan there. An error is at least that of the covariance: the error of a single parameter may rest
+    on few blocks of the log and be too small by chance.
     """
 
     values: Array
     errors: Array
     freedom: Array
     covariance: Array | None
+
+    def __post_init__(self) -> None:
+        if self.covariance is not None:
+            least = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+            object.__setattr__(self, "errors", np.fmax(self.errors, least))
 
 
 @dataclass(frozen=True)
@@ -75,7 +81,7 @@ def comparison(first: Estimate, second: Estimate) -> Comparison:
     """Compare two estimates of the same parameters."""
     difference = second.values - first.values
     errors = np.hypot(first.errors, second.errors)
-    freedom = welch([first, second])
+    freedom = np.minimum(first.freedom, second.freedom)
     joint = _joint(first, second, difference, freedom)
     tails = p_values(difference, errors, freedom)
     together = np.append(tails, joint.p_value if joint else np.nan)
@@ -116,16 +122,6 @@ def holm(tails: Array) -> Array:
         least = max(least, min(1.0, float(tails[i]) * (len(order) - rank)))
         corrected[i] = least
     return corrected
-
-
-def welch(estimates: Sequence[Estimate]) -> Array:
-    """Degrees of freedom of the error of a difference (Welch and Satterthwaite)."""
-    squares = np.array([e.errors**2 for e in estimates])
-    freedom = np.array([e.freedom for e in estimates])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found = squares.sum(axis=0) ** 2 / (squares**2 / freedom).sum(axis=0)
-    known: Array = np.nan_to_num(found, nan=MOST_FREEDOM, posinf=MOST_FREEDOM)
-    return known
 
 
 def freedom_of(errors: Array, half: Array) -> Array:
