@@ -4,6 +4,7 @@
 # make docs-test   the code blocks of the documentation, including those that take long
 # make lint     ruff and mypy
 # make bench    start-up, time per sample, memory
+# make bench-excitation   optimised excitations of several robots beside random ones (an hour)
 # make bench-differentiators   every differentiator and its peers on known signals
 # make crossvalidate   online identification of twenty simulated experiments
 # make montecarlo      coverage of the stated intervals, and whether bias is detected
@@ -20,7 +21,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-differentiators crossvalidate montecarlo emps docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-differentiators crossvalidate montecarlo emps docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -59,6 +60,11 @@ $(VENV)/compared: $(VENV)/tested
 
 bench: $(VENV)/compared
 	$(BIN)/python benchmarks/bench.py
+
+bench-excitation: $(VENV)/tested
+	$(BIN)/python benchmarks/excitation.py
+	$(BIN)/python benchmarks/excitation.py --seconds 10
+	$(BIN)/python benchmarks/excitation.py --seconds 120 --seeds 1
 
 bench-differentiators: $(VENV)/compared
 	$(BIN)/python benchmarks/differentiators.py
@@ -111,6 +117,7 @@ log_of = $(P)/$(or $(LOG_$1),filtered).$2.measurement.parquet
 
 SEED_direct := 1
 SEED_cross  := 2
+SEED_optimised := 1
 SEED_printed-gains := 1
 GAINS_printed-gains := --kp 6.5,155 --kd 5,25
 
@@ -120,7 +127,8 @@ RESULTS  := $(foreach m,$(METHODS),$(P)/$m.parameters.parquet \
               $(foreach e,direct cross,$(P)/$m.$e.metrics.parquet $(P)/$m.$e.prediction.parquet) \
               $(P)/$m.common.metrics.parquet) \
             $(foreach m,$(ONLINE),$(P)/$m.direct.motion.parquet $(P)/$m.trace.parquet \
-              $(P)/$m.forgetting-0.95.parameters.parquet)
+              $(P)/$m.forgetting-0.95.parameters.parquet) \
+            $(P)/kalman-wls-optimised.parameters.parquet
 
 paper: $(P)/report.html
 
@@ -132,6 +140,11 @@ $(P)/report.html: $(RESULTS) $(MEASURED) samples/paper/published.csv
 $(P)/%.trajectory.parquet: $(VENV)/installed
 	@mkdir -p $(P)
 	$(SCARID) trajgen --robot scara2 --seed $(SEED_$*) -o $@
+
+# The number of starts, and not a budget of time: the same motion each time.
+$(P)/optimised.trajectory.parquet: $(VENV)/installed
+	@mkdir -p $(P)
+	$(SCARID) trajgen --robot scara2 --optimise --starts 4 --seed $(SEED_optimised) -o $@
 
 $(P)/raw.%.measurement.parquet: $(P)/%.trajectory.parquet
 	$(SCARID) simulate --seed $(SEED_$*) --truth $(GAINS_$*) $< -o $@
@@ -148,13 +161,15 @@ define MOTION
 $(P)/%.$1.motion.parquet: $$$$(call log_of,$$$$*,$1)
 	$(SCARID) differentiate $$(OPTIONS_$$*) $$< -o $$@
 endef
-$(foreach e,direct cross,$(eval $(call MOTION,$e)))
+$(foreach e,direct cross optimised,$(eval $(call MOTION,$e)))
 
 $(P)/%.parameters.parquet $(P)/%.trace.parquet: $(P)/%.direct.motion.parquet
 	$(SCARID) identify --estimator rls --trace $(P)/$*.trace.parquet $< -o $(P)/$*.parameters.parquet
 
 # Joints are weighted, slow rows are left out, and the delay of the torques is fitted.
 $(P)/kalman-wls.parameters.parquet: $(P)/kalman.direct.motion.parquet
+$(P)/kalman-wls-optimised.parameters.parquet: $(P)/kalman.optimised.motion.parquet
+$(P)/kalman-wls.parameters.parquet $(P)/kalman-wls-optimised.parameters.parquet:
 	$(SCARID) identify --estimator wls --drop-slow 0.1 --align $< -o $@
 
 $(P)/%.forgetting-0.95.parameters.parquet: $(P)/%.direct.motion.parquet

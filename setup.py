@@ -4,6 +4,7 @@ Each `scarid_cli/kernels/NAME.py` with a `NAME.pxd` beside it becomes an extensi
 working C compiler the build goes on with a warning, and the same file runs interpreted.
 """
 
+import os
 from pathlib import Path
 
 from Cython.Build import cythonize
@@ -38,4 +39,10 @@ extensions = cythonize(
 for extension in extensions:
     extension.optional = True  # set after cythonize, which does not carry it over
 
-setup(ext_modules=extensions, options={"bdist_wheel": {"py_limited_api": "cp311"}})
+setup(
+    ext_modules=extensions,
+    options={
+        "bdist_wheel": {"py_limited_api": "cp311"},
+        "build_ext": {"parallel": os.cpu_count()},
+    },
+)

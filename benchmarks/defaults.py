@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import scipy.signal
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.excitations.quintic import Excitation
 from scarid_cli.algorithms.filters.butterworth import Butterworth
+from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop, LoopLog
 from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.trajectories.hermite import refine
@@ -32,20 +35,16 @@ def experiment(seed: int, segment: tuple[float, float], cutoff: float = 20.0) ->
     """Twenty seconds of the simulated robot in its default control loop, at the control rate."""
     limits, rng = Limits.of(ROBOT.joints), np.random.default_rng(seed)
     path = Excitation(*segment).trajectory(limits, limits.home, 20.0, rng)
-    q, dq, _ = refine(*path.sample(np.arange(4001) * PERIOD), PERIOD, RATIO)
-    assert ROBOT.control is not None
+    wanted = refine(*path.sample(np.arange(4001) * PERIOD), PERIOD, RATIO)
     loop = ClosedLoop(
         robot=ROBOT,
-        kp=np.array(ROBOT.control.kp),
-        kd=np.array(ROBOT.control.kd),
-        ki=np.array(ROBOT.control.ki),
-        velocity_cutoff=cutoff,
+        law=replace(law(ROBOT), velocity_cutoff=cutoff),
         encoder_resolution=np.array([joint.encoder_resolution for joint in ROBOT.joints]),
         position_noise=np.zeros(2),
         torque_noise=np.array([joint.torque_noise for joint in ROBOT.joints]),
         seed=seed,
     )
-    return loop.step(loop.init(q[:, 0]), q, dq)[1]
+    return loop.step(loop.init(wanted[0][:, 0]), *wanted)[1]
 
 
 def errors(log: LoopLog, method: str, settings: dict[str, float]) -> list[tuple[float, float]]:

@@ -64,10 +64,10 @@ def informed(method: Any, q: Array, motion: TrueMotion) -> float:
     return min(trial.loss for trial in search.search(method, ranges, judge, H, 0))
 
 
-def ours(known: list[TrueMotion], bits: int) -> list[Score]:
+def ours(known: list[TrueMotion], bits: int, names: list[str]) -> list[Score]:
     """The methods of scarid."""
     scores = []
-    for name in DIFFERENTIATORS.names:
+    for name in names:
         score = Score(name, class_of(DIFFERENTIATORS.load(name)()), bits, ours=True)
         for seed, motion in enumerate(known):
             q = seen(motion.q, bits, seed)
@@ -149,6 +149,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    names = DIFFERENTIATORS.names
+    parser.add_argument("methods", nargs="*", help="of scarid, for a table alone (default: all)")
     parser.add_argument("--no-peers", action="store_true", help="leave out other packages")
     parser.add_argument(
         "--output", type=Path, default=Path("build/differentiators"), help="folder of the figures"
@@ -159,9 +161,11 @@ def main() -> None:
         print(f"Not installed, so left out: {', '.join(missing)}")
     known, scores = motions(), []
     for bits in summary.BITS:
-        scores += ours(known, bits)
+        scores += ours(known, bits, options.methods or names)
         scores += [] if options.no_peers else others(known, bits)
     summary.tables(scores)
+    if options.methods:
+        return
     summary.claims(scores)
     summary.draw(scores, options.output)
     print(f"\nFigures: {options.output}")

@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import importlib.util
+import re
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
+import scarid_cli.kernels
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.plants.controllers import law
+from scarid_cli.algorithms.plants.model import model
 from scarid_cli.algorithms.regression.rows import plain
+from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
-from scarid_cli.kernels import chain, fir, information, moments, p2smd, plant, sos
+from scarid_cli.kernels import arm, chain, fir, information, moments, p2smd, sos
+
+FOLDER = Path(scarid_cli.kernels.__file__).parent
 
 SAMPLES, INTERPRETED_SAMPLES = 200_000, 2000
 KernelRun = Callable[[ModuleType, int], object]
@@ -37,15 +46,18 @@ def encoded(samples: int) -> Array:
     return positions
 
 
-def interpreted(module: ModuleType) -> ModuleType:
-    """The same kernel as plain Python, not compiled."""
-    stem = module.__name__.rpartition(".")[2]
-    source = Path(str(module.__file__)).parent / f"{stem}.py"
+def interpreted(stem: str) -> ModuleType:
+    """The same kernel as plain Python, not compiled, and so the kernels that it uses."""
+    source = FOLDER / f"{stem}.py"
     spec = importlib.util.spec_from_file_location(f"interpreted_{stem}", source)
     assert spec is not None
     assert spec.loader is not None
     loaded = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(loaded)
+    used = re.findall(
+        r"^from (scarid_cli\.kernels\.(\w+)) import", source.read_text(), re.MULTILINE
+    )
+    with patch.dict(sys.modules, {name: interpreted(own) for name, own in used}):
+        spec.loader.exec_module(loaded)
     return loaded
 
 
@@ -56,7 +68,8 @@ def kernels() -> None:
     for name, (module, run) in {**signals(), **regressions(), **chains(), **simulation()}.items():
         there = not str(module.__file__).endswith(".py")
         fast = f"{timed(run, module, SAMPLES):.1f}" if there else "none"
-        slow = timed(run, interpreted(module) if there else module, INTERPRETED_SAMPLES)
+        stem = module.__name__.rpartition(".")[2]
+        slow = timed(run, interpreted(stem) if there else module, INTERPRETED_SAMPLES)
         print(f"  {name:30} {fast:>9} {slow:12.0f}")
 
 
@@ -126,17 +139,32 @@ def chains() -> dict[str, tuple[ModuleType, KernelRun]]:
 
 
 def simulation() -> dict[str, tuple[ModuleType, KernelRun]]:
-    """The simulated robot in its control loop."""
-    q = encoded(SAMPLES)
-    reference = np.column_stack([q, q, np.zeros(SAMPLES), np.zeros(SAMPLES)])
-    noise, log = np.zeros((SAMPLES, 2)), np.empty((SAMPLES, 10))
-    model = np.array([3.42, 0.064, 0.131, 0.0, 0.07, 0.015, 0.58, 0.156, 0.0, 0.0])
-    control = np.array([800, 25, 100, 2.5, 0, 0, 1e9, 1e9, 1e-4, 1e-4, 0.9, *np.zeros(6)])
+    """Simulated robots in their control loops."""
+    return {
+        f"simulate {name}, control period": (arm, period_of(name)) for name in ("emps", "scara2")
+    }
+
+
+def period_of(name: str) -> KernelRun:
+    """Control periods of a robot at 1 kHz."""
+    robot = load(name)
+    n, tables = len(robot.joints), model(robot).tables
+    q = np.tile(encoded(SAMPLES)[:, None], n)
+    reference, noise = np.hstack([q, np.zeros((SAMPLES, 2 * n))]), np.zeros((SAMPLES, n))
+    own = law(robot)
+    gains = np.column_stack(
+        (own.kp, own.kd, own.ki, np.full(n, 1e9), np.full(n, 1e-4), np.zeros((n, 3)))
+    )
+    setup = np.array([1e-3, 0.9, 0.0, 0.0, 0.0, 0.0])
 
     def run(module: ModuleType, k: int) -> None:
-        module.run(reference[:k], noise[:k], log[:k], np.zeros(10), model, control, 1e-3, 4)
+        state, lag, memory = np.zeros((2, n)), np.zeros(n), np.zeros((3, n))
+        log = np.empty((k, 9 * n))
+        module.run(
+            reference[:k], noise[:k], log, state, lag, memory, tables, tables, gains, setup, 2
+        )
 
-    return {"simulate, control period": (plant, run)}
+    return run
 
 
 def differentiators() -> None:

@@ -18,7 +18,8 @@ def tables(scores: Sequence[Score]) -> None:
     """A table for each class and resolution, the best method first."""
     for kind in CLASSES:
         for bits in BITS:
-            table(of(scores, kind, bits), f"{kind}, {bits} bit")
+            if found := of(scores, kind, bits):
+                table(found, f"{kind}, {bits} bit")
 
 
 def of(scores: Sequence[Score], kind: str, bits: int) -> list[Score]:

@@ -15,12 +15,12 @@ SHOWN_AFTER = 1.0  # seconds before anything is shown
 
 
 @contextlib.contextmanager
-def steps(*, quiet: bool) -> Iterator[Callable[[], None]]:
+def steps(*, quiet: bool, of: str = "settings tried") -> Iterator[Callable[[], None]]:
     """A function to call at each step of a search, counted where a person waits."""
     if quiet or not sys.stderr.isatty():
         yield lambda: None
         return
-    with _line("{task.completed} settings tried") as advance:
+    with _line(f"{{task.completed}} {of}") as advance:
         yield lambda: advance(1)
 
 

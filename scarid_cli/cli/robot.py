@@ -81,7 +81,7 @@ def described(robot: Robot) -> Iterator[str]:
     joints, parameters = len(robot.joints), len(robot.parameters)
     yield f"robot       {robot.name}: {robot.title}"
     yield f"freedom     {joints} joint{'s' if joints > 1 else ''}, {parameters} parameters"
-    controller = "described" if robot.control else "none, so the robot cannot be simulated"
+    controller = robot.control.kind if robot.control else "none; `simulate` uses its default"
     yield f"controller  {controller}"
     if robot.body:
         yield f"gravity     {' '.join(f'{x:g}' for x in robot.body.gravity)} m/s2"

@@ -13,9 +13,19 @@ from scarid_cli.cli.options import NUMBERS
 @declare("simulate", WithImperfections)
 @options.table_input
 @options.robot
-@click.option("--kp", type=NUMBERS, help="Proportional gains.  [default: the robot's]")
-@click.option("--kd", type=NUMBERS, help="Derivative gains.  [default: the robot's]")
-@click.option("--ki", type=NUMBERS, help="Integral gains.  [default: the robot's]")
+@click.option(
+    "--control",
+    type=click.Choice(("pd", "pid", "pd-gravity", "computed-torque")),
+    help="Controller.  [default: the robot's, or computed-torque]",
+)
+@click.option(
+    "--bandwidth",
+    type=float,
+    help="Bandwidth from which the gains are found [Hz].  [default: the robot's gains, or 5]",
+)
+@click.option("--kp", type=NUMBERS, help="Proportional gains.  [default: see --bandwidth]")
+@click.option("--kd", type=NUMBERS, help="Derivative gains.  [default: see --bandwidth]")
+@click.option("--ki", type=NUMBERS, help="Integral gains.  [default: see --bandwidth]")
 @click.option(
     "--control-rate", type=float, default=1000.0, show_default=True, help="Control rate [Hz]."
 )
@@ -29,7 +39,7 @@ from scarid_cli.cli.options import NUMBERS
 @click.option(
     "--substeps",
     type=click.IntRange(min=1),
-    default=4,
+    default=2,
     show_default=True,
     help="Runge-Kutta steps per period of the controller.",
 )
@@ -62,15 +72,21 @@ def command() -> None:
       scarid simulate --encoder-bits 13 --truth reference.parquet > log.csv
       scarid simulate --with torque-delay=0.002 --with lost-rows=0.001 reference.csv
       scarid simulate --kp 6.5,155 --kd 5,25 reference.csv   # the gains printed in the paper
+      scarid trajgen --robot arm.urdf --ddq-max 5 | scarid simulate --control pd-gravity
 
     The robot has the a priori parameters of its description and starts at rest at the first
-    position of the trajectory. Its controller is proportional-derivative, with an integral part on
-    request (paper eq. 29, its sign corrected):
+    position of the trajectory. With e = q_ref - q, the controllers are (paper eq. 29, its sign
+    corrected):
 
     \b
-      tau = Kp (q_ref - q) + Kd (dq_ref - dq) + Ki integral(q_ref - q)
+      pd               tau = Kp e + Kd de/dt
+      pid              tau = Kp e + Kd de/dt + Ki integral(e)
+      pd-gravity       the torque of pid, plus gravity g(q)
+      computed-torque  tau = M(q) (ddq_ref + Kp e + Kd de/dt + Ki integral(e)) + h(q, dq) + friction
 
-    where dq is the differentiated and smoothed reading of the encoder. Joints have viscous and
-    Coulomb friction (eq. 2), and stick at rest. The motion is integrated by the Runge-Kutta method
-    of fourth order.
+    where dq is the differentiated and smoothed reading of the encoder, and gravity, M, h (gravity,
+    centrifugal and Coriolis torques) and the friction at dq_ref are those of the description. Gains
+    that the description does not give are found from --bandwidth: two equal poles for the typical
+    inertia of each joint. Coulomb friction holds joints at rest. The motion is integrated by the
+    Runge-Kutta method of fourth order, whose steps end where a joint stops or begins to slide.
     """

@@ -16,9 +16,7 @@ from scarid_cli.cli.options import NUMBERS
 @click.option(
     "--excitation",
     type=click.Choice(EXCITATIONS.names),
-    default="quintic",
-    show_default=True,
-    help="The kind of motion; see below.",
+    help="The kind of motion; see below.  [default: quintic, or spline with --optimise]",
 )
 @options.settings_of("excitation")
 @click.option(
@@ -26,7 +24,7 @@ from scarid_cli.cli.options import NUMBERS
     type=click.IntRange(min=0),
     default=0,
     show_default=True,
-    help="Seed of the random motion.",
+    help="Seed of the random motion, or of the random starts of --optimise.",
 )
 @click.option(
     "--duration", type=float, default=20.0, show_default=True, help="Length of the motion [s]."
@@ -56,6 +54,62 @@ from scarid_cli.cli.options import NUMBERS
     help="Position at which the motion starts and ends [rad or m].  [default: zero where the "
     "limits allow it, else the middle between them]",
 )
+@click.option("--optimise", is_flag=True, help="Find the best motion; see --criterion.")
+@click.option(
+    "--criterion",
+    type=click.Choice(("balanced", "d", "a", "c", "scaled-c")),
+    help="What makes a motion the best: a small volume of the error ellipsoid (d), small errors of "
+    "the torques that parameters stand for (a), a small condition number of W (c) or of its scaled "
+    "columns (scaled-c), or d and c in equal parts (balanced).  [default: balanced; d with --for]",
+)
+@click.option(
+    "--for",
+    "wanted",
+    metavar="NAME,...",
+    help="Optimise the errors of these parameters alone, the others being nuisance parameters.",
+)
+@click.option(
+    "--after",
+    type=options.INPUT,
+    metavar="FILE",
+    help="A parameter table of earlier experiments, which the motion is to complement.",
+)
+@click.option(
+    "--torque-noise",
+    type=NUMBERS,
+    help="Standard deviation of the logged torques, for the errors that are predicted [N m or N].  "
+    "[default: that of --after, else the robot's]",
+)
+@click.option(
+    "--workspace",
+    type=NUMBERS,
+    metavar="XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX",
+    help="Box that the tool must not leave, in the frame of the base [m].",
+)
+@click.option(
+    "--budget", type=click.FloatRange(min=0.0, min_open=True), metavar="SECONDS",
+    help="Time for random starts of --optimise.  [default: 10]",
+)  # fmt: skip
+@click.option(
+    "--starts",
+    type=click.IntRange(min=1),
+    help="Number of random starts instead of a time; gives the same motion each time.",
+)
+@options.side_output(
+    "--expected", help="Write the expected error of each parameter to FILE, a table."
+)
+@click.option(
+    "--repeat",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    help="How often the motion is repeated.",
+)
+@click.option(
+    "--approach",
+    type=NUMBERS,
+    help="Begin with a slow motion from this posture to the home position [rad or m].",
+)
 @click.option("--rate", type=float, default=200.0, show_default=True, help="Rows per second [Hz].")
 @click.option(
     "--q-max",
@@ -78,10 +132,16 @@ def command() -> None:
       scarid trajgen --robot emps --duration 30 --segment 1 4 | scarid simulate
       scarid trajgen --via points.csv --rate 500
       scarid trajgen --robot arm.urdf --ddq-max 5 --home 0,-0.5 -o reference.csv
+      scarid trajgen --robot arm.toml --optimise --expected errors.csv -o reference.parquet
+      scarid trajgen --robot arm.toml --optimise --after parameters.parquet -o next.parquet
 
     The motion starts and ends at rest at the home position and stays within the limits on position,
     velocity and acceleration, which are those of the robot's description unless an option narrows
     them. A motion that would leave its limits is refused before anything is written. The
     condition number of the robot's observation matrix W along the motion is reported on standard
     error; if it is below about 100, the motion excites the robot well.
+
+    --optimise also keeps the torque limits, computed with the a priori parameters, and keeps links
+    apart whose shapes are described. It reports what limits the motion, and the error of each
+    parameter to expect from torques with white noise.
     """

@@ -103,6 +103,7 @@ def _units(unit: str | dict[str, str] | None) -> tuple[str, ...]:
 # From the most to the least demanding: a table is of the first kind whose required columns it has.
 KINDS = (
     "parameters",
+    "expected",
     "metrics",
     "comparison",
     "trials",

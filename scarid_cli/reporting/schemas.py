@@ -33,6 +33,7 @@ TYPE_NAMES = {arrow: name for name, arrow in schemas.TYPES.items()}
 USES = {
     "via": ("you", "`trajgen --via`"),
     "trajectory": ("`trajgen`", "`simulate`"),
+    "expected": ("`trajgen --expected`", "you"),
     "measurement": ("`simulate`, a real robot", "`resample`, `filter`, `tune`, `differentiate`"),
     "trials": ("`tune`", "you"),
     "motion": ("`differentiate`", "`identify`, `validate`"),

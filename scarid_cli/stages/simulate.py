@@ -10,8 +10,7 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.imperfections.registry import Imperfections
 from scarid_cli.algorithms.imperfections.rows import StandstillAfter, StandstillBefore
-from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, LoopState
-from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, IndefiniteError, LoopState
 from scarid_cli.algorithms.sensors import building
 from scarid_cli.algorithms.sensors.recorder import Recorder, Rows
 from scarid_cli.algorithms.sensors.standstill import with_standstill
@@ -34,21 +33,23 @@ def simulate(
     """The log, at the log rate [Hz], of a robot that follows a trajectory in closed loop.
 
     The robot starts at rest at the first position of the trajectory. The log has measured signals,
-    with the imperfections that are given, and the reference; `truth` adds the true signals, and
-    their time where that is not the time of the row.
+    with the imperfections that are given, and the reference. `truth` adds the true signals; the
+    friction torques and the motion of the motors where imperfections of the robot change them; and
+    the time of the truth where that is not the time of the row.
     """
     given = given or Imperfections(len(loop.robot.joints))
     ratio = _whole(loop.control_rate * table.period, "the trajectory's rate")
     keep = _whole(loop.control_rate / log_rate, "the log rate")
-    recorder = building.recorder(given, loop.encoder, loop.control_rate, keep)
-    schema = _schema(loop.robot, truth=truth, jitter=building.jitters(given))
+    recorder = building.recorder(given, loop, keep)
+    _ = loop.plant  # refuses what cannot be simulated before anything is written
+    schema = _schema(loop, truth=truth, jitter=building.jitters(given))
     meta = replace(table.meta, kind="measurement", robot=loop.robot.name, period=1.0 / log_rate)
     references = _references(table, len(loop.robot.joints), ratio)
     before, after = (
         round(given.one(kind) * loop.control_rate) for kind in (StandstillBefore, StandstillAfter)
     )
     rows = _rows(with_standstill(references, before, after), loop, recorder)
-    return Table(table.name, schema, meta, _batches(rows, schema))
+    return Table(table.name, schema, meta, _batches(rows, schema, len(loop.robot.joints)))
 
 
 def _whole(ratio: float, what: str) -> int:
@@ -58,29 +59,38 @@ def _whole(ratio: float, what: str) -> int:
     return whole
 
 
-def _schema(robot: Robot, *, truth: bool, jitter: bool) -> pa.Schema:
-    torque = [joint.torque_unit for joint in robot.joints]
-    units = [joint.unit for joint in robot.joints]
+def _schema(loop: ClosedLoop, *, truth: bool, jitter: bool) -> pa.Schema:
+    torque = [joint.torque_unit for joint in loop.robot.joints]
+    units = [joint.unit for joint in loop.robot.joints]
     fields = [number("t", "s"), *numbers("q{i}", units), *numbers("tau{i}", torque)]
     fields += motion_fields(units, "_ref")
     if truth:
         fields += [*motion_fields(units, "_true"), *numbers("tau{i}_true", torque)]
+        if loop.imperfections.rub:
+            fields += numbers("friction{i}_true", torque)
+        if loop.imperfections.bend:
+            fields += numbers("q{i}_motor_true", units)
+            fields += numbers("dq{i}_motor_true", [f"{unit}/s" for unit in units])
         fields += [number("t_true", "s")] if jitter else []
     return pa.schema(fields)
 
 
+LOGGED = ("q{i}", "tau{i}", "q{i}_ref", "dq{i}_ref", "ddq{i}_ref")
+MOTION = ("q{i}_true", "dq{i}_true", "ddq{i}_true")
+TRUE = (*MOTION, "tau{i}_true", "friction{i}_true", "q{i}_motor_true", "dq{i}_motor_true")
 Timed = tuple[float, Rows]  # rows, and the time of the first tick [s]
 
 
-def _batches(rows: Iterator[Timed], schema: pa.Schema) -> Iterator[pa.RecordBatch]:
-    """The rows as batches with as many columns as the schema has."""
+def _batches(rows: Iterator[Timed], schema: pa.Schema, joints: int) -> Iterator[pa.RecordBatch]:
+    """The rows as batches with the columns of the schema."""
+    names = of_joints(joints, *LOGGED, *TRUE)
     for start, part in rows:
-        if not len(part.t):
-            continue
-        signals = [row for signal in (*part.logged, *part.true) for row in signal]
-        columns = [start + part.t, *signals, start + part.t_true]
-        arrays = [doubles(column) for column in columns[: len(schema)]]
-        yield pa.RecordBatch.from_arrays(arrays, schema=schema)
+        signals = (row for signal in (*part.logged, *part.true) for row in signal)
+        columns = dict(zip(names, signals, strict=True))
+        columns |= {"t": start + part.t, "t_true": start + part.t_true}
+        if len(part.t):
+            arrays = [doubles(columns[name]) for name in schema.names]
+            yield pa.RecordBatch.from_arrays(arrays, schema=schema)
 
 
 def _rows(
@@ -88,20 +98,24 @@ def _rows(
 ) -> Iterator[Timed]:
     state: LoopState | None = None
     recording = recorder.init(loop.seed)
-    tick, start = 0, 0.0
+    start = 0.0
     for start, reference in references:
         if state is None:
             state = loop.init(reference[0][:, 0])
         try:
-            state, log = loop.step(state, reference[0], reference[1])
+            state, log = loop.step(state, *reference)
         except DivergedError as error:
-            when = start + (tick + error.tick) / loop.control_rate
+            when = start + error.tick / loop.control_rate
             raise BadData(
                 f"the closed loop became unstable at t = {when:.4g} s; lower the gains or raise "
                 "the control rate"
             ) from None
+        except IndefiniteError:
+            raise UsageFault(
+                f"robot {loop.robot.name} cannot be simulated: its inertia matrix is not positive "
+                "definite; give its links and motors inertias (`scarid robot check` shows them)"
+            ) from None
         recording, rows = recorder.step(recording, log, reference)
-        tick += log.q.shape[1]
         yield start, rows
     yield start, recorder.finish(recording)
 

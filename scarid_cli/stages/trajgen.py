@@ -37,7 +37,7 @@ def via_points(table: Table, robot: Robot) -> ViaPath:
 
 def checked(trajectory: Trajectory, limits: Limits, rate: float) -> Trajectory:
     """The trajectory itself, if every row of its table at this rate [Hz] is within the limits."""
-    for t, motion in _samples(trajectory, rate):
+    for t, motion in samples(trajectory, rate):
         limits.require(t, *motion)
     return trajectory
 
@@ -50,7 +50,7 @@ def tabulate(trajectory: Trajectory, robot: Robot, rate: float, meta: Metadata) 
 
 
 def _rows(trajectory: Trajectory, rate: float, schema: pa.Schema) -> Iterator[pa.RecordBatch]:
-    for t, motion in _samples(trajectory, rate):
+    for t, motion in samples(trajectory, rate):
         columns = [t, *(row for signal in motion for row in signal)]
         yield pa.RecordBatch.from_arrays([doubles(c) for c in columns], schema=schema)
 
@@ -58,7 +58,7 @@ def _rows(trajectory: Trajectory, rate: float, schema: pa.Schema) -> Iterator[pa
 def conditioning(trajectory: Trajectory, robot: Robot, rate: float) -> str:
     """The condition number of the observation matrix W along the trajectory, in words."""
     state = empty(len(robot.parameters))
-    for _, motion in _samples(trajectory, rate):
+    for _, motion in samples(trajectory, rate):
         W = robot.regressor(*motion)
         state, _ = absorb(state, W, np.zeros(W.shape[:2]))
     try:
@@ -67,7 +67,7 @@ def conditioning(trajectory: Trajectory, robot: Robot, rate: float) -> str:
         return "W is singular: not every parameter is excited"
 
 
-def _samples(trajectory: Trajectory, rate: float) -> Iterator[tuple[Array, tuple[Array, ...]]]:
+def samples(trajectory: Trajectory, rate: float) -> Iterator[tuple[Array, tuple[Array, ...]]]:
     """The times [s] of the rows of the table, and the motion at these times, in batches."""
     count = round(trajectory.duration * rate) + 1
     for start in range(0, count, BATCH_ROWS):

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from conftest import Result, refused
 
-from scarid_cli.algorithms.imperfections.registry import IMPERFECTIONS
+from scarid_cli.algorithms.imperfections.registry import IMPERFECTIONS, written
 from scarid_cli.algorithms.robots.reading import ROBOTS
 
 Run = Callable[..., Result]
@@ -37,13 +37,13 @@ def test_the_help_has_a_line_for_every_imperfection(scarid: Run) -> None:
 
 
 def test_imperfections_of_no_size_change_no_byte(simulate: Run) -> None:
-    kept = {"encoder-bits", "torque-noise", "encoder-turns"}  # whose default is not zero
+    described = {"encoder-bits", "torque-noise"}  # replace values of the description
     names = [
-        f"--with={name}={','.join(['0'] * len(kind.NUMBERS))}"
+        f"--with={written(name, kind.defaults(2)).partition(' ')[0]}"
         for name, kind in IMPERFECTIONS.items()
-        if name not in kept and not kind.NUMBERS[0].words
+        if name not in described
     ]
-    assert simulate(*names, "--with=encoder-turns=1").out == simulate().out
+    assert simulate(*names).out == simulate().out
 
 
 @pytest.mark.parametrize(
@@ -99,10 +99,23 @@ def test_robot_check_shows_the_imperfections(scarid: Run, tmp_path: Path) -> Non
         ("torque-delay=1,2,3", "3 values; give one for all joints, or one for each of 2 joints"),
         ("lost-rows=1", "1 is outside its range; give a number from 0 to 0.9"),
         ("torque-outliers=0.1", "torque-outliers has no effect without torque-outlier-size"),
+        ("encoder-side=both", "'both' is none of its words; give motor or link"),
+        ("payload=1", "1 value; give 11 (mass, cx, cy, cz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz, from)"),
+        ("payload=-1,0,0,0,0,0,0,0,0,0,0", "mass -1 is outside its range; give 0 kg or more"),
+        ("payload=1,0,0,0,1,0,0,1,0,9,0", "payload: no body has these moments of inertia"),
     ],
 )
 def test_a_mistake_is_reported_in_one_line(given: str, reported: str, simulate: Run) -> None:
     refused(simulate("--with", given), 2, reported)
+
+
+def test_a_robot_that_cannot_have_an_imperfection_is_refused_before_anything_is_written(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    arm, reference = samples / "arm.toml", tmp_path / "arm.csv"
+    assert scarid("trajgen", "-q", "--robot", arm, "--duration", 2, "-o", reference).status == 0
+    result = scarid("simulate", "--robot", arm, "--with", "flexibility=10", reference)
+    refused(result, 2, "flexible joints with couplings cannot be simulated")
 
 
 def test_a_mistake_in_a_description_is_reported_in_one_line(simulate: Run, tmp_path: Path) -> None:
@@ -121,3 +134,40 @@ def test_lost_rows_and_jitter_are_for_resample(shell: Run) -> None:
     refused(failed, 65, "put it on a constant rate with `scarid resample --rate`")
     mended = shell("scarid resample -q --rate 200 log.csv | scarid differentiate | scarid identify")
     assert mended.status == 0
+
+
+CONDITIONS = {
+    "clean": "encoder-bits=0 torque-noise=0",
+    "coarse encoder": "encoder-bits=12",
+    "noise x4": "torque-noise=0.8,0.04",
+    "late torque": "torque-delay=0.02",
+    "late by part of a sample": "torque-delay=0.0031",
+    "offset": "torque-offset=1,0.1",
+    "Stribeck": "stribeck=0.3,0.08 stribeck-velocity=0.1",
+    "flexible joints": "flexibility=8,15",
+    "flexible joints, encoders on the links": "flexibility=8 encoder-side=link",
+    "vibrating base": "vibration=0.5 vibration-frequency=12",
+    "coloured residuals": "coloured-torque-noise=0.4,0.02 torque-noise-time=0.1",
+    "ripple": "ripple=0.5,0.02 ripple-cycles=16",
+    "slow drive": "drive-bandwidth=40",
+    "filtered torque": "torque-bandwidth=15",
+    "outliers": "torque-outliers=0.01 torque-outlier-size=20,2",
+    "lost and held rows": "lost-rows=0.01 repeated-rows=0.05",
+    "standstill": "standstill-before=0.5 standstill-after=0.5",
+    "load friction": "load-friction=0.1",
+    "motor constant": "torque-constant-error=0.05",
+    "weaker motor": "motor-gain=-0.05",
+    "payload": "payload=1,0.1,0,0,0.01,0,0,0.01,0,0.01,1",
+    "friction of a cold robot": "friction-drift=0.3 friction-drift-time=60",
+    "asymmetric friction": "friction-asymmetry=0.2",
+    "bad clock": "sampling-jitter=2e-4 stamp-jitter=1e-4",
+}
+
+
+@pytest.mark.parametrize("rate", [100, 1000])
+@pytest.mark.parametrize("name", CONDITIONS)
+def test_conditions_of_real_cells_can_be_expressed(name: str, rate: int, simulate: Run) -> None:
+    words = [word for given in CONDITIONS[name].split() for word in ("--with", given)]
+    found = simulate("--log-rate", rate, *words)
+    assert found.status == 0
+    assert found.out != simulate("--log-rate", rate).out

@@ -71,7 +71,7 @@ def motion(rows: int = 400, seed: int = 0) -> dict[str, np.ndarray]:
         columns[f"q{i}"] = np.round(q / 1e-4 + noise[0]) * 1e-4
         columns[f"dq{i}"] = dq + 0.01 * noise[1]
         columns[f"ddq{i}"] = ddq + 0.1 * noise[2]
-        columns[f"q{i}_ref"], columns[f"dq{i}_ref"] = q, dq
+        columns |= {f"q{i}_ref": q, f"dq{i}_ref": dq, f"ddq{i}_ref": ddq}
     W = SCARA.regressor(*(np.array(signal) for signal in zip(*exact, strict=True)))
     for i, tau in enumerate(SCARA.torques(W, SCARA.apriori), start=1):
         columns[f"tau{i}"] = tau + 0.1 * rng.standard_normal(rows)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -14,6 +15,7 @@ from stages.tables import SCARA, Kept, collected, motion, references, table
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
+from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.io.table import Table
 from scarid_cli.stages.differentiate import differentiate, matched
@@ -43,10 +45,7 @@ def identified(name: str) -> Stage:
 def simulated(source: Table) -> Table:
     loop = ClosedLoop(
         robot=SCARA,
-        kp=np.array(SCARA.control.kp),
-        kd=np.array(SCARA.control.kd),
-        ki=np.array(SCARA.control.ki),
-        velocity_cutoff=50.0,
+        law=replace(law(SCARA), velocity_cutoff=50.0),
         encoder_resolution=np.full(2, 1e-4),
         position_noise=np.full(2, 1e-5),
         torque_noise=np.full(2, 0.1),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -13,6 +14,7 @@ from scipy.interpolate import CubicHermiteSpline
 from stages.tables import SCARA, collected, references, table
 
 from scarid_cli.algorithms.imperfections.registry import IMPERFECTIONS, Imperfections, values_of
+from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.algorithms.sensors import building
 from scarid_cli.arrays import Array
@@ -20,7 +22,7 @@ from scarid_cli.io.table import Table
 from scarid_cli.stages.simulate import simulate
 
 QUIET = {"encoder-bits": [0], "torque-noise": [0]}
-Values = dict[str, list[float]]
+Values = Mapping[str, Sequence[float | str]]
 
 
 def simulated(source: Table, values: Values, rate: float, seed: int = 3) -> Table:
@@ -34,10 +36,7 @@ def simulated(source: Table, values: Values, rate: float, seed: int = 3) -> Tabl
 def closed_loop(imperfections: Imperfections, seed: int) -> ClosedLoop:
     return ClosedLoop(
         SCARA,
-        kp=np.array([800.0, 25.0]),
-        kd=np.array([100.0, 2.5]),
-        ki=np.zeros(2),
-        velocity_cutoff=20.0,
+        law=law(SCARA),
         seed=seed,
         **building.in_the_loop(imperfections, SCARA.joints, 1000.0),
     )
@@ -236,6 +235,24 @@ def test_standstill_holds_the_robot_at_both_ends() -> None:
 
 EXAMPLES: Values = {
     **LOG_LEVEL,
+    "drive-bandwidth": [60.0],
+    "motor-gain": [0.05],
+    "ripple": [0.1],
+    "ripple-cycles": [8.0],
+    "stribeck": [0.2, 0.05],
+    "stribeck-velocity": [0.2],
+    "load-friction": [0.1],
+    "friction-asymmetry": [0.2],
+    "friction-drift": [-0.3],
+    "friction-drift-time": [0.5],
+    "flexibility": [15.0],
+    "flexibility-damping": [0.1],
+    "motor-share": [0.5],
+    "encoder-side": ["link"],
+    "vibration": [0.5],
+    "vibration-frequency": [12.0],
+    "vibration-direction": [0.0, 1.0, 0.0],
+    "payload": [2.0, 0.1, 0.0, 0.0, 0.01, 0.0, 0.0, 0.01, 0.0, 0.01, 1.0],
     "encoder-bits": [13],
     "encoder-eccentricity": [1e-3],
     "encoder-phase": [0.3],
@@ -314,11 +331,31 @@ def test_the_logger_keeps_no_more_ticks_than_a_row_can_need() -> None:
     values = {"torque-delay": [0.05], "position-rate": [50.0], "sampling-jitter": [1e-4]}
     given = Imperfections(2, {name: values_of(name, x, 2) for name, x in values.items()})
     loop = closed_loop(given, 0)
-    recorder = building.recorder(given, loop.encoder, 1000.0, 5)
+    recorder = building.recorder(given, loop, 5)
     state, recording = loop.init(np.zeros(2)), recorder.init(0)
     still = (np.zeros((2, 7)),) * 3
     for _ in range(300):
-        state, ticks = loop.step(state, *still[:2])
+        state, ticks = loop.step(state, *still)
         recording, _ = recorder.step(recording, ticks, still)
         assert recording.ticks is not None
         assert recording.ticks.shape[2] <= 50 + 20 + 5 + 10
+
+
+def test_a_late_encoder_on_a_flexible_joint_reads_the_motor() -> None:
+    values = {**QUIET, "flexibility": [15.0]}
+    truth = log(1000.0, values)
+    found = log(values={**values, "position-delay": [0.0034]})
+    for i in (1, 2):
+        motor = (truth[f"{name}{i}_motor_true"] for name in ("q", "dq"))
+        expected = CubicHermiteSpline(truth["t"], *motor)(found["t"][1:] - 0.0034)
+        np.testing.assert_allclose(found[f"q{i}"][1:], expected, rtol=0.0, atol=1e-12)
+        assert np.abs(found[f"q{i}_motor_true"] - found[f"q{i}_true"]).max() > 1e-4
+
+
+def test_true_torque_of_a_slow_drive_between_ticks_is_interpolated() -> None:
+    values = {**QUIET, "drive-bandwidth": [30.0]}
+    truth = log(1000.0, values)
+    found = log(values={**values, "hidden-jitter": [3e-4]})
+    expected = np.interp(found["t_true"], truth["t"], truth["tau1_true"])
+    np.testing.assert_allclose(found["tau1_true"], expected, rtol=1e-9)
+    assert (found["tau1"] != found["tau1_true"]).any()

@@ -8,34 +8,37 @@ from typing import Any
 import numpy as np
 from unit.support import adjusted
 
+from scarid_cli.algorithms.plants.controllers import Law
 from scarid_cli.algorithms.plants.loop import ClosedLoop, LoopLog, LoopState
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
-from scarid_cli.kernels import plant
 
 RATE = 1000.0
+LAW = ("kp", "kd", "ki", "velocity_cutoff", "kind")
 GAINS = {"kp": np.array([800.0, 25.0]), "kd": np.array([100.0, 2.5])}
 
 
 def closed_loop(robot: Robot, **settings: Any) -> ClosedLoop:
     """No control, no noise and a perfect encoder, unless settings say otherwise."""
     none = np.zeros(len(robot.joints))
-    names = ("kp", "kd", "ki", "encoder_resolution", "position_noise", "torque_noise")
-    fixed = {"velocity_cutoff": 0.0, "seed": 0, "control_rate": RATE}
+    names = ("encoder_resolution", "position_noise", "torque_noise")
+    control = {name: settings.pop(name) for name in LAW if name in settings}
+    law = Law(**(dict.fromkeys(("kp", "kd", "ki"), none) | {"velocity_cutoff": 0.0} | control))
+    fixed = {"law": law, "seed": 0, "control_rate": RATE}
     return ClosedLoop(robot, **(dict.fromkeys(names, none) | fixed | settings))
 
 
 def moving(state: LoopState, *dq: float) -> LoopState:
     """The same state, with velocities."""
-    values = state.values.copy()
-    values[2 : 2 + len(dq)] = dq
-    return replace(state, values=values)
+    motion = state.motion.copy()
+    motion[1, : len(dq)] = dq
+    return replace(state, motion=motion)
 
 
 def free(loop: ClosedLoop, q: list[float], dq: list[float], ticks: int) -> LoopLog:
     """What happens without a reference."""
     nothing = np.zeros((len(q), ticks))
-    return loop.step(moving(loop.init(np.array(q)), *dq), nothing, nothing)[1]
+    return loop.step(moving(loop.init(np.array(q)), *dq), nothing, nothing, nothing)[1]
 
 
 def pushed(robot: Robot, *torques: float) -> ClosedLoop:
@@ -51,13 +54,14 @@ def push(loop: ClosedLoop, ticks: int) -> LoopLog:
     """From rest at zero, all torques forwards."""
     joints = len(loop.robot.joints)
     far, still = np.full((joints, ticks), 1e3), np.zeros((joints, ticks))
-    return loop.step(loop.init(np.zeros(joints)), far, still)[1]
+    return loop.step(loop.init(np.zeros(joints)), far, still, still)[1]
 
 
-def reference(joints: int, ticks: int) -> tuple[Array, Array]:
-    """Sines to follow: position and velocity."""
-    t, omega = np.arange(ticks) / RATE, np.array([[2.0], [3.0]])[:joints]
-    return 0.5 * np.sin(omega * t), 0.5 * omega * np.cos(omega * t)
+def reference(joints: int, ticks: int) -> tuple[Array, Array, Array]:
+    """Sines to follow: position, velocity and acceleration."""
+    t, omega = np.arange(ticks) / RATE, np.linspace(2.0, 3.0, max(joints, 2))[:joints, None]
+    q = 0.5 * np.sin(omega * t)
+    return q, 0.5 * omega * np.cos(omega * t), -omega * omega * q
 
 
 def inertia(robot: Robot, q: Array) -> Array:
@@ -71,15 +75,6 @@ def inertia(robot: Robot, q: Array) -> Array:
 SMOOTH = adjusted("scara2", Fv1=0.0, Fs1=0.0, Fv2=0.0, Fs2=0.0, L1MY2=0.03)
 
 ARM = [3.42, 0.064, 0.131, 0.03]
-
-
-def coast(model: list[float], q: list[float], dq: list[float], ticks: int) -> Array:
-    """The log without control, at 1 kHz."""
-    state, log = np.array([*q, *dq, *q, *np.zeros(4)]), np.empty((ticks, 10))
-    control = np.array([0.0] * 6 + [1e300] * 2 + [0.0] * 9)
-    reference, noise = np.zeros((ticks, 4)), np.zeros((ticks, 2))
-    assert plant.run(reference, noise, log, state, np.array(model), control, 1e-3, 4) == ticks
-    return log
 
 
 def mass_matrix(q2: Any) -> Array:

@@ -136,7 +136,7 @@ def test_a_description_that_does_not_fit_is_refused(
 def test_a_check_writes_the_base_parameters_out(urdf: str) -> None:
     lines = list(described(load(urdf)))
     assert "freedom     2 joints, 13 parameters" in lines
-    assert "controller  none, so the robot cannot be simulated" in lines
+    assert "controller  none; `simulate` uses its default" in lines
     assert "  1  revolute   position -3 to 3 rad, velocity 9 rad/s, torque 9 N m" in lines
     assert "  Iyy1  kg m2      0.31  = Iyy1 + 1 Ia1 + 0.09 m2" in lines
     assert "  mx2   kg m       0.1" in lines

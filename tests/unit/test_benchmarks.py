@@ -59,4 +59,4 @@ def test_the_kernels_are_measured_with_arguments_that_they_take(
     monkeypatch.setattr(speed, "SAMPLES", 200)
     monkeypatch.setattr(speed, "INTERPRETED_SAMPLES", 20)
     speed.kernels()
-    assert len(capsys.readouterr().out.splitlines()) == 3 + 9
+    assert len(capsys.readouterr().out.splitlines()) == 3 + 10

@@ -34,7 +34,7 @@ def experiment(seed: int) -> Rows:
         "seed": seed,
     }
     loop = closed_loop(SCARA, **GAINS, **settings)
-    log = loop.step(loop.init(reference[0, :, 0]), reference[0], reference[1])[1]
+    log = loop.step(loop.init(reference[0, :, 0]), *reference)[1]
     kept = reference[:, :, ::RATIO]
     motion = np.concatenate((kept, log.tau[None, :, ::RATIO]))
     return rows_of(SCARA, motion, np.arange(kept.shape[2]), H, reference=kept[:2])

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
+import itertools
 import re
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
+from speed import FOLDER, interpreted
 
-import scarid_cli.kernels
 from scarid_cli.algorithms.differentiators.kalman import Differentiator as Kalman
 from scarid_cli.algorithms.filters.butterworth import Butterworth
 from scarid_cli.algorithms.filters.kalman import Records
-from scarid_cli.algorithms.plants.loop import mechanism
+from scarid_cli.algorithms.plants.model import model
 from scarid_cli.algorithms.robots.reading import load
 
-FOLDER = Path(scarid_cli.kernels.__file__).parent
 NAMES = sorted(path.stem for path in FOLDER.glob("*.pxd"))
 
 Arguments = list[Any]
@@ -28,16 +26,6 @@ Arguments = list[Any]
 
 def compiled(name: str) -> ModuleType:
     return importlib.import_module(f"scarid_cli.kernels.{name}")
-
-
-def interpreted(name: str) -> ModuleType:
-    """The same source, run by Python."""
-    spec = importlib.util.spec_from_file_location(f"interpreted_{name}", FOLDER / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def motion(rng: np.random.Generator, samples: int = 400) -> np.ndarray:
@@ -83,6 +71,21 @@ def implicit_levant(rng: np.random.Generator, order: int = 3) -> Arguments:
 def tracking(rng: np.random.Generator) -> Arguments:
     q = motion(rng)
     return [q, np.empty_like(q), np.empty_like(q), rng.random(2), np.array([30.0, 0.02]), 0.005]
+
+
+def aise(rng: np.random.Generator, order: int = 2) -> Arguments:
+    q, size, window = motion(rng), 2 * order + 1, 7
+    return [
+        *(q, np.empty_like(q), np.empty_like(q)),
+        rng.random(8),
+        rng.standard_normal(size),
+        1e6 * np.eye(size),
+        1e-3 * rng.standard_normal((2, order + window + 1)),
+        rng.random((window + 1, 2)),
+        np.empty((3, size)),
+        np.array([1e-10, 1e-4, 0.5, 1e-7]),
+        0.005,
+    ]
 
 
 def kalman(rng: np.random.Generator) -> Arguments:
@@ -147,22 +150,34 @@ def moments(rng: np.random.Generator) -> Arguments:
     return [rng.standard_normal(100), rng.standard_normal(100), np.zeros(5)]
 
 
-def plant(rng: np.random.Generator, *, resolution: float = 1e-5) -> Arguments:
+def arm(rng: np.random.Generator, *, resolution: float = 1e-5, kind: float = 0.0) -> Arguments:
     """Two joints with friction that follow a reference in steps: they slide, stop and stick."""
-    ticks = 2000
-    reference = np.zeros((ticks, 4))
-    reference[:, :2] = np.repeat(rng.uniform(-0.3, 0.3, (2, 2)), 1000, axis=0)
-    gains = [800.0, 25.0, 100.0, 2.5, 5.0, 0.5, 30.0, 2.0, resolution, resolution, 0.7]
-    eccentricity = [0.0, 1e-3, 1.0, 50.0, 0.0, 0.3]
+    ticks, robot = 200, load("scara2")
+    reference = np.zeros((ticks, 6))
+    reference[:, :2] = np.repeat(rng.uniform(-0.1, 0.1, (2, 2)), ticks // 2, axis=0)
+    reference[:20] = 0.0
+    gains = np.zeros((2, 8))
+    gains[:, :4] = [[800.0, 100.0, 5.0, 60.0], [25.0, 2.5, 0.5, 4.0]]
+    gains[:, 4] = resolution
+    gains[1, 5:] = 1e-5, 50.0, 0.3  # eccentricity of the encoder
+    table = model(robot)
+    joints = table.joints.copy()
+    joints[:, [4, 9, 10]] = 0.1  # Stribeck, load and drift
+    joints[:, [17, 18, 19]] = 500.0, 0.01, 20.0  # drives
+    world = np.array([0.2, 0.0, 0.0, 0.2, 0.1, 0.0, 9.0])  # gravity, and vibration of the base
+    plant = (table.body, table.motors, joints, COUPLING, world)
     return [
         reference,
         1e-6 * rng.standard_normal((ticks, 2)),
-        np.empty((ticks, 10)),
-        np.concatenate((0.1 * rng.standard_normal(4), np.zeros(6))),
-        mechanism(load("scara2")),
-        np.array(gains + eccentricity),
-        0.001,
-        4,
+        np.empty((ticks, 18)),
+        np.zeros((2, 2)),
+        np.zeros(2),
+        np.zeros((3, 2)),
+        plant,
+        (table.body, table.motors, table.joints, COUPLING, table.world),
+        gains,
+        np.array([0.001, 0.7, kind, 0.0, 3.0, 0.0]),
+        2,
     ]
 
 
@@ -182,6 +197,24 @@ def chain_gradient(rng: np.random.Generator) -> Arguments:
     return [*motion, rng.standard_normal(W.shape), *slopes, links, np.zeros_like(links)]
 
 
+COUPLING = np.array([[0.0, 1.0, 0.5, 1.0, 0.01, 0.05]])
+
+
+def rigid(rng: np.random.Generator) -> Arguments:
+    """A revolute and a prismatic axis in general position."""
+    body = rng.standard_normal((2, 23))
+    body[:, 12] = [0.0, 1.0]
+    motion, pull = rng.standard_normal((2, 2)), rng.standard_normal(3)
+    return [body, pull, motion, np.zeros(2), np.zeros((2, 2))]
+
+
+def release(rng: np.random.Generator) -> Arguments:
+    root = rng.standard_normal((4, 4))
+    contact = np.zeros((9, 4))
+    contact[1], contact[2:4], contact[5] = 2.0, 0.3, rng.standard_normal(4)
+    return [root @ root.T + np.eye(4), contact]
+
+
 CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = {
     "p2smd": ("p2smd", "differentiate", p2smd),
     "p2smd, literal law": ("p2smd", "differentiate", p2smd_literal),
@@ -198,6 +231,8 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
         lambda rng: implicit_levant(rng, 5),
     ),
     "tracking": ("tracking", "follow", tracking),
+    "aise": ("aise", "differentiate", aise),
+    "aise, order 1": ("aise", "differentiate", lambda rng: aise(rng, 1)),
     "kalman": ("kalman", "filtered", kalman),
     "kalman, records": ("kalman", "recorded", kalman_records),
     "kalman, lagged": ("kalman", "lagged", lagged),
@@ -219,8 +254,14 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
     "moments": ("moments", "accumulate", moments),
     "chain": ("chain", "regressor", chain),
     "chain, gradient": ("chain", "gradient", chain_gradient),
-    "plant": ("plant", "run", plant),
-    "plant, perfect encoder": ("plant", "run", lambda rng: plant(rng, resolution=0.0)),
+    "rigid": ("rigid", "dynamics", rigid),
+    "friction, release": ("friction", "release", release),
+    "friction, sign": ("friction", "sign", lambda rng: [rng.standard_normal()]),
+    "control, encoder": ("control", "quantised", lambda rng: [rng.standard_normal(), 0.1]),
+    "control, eccentric": ("control", "eccentric", lambda rng: list(rng.standard_normal(4))),
+    "arm": ("arm", "run", arm),
+    "arm, perfect encoder": ("arm", "run", lambda rng: arm(rng, resolution=0.0)),
+    "arm, computed torque": ("arm", "run", lambda rng: arm(rng, kind=2.0)),
 }
 
 
@@ -256,15 +297,20 @@ def test_compiled_and_interpreted_bits_are_equal(case: str, seed: int) -> None:
     fast = getattr(compiled(kernel), function)(*ours)
     slow = getattr(interpreted(kernel), function)(*theirs)
     assert fast == slow
-    for mine, other in zip(ours, theirs, strict=True):
+    for mine, other in zip(leaves(ours), leaves(theirs), strict=True):
         np.testing.assert_array_equal(bits(mine), bits(other))
 
 
-@pytest.mark.parametrize("case", ["plant", "plant, perfect encoder"])
-def test_plant_case_does_slide_and_stick(case: str) -> None:
+def leaves(arguments: Arguments) -> Arguments:
+    """The arguments, with the members of those that are tuples."""
+    return [x for group in arguments for x in (group if isinstance(group, tuple) else (group,))]
+
+
+@pytest.mark.parametrize("case", ["arm", "arm, perfect encoder"])
+def test_arm_case_does_slide_and_stick(case: str) -> None:
     """Else the comparison of bits above would leave out half of the kernel."""
     arguments = CASES[case][2](np.random.default_rng(0))
-    assert compiled("plant").run(*arguments) == len(arguments[0])
+    assert compiled("arm").run(*arguments) == len(arguments[0])
     still = arguments[2][:, 6:8] == 0.0
     assert still.any(axis=0).all()
     assert not still.all(axis=0).any()
@@ -275,8 +321,10 @@ def wrong_lengths() -> Iterator[Any]:
     variants = {"levant, Euler", "kalman, lagged"}  # whose records and outputs may differ in length
     one = {(kernel, function): case for case, (kernel, function, _) in CASES.items()}
     for case in sorted(set(one.values()) - variants):
-        for index, argument in enumerate(CASES[case][2](np.random.default_rng(0))):
+        for index, argument in enumerate(leaves(CASES[case][2](np.random.default_rng(0)))):
             for axis in range(np.ndim(argument)):
+                if argument is COUPLING and axis == 0:
+                    continue  # an arm may have any number of them
                 for change in (-1, 1):
                     label = f"{case} argument {index} axis {axis} {change:+d}"
                     yield pytest.param(case, index, axis, change, id=label)
@@ -293,13 +341,26 @@ def resized(array: np.ndarray, axis: int, change: int) -> np.ndarray:
     return memory[: int(np.prod(shape))].reshape(shape)
 
 
+def replaced(arguments: Arguments, index: int, change: Callable[[Any], Any]) -> Arguments:
+    """The arguments with one of their leaves changed."""
+    numbers = itertools.count()
+
+    def one(x: Any) -> Any:
+        return change(x) if next(numbers) == index else x
+
+    return [
+        tuple(map(one, group)) if isinstance(group, tuple) else one(group) for group in arguments
+    ]
+
+
 @pytest.mark.parametrize("load_kernel", [compiled, interpreted])
 @pytest.mark.parametrize(("case", "index", "axis", "change"), list(wrong_lengths()))
 def test_wrong_length_is_refused(
     case: str, index: int, axis: int, change: int, load_kernel: Callable[[str], ModuleType]
 ) -> None:
     kernel, function, make = CASES[case]
-    arguments = make(np.random.default_rng(0))
-    arguments[index] = resized(arguments[index], axis, change)
+    arguments = replaced(
+        make(np.random.default_rng(0)), index, lambda array: resized(array, axis, change)
+    )
     with pytest.raises(ValueError, match=r"lengths|numbers|sizes"):
         getattr(load_kernel(kernel), function)(*arguments)

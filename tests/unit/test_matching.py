@@ -184,6 +184,34 @@ def test_lateness_finds_a_known_delay(late: float) -> None:
     assert lateness(np.interp(t - late, t, a), a, H) == pytest.approx(late, abs=2e-4)
 
 
+@pytest.mark.parametrize(("bits", "tolerance"), [(16, 0.009), (18, 0.004), (24, 0.009)])
+@pytest.mark.parametrize(
+    "name", ["levant", "implicit-levant", "filtering", "super-twisting", "2smd"]
+)
+def test_the_matching_delay_is_that_of_motions_within_the_bounds(
+    name: str, bits: int, tolerance: float
+) -> None:
+    """On two sines that no default bound excludes; the delay grows with the encoder's noise."""
+    t, w = np.arange(6000) * H, 2.0 * np.pi * 0.7
+    q = 0.5 * np.sin(w * t) + 0.15 * np.sin(0.37 * w * t)
+    truth = -(w**2) * (0.5 * np.sin(w * t) + 0.15 * 0.37**2 * np.sin(0.37 * w * t))
+    resolution = 2.0 * np.pi / 2**bits
+    method = DIFFERENTIATORS.load(name)()
+    _, a = over(method, resolution * np.round(q / resolution), H)
+    found = lateness(a[1000:], truth[1000:], H)
+    assert delays(method, H)[1] == pytest.approx(found, abs=tolerance)
+
+
+@pytest.mark.parametrize("bounds", [((4, 400.0),), ((3, 5.0),), ((2, 20.0), (3, 150.0))])
+def test_reference_motion_stays_within_the_bounds(bounds: tuple[tuple[int, float], ...]) -> None:
+    h = 0.001
+    signals = dict(enumerate(reference(h, bounds)))
+    for order in (3, 4):
+        signals[order] = np.gradient(signals[order - 1], h)
+    for order, bound in bounds:
+        assert np.abs(signals[order]).max() < 1.02 * bound
+
+
 def test_measured_delays_of_a_linear_method_are_those_of_its_phase() -> None:
     """High-gain, four poles at w: acceleration (4 w^3 s + w^4) s^2 / (s + w)^4, so 0 at rest, and
     (s^2 / w^2) (10 - 4) more: its delay is found on the reference alone, p2smd's is 1 / gamma1."""

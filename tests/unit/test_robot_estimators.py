@@ -13,7 +13,6 @@ from unit.slow_motions import THETA, P, smooth
 from scarid_cli.algorithms.estimators import ekf, iv, separable, wls
 from scarid_cli.algorithms.estimators.ekf import forward
 from scarid_cli.algorithms.estimators.ls import Estimator as LeastSquares
-from scarid_cli.algorithms.plants.loop import mechanism
 from scarid_cli.algorithms.regression.decimation import decimated
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.rows import Rows, plain, rows_of
@@ -114,12 +113,22 @@ def test_instruments_are_not_attenuated_and_the_hausman_test_rejects() -> None:
     assert iv.hausman(clean, right, other)[1] > 0.01
 
 
-def test_iv_without_a_reference_or_a_controller_is_refused() -> None:
+def test_iv_without_a_reference_is_refused() -> None:
     solver = iv.Estimator().for_robot(SCARA)
     with pytest.raises(UsageFault, match="q1_ref"):
         solver.step(solver.init(np.zeros(8)), with_torques(np.zeros((2, len(T)))))
-    with pytest.raises(UsageFault, match="no controller"):
-        iv.Estimator().for_robot(replace(SCARA, control=None))
+
+
+def test_iv_of_estimates_that_no_robot_can_have_is_refused() -> None:
+    """With opposite torques least squares estimates negative inertias."""
+    motion = exact()
+    tau = -SCARA.torques(SCARA.regressor(*motion), SCARA.apriori)
+    rows = rows_of(
+        SCARA, np.concatenate((motion, tau[None])), np.arange(8000), H, reference=motion[:2]
+    )
+    solver = iv.Estimator().for_robot(SCARA)
+    with pytest.raises(UsageFault, match="not positive definite"):
+        solver.fit(solver.step(solver.init(np.zeros(8)), rows)[0])
 
 
 # Kalman filter
@@ -129,7 +138,9 @@ def test_the_forward_model_is_the_plant_s() -> None:
     """Accelerations from the regressor against the closed form of the two-link arm."""
     rng = np.random.default_rng(0)
     q, dq, tau = rng.standard_normal((3, 2, 50))
-    zz1r, zz2, mx, my, fv1, fv2, fs1, fs2, *_ = mechanism(SCARA)
+    names = ("ZZ1R", "ZZ2", "L1MX2", "L1MY2", "Fv1", "Fv2", "Fs1", "Fs2")
+    value = dict(zip(SCARA.names, SCARA.apriori, strict=True))
+    zz1r, zz2, mx, my, fv1, fv2, fs1, fs2 = (value[name] for name in names)
     c, s = np.cos(q[1]), np.sin(q[1])
     m12 = zz2 + mx * c - my * s
     m11 = zz1r + zz2 + 2.0 * (mx * c - my * s)

@@ -5,7 +5,9 @@ the filter and Taylor steps for the differentiator. The output is taken from the
 update. It withstands vibration and glitches better than all other methods here.
 Delay: tens of milliseconds.
 Matched by measured delays: position, velocity and torque are delayed by as much as the method
-delays quintic moves of 1 rad in 0.8 to 2 s with the same settings.
+delays moves of 1 rad in 0.8 s or more, within its bounds, behind an encoder of 18 bit.
+Within the bound the match is right to 2 degrees; motions beyond it are not followed: 112 degrees at
+1 Hz and 0.5 rad with the default.
 Rule: the bound is the largest derivative of order + 1 of the motion.
 bound = 64 [1/s^(order+1)]: the largest jerk for order 2.
 order = 2: the order of differentiation, 2 to 5.
@@ -22,6 +24,7 @@ import numpy as np
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.settings import require_between, require_positive
 from scarid_cli.algorithms.filters.sliding import SlidingMode, gains
+from scarid_cli.algorithms.processes.delays import Bounds
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import levant
 
@@ -38,6 +41,9 @@ class Differentiator(SlidingMode):
         require_positive(self, "bound")
         require_between(self, 2, 5, "order")
         require_between(self, 1, 7 - self.order, "filters")
+
+    def bounds(self) -> Bounds:
+        return ((self.order + 1, self.bound),)
 
     def start(self, x: float) -> Array:
         values = np.zeros(self.order + self.filters + 1)

@@ -13,17 +13,16 @@ states = 4: number of states, 3 to 5.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, inf
+from math import exp
 from typing import ClassVar
 
 import numpy as np
 
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.settings import require_between, require_positive
-from scarid_cli.algorithms.filters.acceleration import discretised
-from scarid_cli.algorithms.filters.kalman import KalmanState, Model
+from scarid_cli.algorithms.filters.kalman import KalmanState
 from scarid_cli.algorithms.filters.observer import ObserverMethod
-from scarid_cli.arrays import Array
+from scarid_cli.algorithms.filters.placement import observer_of
 
 
 @dataclass(frozen=True)
@@ -42,20 +41,4 @@ class Differentiator(ObserverMethod):
 
     def observer(self, x: float, h: float) -> KalmanState:
         """The observer at rest at x, with the gain that puts all poles at exp(-bandwidth h)."""
-        m = self.states
-        F, Q = discretised(m, 0.0, 0.0, h)
-        model = Model(F, Q, np.array([1.0, inf]), np.ones(m))
-        return model.at_rest(x).with_constant_gain(gain(m, exp(-self.bandwidth * h), h))
-
-
-def gain(m: int, pole: float, h: float) -> Array:
-    """The gain (m) of the measurement with which F (I - K H) has all eigenvalues at the pole.
-
-    By Ackermann's formula; h [s].
-    """
-    F, _ = discretised(m, 0.0, 0.0, 1.0)  # in units of h, h^2, ...
-    observability = np.array([np.linalg.matrix_power(F, k)[0] for k in range(m)])
-    wanted = np.linalg.matrix_power(F - pole * np.eye(m), m)
-    predicted = wanted @ np.linalg.solve(observability, np.eye(m)[-1])
-    filtered: Array = np.linalg.solve(F, predicted) / h ** np.arange(m)
-    return filtered
+        return observer_of(np.full(self.states, exp(-self.bandwidth * h)), x, h)

@@ -6,8 +6,9 @@ update, brought back to the present sample. Without noise the error converges to
 sampling if the bound holds.
 Delay: with noise, tens of milliseconds at the default.
 Matched by measured delays: position, velocity and torque are delayed by as much as the method
-delays quintic moves of 1 rad in 0.8 to 2 s with the same settings. If those moves exceed the bound,
-the delay is some 25 ms too long on motions within it.
+delays moves of 1 rad in 0.8 s or more, within its bounds, behind an encoder of 18 bit.
+Within the bound the match is right to 3 degrees; motions beyond it are not followed: 70 degrees at
+1 Hz and 0.5 rad with the default.
 Rule: the bound is the largest derivative of order + 1 of the motion. A quintic move of d in the
 time T has a jerk of 60 d / T^3 and a snap of 360 d / T^4.
 bound = 400 [1/s^(order+1)]: the largest snap for order 3.
@@ -26,6 +27,7 @@ import numpy as np
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.settings import require_between, require_positive
 from scarid_cli.algorithms.filters.sliding import SlidingMode, gains
+from scarid_cli.algorithms.processes.delays import Bounds
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import levant
 
@@ -42,6 +44,11 @@ class Differentiator(SlidingMode):
         require_positive(self, "bound")
         require_between(self, 1, 5, "order")
         require_between(self, 0, 1, "euler")
+
+    def bounds(self) -> Bounds:
+        if self.order == 1:  # the second differentiates the velocity
+            return (2, self.bound), (3, self.bound)
+        return ((self.order + 1, self.bound),)
 
     def start(self, x: float) -> Array:
         values = np.zeros((2, self.order + 1))

@@ -5,7 +5,9 @@ fixed gains. The second differentiates the velocity of the first. Without noise 
 to that of the sampling if the bounds hold; the acceleration chatters.
 Delay: with noise, tens of milliseconds.
 Matched by measured delays: position, velocity and torque are delayed by as much as the method
-delays quintic moves of 1 rad in 0.8 to 2 s with the same settings.
+delays moves of 1 rad in 0.8 s or more, within its bounds, behind an encoder of 18 bit.
+Within the bounds the match is right to 4 degrees; motions beyond them are not followed: 115 degrees
+at 1 Hz and 1 rad with the default.
 Rule: the bounds are those of the motion. A quintic move of d in the time T has an acceleration of
 5.8 d / T^2 and a jerk of 60 d / T^3.
 acceleration = 20 [1/s2], jerk = 150 [1/s3]: the largest of the motion, from which Levant's gains
@@ -22,6 +24,7 @@ import numpy as np
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.settings import require_positive
 from scarid_cli.algorithms.filters.sliding import SlidingMode, gains
+from scarid_cli.algorithms.processes.delays import Bounds
 from scarid_cli.arrays import Array
 from scarid_cli.kernels import levant
 
@@ -35,6 +38,9 @@ class Differentiator(SlidingMode):
 
     def check(self) -> None:
         require_positive(self, "acceleration", "jerk")
+
+    def bounds(self) -> Bounds:
+        return (2, self.acceleration), (3, self.jerk)
 
     def start(self, x: float) -> Array:
         return np.array([[x, 0.0], [0.0, 0.0]])

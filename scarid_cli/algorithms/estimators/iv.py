@@ -2,15 +2,15 @@
 
 The instruments are the regressor along a noise-free simulation of the robot in closed loop with the
 previous estimates, so noise of the measured motion cannot bias the estimates. The log must have the
-reference (q1_ref, ...), and the robot description must have the controller. Joints are weighted by
-their residuals. The Durbin-Wu-Hausman test against weighted least squares is reported. All rows are
-held in memory. No settings.
+reference (q1_ref, ...). The controller is that of the robot description, or else the default one of
+`simulate`. Joints are weighted by their residuals. The Durbin-Wu-Hausman test against weighted
+least squares is reported. All rows are held in memory. No settings.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from scarid_cli.algorithms.plants.following import simulated
 from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, RobotEstimator
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, joined
-from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.jackknife import shifts
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -31,14 +30,6 @@ ITERATIONS = 10
 class Estimator(RobotEstimator, HoldingEstimator):
     REFERENCE: ClassVar[bool] = True
     ALIGNS: ClassVar[bool] = False
-
-    def for_robot(self, robot: Robot) -> Self:
-        if robot.control is None:
-            raise UsageFault(
-                f"iv: robot {robot.name} has no controller to simulate it with; add [control] to "
-                "its description"
-            )
-        return super().for_robot(robot)
 
     def step(
         self, state: list[Rows], rows: Rows, *, trace: bool = False

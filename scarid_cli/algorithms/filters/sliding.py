@@ -10,9 +10,8 @@ from abc import abstractmethod
 
 import numpy as np
 
-from scarid_cli.algorithms.processes.delays import MeasuredDelays
-from scarid_cli.algorithms.processes.method import MatchedForm, Matching, Method
-from scarid_cli.algorithms.processes.process import Causal, Recursion
+from scarid_cli.algorithms.processes.delays import MeasuredMethod
+from scarid_cli.algorithms.processes.process import Recursion
 from scarid_cli.arrays import Array
 
 # lambda_0 ... lambda_n of the orders n = 1 to 7
@@ -27,14 +26,12 @@ LAMBDA = (
 )
 
 
-class SlidingMode(Causal, Method):
+class SlidingMode(MeasuredMethod):
     """A sliding-mode differentiator: a nonlinear recursion from one position to the next.
 
     A method states its settings, the numbers that its recursion starts with, and its law. It has
     no linearisation, since its gain is infinite at zero error, so it is matched by measured delays.
     """
-
-    MATCHING = Matching.MEASURED
 
     @abstractmethod
     def start(self, x: float) -> Array:
@@ -55,9 +52,6 @@ class SlidingMode(Causal, Method):
         v, a = np.empty_like(x), np.empty_like(x)
         self.law(x, v, a, state.values, state.h)
         return state, (v, a)
-
-    def matched(self) -> MatchedForm:
-        return MeasuredDelays(self)
 
 
 def gains(order: int, bound: float) -> Array:

@@ -16,7 +16,7 @@ POSITION, TORQUE = "rad or m", "N m or N"  # units of a revolute or of a prismat
 
 @dataclass(frozen=True)
 class Number:
-    """A number that a user gives: its unit (none for a ratio), its range, and what it stands for.
+    """A number that a user gives: its unit (none for a ratio), its range, and its default.
 
     `what` names the number where an imperfection has several. Where `words` are given, it is the
     place of one of them.
@@ -26,6 +26,7 @@ class Number:
     low: float = -inf
     high: float = inf
     whole: bool = False
+    default: float = 0.0
     what: str = ""
     words: tuple[str, ...] = ()
 
@@ -72,7 +73,6 @@ class Imperfection:
     NAME: ClassVar[str]
     NUMBERS: ClassVar[tuple[Number, ...]]
     PER_JOINT: ClassVar[bool]
-    DEFAULT: ClassVar[float] = 0.0  # its value where it is not given
     NEEDS: ClassVar[str] = ""  # another imperfection without which this one would do nothing
 
     @classmethod
@@ -82,10 +82,15 @@ class Imperfection:
 
     @classmethod
     def unit(cls) -> str:
-        """The unit of the first number, or the names of all numbers where there are several."""
-        if len(cls.NUMBERS) == 1:
-            return cls.NUMBERS[0].unit
-        return ", ".join(number.what for number in cls.NUMBERS)
+        """The unit of its number, the words to choose from, or how many numbers it has."""
+        if len(cls.NUMBERS) > 1:
+            return f"{len(cls.NUMBERS)} numbers"
+        return " or ".join(cls.NUMBERS[0].words) or cls.NUMBERS[0].unit
+
+    @classmethod
+    def defaults(cls, joints: int) -> tuple[float, ...]:
+        """The values where it is not given: one per joint, or one per number."""
+        return tuple(n.default for n in cls.NUMBERS) * (joints if cls.PER_JOINT else 1)
 
     @classmethod
     def read(cls, values: Sequence[object], joints: int) -> tuple[float, ...]:
@@ -103,7 +108,7 @@ class Imperfection:
             return f"one for all joints, or one for each of {_count(joints, 'joint')}"
         if len(cls.NUMBERS) == 1:
             return "one"
-        return f"{len(cls.NUMBERS)} ({cls.unit()})"
+        return f"{len(cls.NUMBERS)} ({', '.join(number.what for number in cls.NUMBERS)})"
 
 
 class PerJoint(Imperfection):

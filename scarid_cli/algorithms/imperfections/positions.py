@@ -6,7 +6,7 @@ from scarid_cli.algorithms.imperfections.declared import POSITION, Number, PerJo
 
 
 class EncoderBits(PerJoint):
-    """Resolution of the encoder of a revolute joint (0: perfect).
+    """Resolution of the encoder, per turn (0: perfect).
 
     The controller and the log read the nearest multiple of 2 pi / 2^bits [rad]. It replaces the
     `encoder_resolution` of the description, and does not apply to prismatic joints.
@@ -43,8 +43,7 @@ class EncoderTurns(PerJoint):
     """
 
     NAME = "encoder-turns"
-    NUMBERS = (Number(),)
-    DEFAULT = 1.0
+    NUMBERS = (Number(default=1.0),)
     NEEDS = "encoder-eccentricity"
 
 

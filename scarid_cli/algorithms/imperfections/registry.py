@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any
 
-from scarid_cli.algorithms.imperfections import positions, rows, torques
+from scarid_cli.algorithms.imperfections import positions, robot, rows, torques
 from scarid_cli.algorithms.imperfections.declared import Imperfection
 from scarid_cli.algorithms.robots.values import table
 
 # Where they act, as headings of the help and of the documentation.
 PLACES = {
+    "Robot": robot,
     "Measured position": positions,
     "Logged torque": torques,
     "Rows and clock": rows,
@@ -38,8 +39,7 @@ class Imperfections:
 
     def of(self, kind: type[Imperfection]) -> tuple[float, ...]:
         """The values of an imperfection: one per joint, or one per number."""
-        count = self.joints if kind.PER_JOINT else len(kind.NUMBERS)
-        return self.given.get(kind.NAME, (kind.DEFAULT,) * count)
+        return self.given.get(kind.NAME, kind.defaults(self.joints))
 
     def one(self, kind: type[Imperfection]) -> float:
         """The value of an imperfection of the whole robot that has one number."""

@@ -6,11 +6,12 @@ from scarid_cli.algorithms.imperfections.declared import Number, OfTheRobot
 
 
 class SamplingJitter(OfTheRobot):
-    """Standard deviation of sampling instants that the stamps show.
+    """Deviation of sampling instants that the stamps show.
 
-    The row of the nominal time t_k is sampled and stamped at t_k + d, with normal d. This is a
-    logger that polls at irregular intervals and reads a good clock. Each of the three jitters is
-    limited to 0.24 log periods to either side, so that time never runs backwards.
+    The row of the nominal time t_k is sampled and stamped at t_k + d, with normal d of this
+    standard deviation. This is a logger that polls at irregular intervals and reads a good clock.
+    Each of the three jitters is limited to 0.24 log periods to either side, so that time never runs
+    backwards.
     """
 
     NAME = "sampling-jitter"
@@ -18,10 +19,11 @@ class SamplingJitter(OfTheRobot):
 
 
 class StampJitter(OfTheRobot):
-    """Standard deviation of the stamps of samples taken on time.
+    """Deviation of the stamps of samples taken on time.
 
-    The row of the nominal time t_k is sampled at t_k and stamped t_k + d, with normal d. This is a
-    real-time controller whose rows are stamped when they arrive at another computer.
+    The row of the nominal time t_k is sampled at t_k and stamped t_k + d, with normal d of this
+    standard deviation. This is a real-time controller whose rows are stamped when they arrive at
+    another computer.
     """
 
     NAME = "stamp-jitter"
@@ -29,7 +31,7 @@ class StampJitter(OfTheRobot):
 
 
 class HiddenJitter(OfTheRobot):
-    """Standard deviation of sampling instants that no stamp shows.
+    """Deviation of sampling instants that no stamp shows.
 
     The row of the nominal time t_k is sampled at t_k + d, with normal d, and stamped t_k. This is a
     logger that polls at irregular intervals and counts the rows.
@@ -47,7 +49,7 @@ class LostRows(OfTheRobot):
 
 
 class RepeatedRows(OfTheRobot):
-    """Probability that a row repeats the values of the row before.
+    """Probability that a row repeats that before.
 
     The measured values and the reference are repeated with a new time stamp (held samples). The
     true values of the row are those of its own instant.

@@ -6,7 +6,7 @@ from scarid_cli.algorithms.imperfections.declared import TORQUE, Number, PerJoin
 
 
 class TorqueConstantError(PerJoint):
-    """Relative error of the motor constant behind the logged torque.
+    """Relative error of the motor constant in the log.
 
     logged = (1 + e) true: 0.05 makes the logged torque 5 % too large.
     """
@@ -16,7 +16,10 @@ class TorqueConstantError(PerJoint):
 
 
 class TorqueOffset(PerJoint):
-    """Constant offset of the logged torque: logged = true + offset."""
+    """Constant offset of the logged torque.
+
+    logged = true + offset.
+    """
 
     NAME = "torque-offset"
     NUMBERS = (Number(TORQUE),)
@@ -81,7 +84,7 @@ class ColouredTorqueNoise(PerJoint):
 
 
 class TorqueNoiseTime(PerJoint):
-    """Correlation time of the coloured noise on the logged torque."""
+    """Correlation time of coloured noise on the logged torque."""
 
     NAME = "torque-noise-time"
     NUMBERS = (Number("s", low=0.0),)
@@ -89,9 +92,9 @@ class TorqueNoiseTime(PerJoint):
 
 
 class TorqueResolution(PerJoint):
-    """Resolution of the logged torque, after all noise (0: perfect).
+    """Resolution of the logged torque (0: perfect).
 
-    The log has the nearest multiple of the resolution.
+    The log has the nearest multiple of the resolution, after all noise.
     """
 
     NAME = "torque-resolution"

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError
+from scarid_cli.algorithms.plants.controllers import law
+from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, IndefiniteError
 from scarid_cli.algorithms.regression.rows import Rows, runs
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.trajectories.hermite import refine
@@ -38,32 +39,34 @@ def simulated(robot: Robot, theta: Array, rows: Rows) -> Rows:
 
 def _followed(robot: Robot, theta: Array, reference: Array, h: float) -> Array:
     """Position, velocity and acceleration (3, joints, samples) in closed loop."""
-    control = robot.control
-    assert control is not None
     joints = len(robot.joints)
     ratio = max(1, round(h * CONTROL_RATE))
     parameters = zip(robot.parameters, theta.tolist(), strict=True)
     own = replace(robot, parameters=tuple(replace(p, apriori=x) for p, x in parameters))
     loop = ClosedLoop(
         robot=own,
-        kp=np.array(control.kp),
-        kd=np.array(control.kd),
-        ki=np.array(control.ki),
-        velocity_cutoff=control.velocity_cutoff,
+        law=law(robot),
         encoder_resolution=np.zeros(joints),
         position_noise=np.zeros(joints),
         torque_noise=np.zeros(joints),
         seed=0,
         control_rate=ratio / h,
+        apriori=robot,
     )
-    q, dq = reference[:2]
-    fine, speed, _ = refine(q, dq, np.gradient(dq, h, axis=1), h, ratio)
+    q, dq = reference
+    fine = refine(q, dq, np.gradient(dq, h, axis=1), h, ratio)
     try:
-        log = loop.step(loop.init(fine[:, 0]), fine, speed)[1]
+        log = loop.step(loop.init(fine[0][:, 0]), *fine)[1]
     except DivergedError:
         raise UsageFault(
             f"robot {robot.name}: its simulation with the controller of the description becomes "
             "unstable; correct [control], or use --estimator wls"
+        ) from None
+    except IndefiniteError:
+        raise UsageFault(
+            f"robot {robot.name}: the inertia matrix of the estimates is not positive definite, so "
+            "they cannot be simulated; check the controller of the description, or use "
+            "--estimator wls"
         ) from None
     signals = np.stack((log.q_true, log.dq_true, log.ddq_true))[:, :, ::ratio]
     # The simulation ends one sample early, since nothing follows the last reference.

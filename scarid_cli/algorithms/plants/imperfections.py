@@ -67,6 +67,17 @@ class PlantImperfections:
         if self.encoder_side not in ENCODER_SIDES:
             raise UsageFault(f"encoder side {self.encoder_side!r}: choose motor or link")
 
+    @property
+    def rub(self) -> bool:
+        """Whether the friction is not that of the description."""
+        names = ("stribeck", "load_friction", "friction_asymmetry", "friction_drift")
+        return any(np.any(np.asarray(getattr(self, name)) != 0.0) for name in names)
+
+    @property
+    def bend(self) -> bool:
+        """Whether a joint is flexible."""
+        return bool(np.any(np.asarray(self.flexibility) > 0.0))
+
     def of(self, name: str, joints: int) -> Array:
         """The values (joints) of one of the fields of each joint."""
         return np.array(np.broadcast_to(getattr(self, name), joints), dtype=np.float64)

@@ -1,35 +1,45 @@
-"""A simulated robot in closed loop (paper section 3.1 and eq. 29, with its sign corrected).
+"""A simulated robot in closed loop (docs/simulator.md).
 
-tau = Kp (q_ref - q) + Kd (dq_ref - dq_est) + Ki integral(q_ref - q), at the control rate. dq_est is
-the backward difference of the encoder, smoothed by a low-pass. Between the ticks of the controller
-the robot is integrated by the Runge-Kutta method of fourth order, and Coulomb friction sticks
-(docs/theory.md, "Robot, control and regression").
+The controller is sampled and holds its command (plants/controllers.py). Between its ticks the robot
+is integrated by the Runge-Kutta method of fourth order, whose steps end where a joint stops or
+begins to slide.
 """
 
 from __future__ import annotations
 
 from copy import deepcopy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
+from scarid_cli.algorithms.plants.controllers import KINDS, Law
+from scarid_cli.algorithms.plants.imperfect import at_rest, carrying, imperfect
+from scarid_cli.algorithms.plants.imperfections import PlantImperfections
+from scarid_cli.algorithms.plants.model import Model, model
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.planar import HORIZONTAL
 from scarid_cli.algorithms.sensors.motion import Encoder
 from scarid_cli.algorithms.sensors.noise import GaussMarkov, NoiseState, Source
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
-from scarid_cli.kernels import plant
+from scarid_cli.kernels import arm
 
-JOINTS = 2  # of the kernel; a single axis uses the first one
 LARGE = 1e300
 
 
 @dataclass(frozen=True)
 class LoopState:
-    """The state of the robot and its controller (of the kernel), and the sources of noise."""
+    """The state of the robot and its controller (kernels/arm.py), and the sources of noise.
 
-    values: Array
+    `motion` (2, positions): positions and velocities of the joints, then of motors behind flexible
+    transmissions. `lag` (joints): torques behind the lag of the drives. `memory` (3, joints): last
+    readings, velocity estimates and integrals of the controller. `tick`: number of the next tick.
+    """
+
+    motion: Array
+    lag: Array
+    memory: Array
+    tick: int
     position_noise: np.random.Generator
     torque_noise: np.random.Generator
     coloured: NoiseState | None = None
@@ -39,7 +49,10 @@ class LoopState:
 class LoopLog:
     """The signals at each tick of the controller: arrays (joints, ticks), in SI units.
 
-    `q` and `tau` are measured; `q_noise` and `tau_noise` are the noise in them.
+    `q` and `tau` are measured: the readings of the encoders, with `q_noise` in them, and the
+    `command` plus `tau_noise`. `tau_true` is the torque that acts, and `friction_true` what of it
+    friction takes. `q_motor_true` and `dq_motor_true` differ from
+    `q_true` and `dq_true` for flexible joints.
     """
 
     q: Array
@@ -48,6 +61,10 @@ class LoopLog:
     dq_true: Array
     ddq_true: Array
     tau_true: Array
+    friction_true: Array
+    q_motor_true: Array
+    dq_motor_true: Array
+    command: Array
     q_noise: Array
     tau_noise: Array
 
@@ -60,26 +77,30 @@ class DivergedError(ValueError):
         self.tick = tick
 
 
+class IndefiniteError(ValueError):
+    """The inertia matrix of the simulated robot is not positive definite at some posture."""
+
+
 @dataclass(frozen=True)
 class ClosedLoop:
     """A robot with its controller and sensors; arrays have one value per joint.
 
-    Gains [N m/rad, N m s/rad, N m/(rad s)], rates and the cut-off [Hz], resolution [rad or m], and
-    noise as standard deviations [rad or m, N m or N]. `eccentricity` has the amplitude [rad or m],
-    turns and phase [rad] of the encoders (see `Encoder`), `coloured` further noise of the position.
+    Rates [Hz], resolution [rad or m], and noise as standard deviations [rad or m, N m or N].
+    `eccentricity` has the amplitude [rad or m], turns and phase [rad] of the encoders (see
+    `Encoder`), and `coloured` is noise of the positions beside the white one. `apriori` is the
+    robot of the controller's model, by default the simulated one without its imperfections.
     """
 
     robot: Robot
-    kp: Array
-    kd: Array
-    ki: Array
-    velocity_cutoff: float
+    law: Law
     encoder_resolution: Array
     position_noise: Array
     torque_noise: Array
     seed: int
     control_rate: float = 1000.0
-    substeps: int = 4
+    substeps: int = 2
+    imperfections: PlantImperfections = field(default_factory=PlantImperfections)
+    apriori: Robot | None = None
     eccentricity: tuple[Array, Array, Array] | None = None
     coloured: GaussMarkov | None = None
 
@@ -90,14 +111,34 @@ class ClosedLoop:
             if np.any(getattr(self, name) < 0.0):
                 raise UsageFault(f"{name.replace('_', ' ')} must not be negative")
 
+    @cached_property
+    def plant(self) -> Model:
+        """The simulated arm, without its payload."""
+        step = 1.0 / (self.control_rate * self.substeps)
+        return imperfect(model(self.robot), self.robot, self.imperfections, step)
+
+    @cached_property
+    def known(self) -> Model:
+        """The a priori model of the controller."""
+        return model(self.apriori or self.robot)
+
+    @property
+    def on_motor(self) -> bool:
+        """Whether the encoders are on the motors of flexible joints."""
+        return self.imperfections.encoder_side == "motor"
+
     def init(self, q: Array) -> LoopState:
-        """The state at rest at q (joints) [rad or m]."""
+        """The state at rest at q (joints) [rad or m], which is what the encoders see."""
         position_seed, torque_seed = np.random.SeedSequence(self.seed).spawn(2)
         # Rounded as the kernel does, or the first velocity would be that of a jump.
-        reading = padded(self.encoder.reading(q[:, None], np.zeros((len(q), 1)))[:, 0])
+        reading = self.encoder.reading(q[:, None], np.zeros((len(q), 1)))[:, 0]
         source = Source.named(self.seed, "coloured-position-noise")
+        positions, lag = at_rest(self.plant, q, on_motor=self.on_motor)
         return LoopState(
-            np.concatenate((padded(q), np.zeros(2), reading, np.zeros(4))),
+            np.array([positions, np.zeros_like(positions)]),
+            lag,
+            np.array([reading, np.zeros_like(q), np.zeros_like(q)]),
+            0,
             np.random.default_rng(position_seed),
             np.random.default_rng(torque_seed),
             self.coloured.init(source) if self.coloured else None,
@@ -109,70 +150,75 @@ class ClosedLoop:
         none = np.zeros_like(self.encoder_resolution)
         return Encoder(self.encoder_resolution, *(self.eccentricity or (none, none, none)))
 
-    def step(self, state: LoopState, q_ref: Array, dq_ref: Array) -> tuple[LoopState, LoopLog]:
+    def step(
+        self, state: LoopState, q_ref: Array, dq_ref: Array, ddq_ref: Array
+    ) -> tuple[LoopState, LoopLog]:
         """The state and the signals after the ticks of a reference (joints, ticks)."""
         state = deepcopy(state)
         joints, ticks = q_ref.shape
-        reference = np.zeros((ticks, 2 * JOINTS))
-        reference[:, :joints] = q_ref.T
-        reference[:, JOINTS : JOINTS + joints] = dq_ref.T
-        noise = np.zeros((ticks, JOINTS))
-        noise[:, :joints] = state.position_noise.standard_normal((ticks, joints))
-        noise[:, :joints] *= self.position_noise
+        reference = np.ascontiguousarray(np.concatenate((q_ref, dq_ref, ddq_ref)).T)
+        noise = state.position_noise.standard_normal((ticks, joints)) * self.position_noise
         if self.coloured and state.coloured:
             after, coloured = self.coloured.step(state.coloured, ticks)
-            state = replace(state, coloured=after)
-            noise[:, :joints] += coloured.T
-        log = np.empty((ticks, 10))
-        done = plant.run(
+            state, noise = replace(state, coloured=after), noise + coloured.T
+        torque_noise = state.torque_noise.standard_normal((ticks, joints)) * self.torque_noise
+        log = np.empty((ticks, 9 * joints))
+        begin = self._payload_tick - state.tick
+        pieces = (slice(0, max(begin, 0)), slice(max(begin, 0), ticks))
+        for piece, plant in zip(pieces, (self.plant, self._loaded), strict=True):
+            if reference[piece].size:
+                state = self._run(state, plant, reference[piece], noise[piece], log[piece])
+        signals = log.reshape(ticks, 9, joints).transpose(1, 2, 0)
+        q, command, *truth = signals
+        parts = (q, command + torque_noise.T, *truth, command, noise.T, torque_noise.T)
+        return state, LoopLog(*(np.ascontiguousarray(signal) for signal in parts))
+
+    @property
+    def _payload_tick(self) -> int:
+        payload = self.imperfections.payload
+        return int(np.ceil(payload.start * self.control_rate - 1e-9)) if payload else 0
+
+    @cached_property
+    def _loaded(self) -> Model:
+        payload = self.imperfections.payload
+        return carrying(self.plant, payload) if payload else self.plant
+
+    def _run(
+        self, state: LoopState, plant: Model, reference: Array, noise: Array, log: Array
+    ) -> LoopState:
+        """Run the kernel over some ticks; the log is filled."""
+        period = 1.0 / self.control_rate
+        setup = np.array([period, self._smoothing, KINDS[self.law.kind], self.on_motor, 0, 0.0])
+        setup[4] = state.tick
+        motion, lag, memory = state.motion.copy(), state.lag.copy(), state.memory.copy()
+        done = arm.run(
             reference,
             noise,
             log,
-            state.values,
-            mechanism(self.robot),
-            self._control(),
-            1.0 / self.control_rate,
+            motion,
+            lag,
+            memory,
+            plant.tables,
+            self.known.tables,
+            self._gains,
+            setup,
             self.substeps,
         )
-        if done < ticks:
-            raise DivergedError(done)
-        torque_noise = state.torque_noise.standard_normal((ticks, joints)) * self.torque_noise
-        noises = np.ascontiguousarray(noise[:, :joints].T), np.ascontiguousarray(torque_noise.T)
-        columns = [np.ascontiguousarray(log[:, i : i + joints].T) for i in range(0, 10, JOINTS)]
-        q, tau, q_true, dq_true, ddq_true = columns
-        return state, LoopLog(q, tau + torque_noise.T, q_true, dq_true, ddq_true, tau, *noises)
+        if setup[5] != 0.0:
+            raise IndefiniteError
+        if done < len(reference):
+            raise DivergedError(state.tick + done)
+        return replace(state, motion=motion, lag=lag, memory=memory, tick=state.tick + done)
 
-    def _control(self) -> Array:
-        limits = [min(joint.torque_limit, LARGE) for joint in self.robot.joints]
-        rows = [padded(row) for row in (self.kp, self.kd, self.ki, np.array(limits))]
-        smoothing = 0.0
-        if self.velocity_cutoff > 0.0:
-            smoothing = np.exp(-2.0 * np.pi * self.velocity_cutoff / self.control_rate)
-        encoder = self.encoder
-        eccentricity = map(padded, (encoder.amplitude, encoder.turns, encoder.phase))
-        return np.concatenate((*rows, padded(encoder.resolution), [smoothing], *eccentricity))
+    @property
+    def _smoothing(self) -> float:
+        cutoff = self.law.velocity_cutoff
+        return float(np.exp(-2.0 * np.pi * cutoff / self.control_rate)) if cutoff > 0.0 else 0.0
 
-
-def padded(row: Array) -> Array:
-    """A row (joints) with a value for each joint of the kernel."""
-    return np.concatenate((row, np.zeros(JOINTS - len(row))))
-
-
-def mechanism(robot: Robot) -> Array:
-    """The parameters of the kernel's model: the a priori values of the robot."""
-    joints = len(robot.joints)
-    terms = {parameter.term.NAME for parameter in robot.parameters}
-    friction = [
-        robot.value(term, joint) for term in ("viscous", "coulomb", "offset") for joint in (1, 2)
-    ]
-    if joints == 2 and terms >= set(HORIZONTAL) and "mass" not in terms:
-        inertia = [robot.value(term) for term in HORIZONTAL]
-    elif joints == 1 and "mass" in terms:
-        # The second joint is there for the kernel only: L1MX2 = -ZZ2 uncouples it (M12 = 0).
-        inertia = [robot.value("mass", 1) + 1.0, 1.0, -1.0, 0.0]
-    else:
-        raise UsageFault(
-            f"robot {robot.name}: only one axis (mass) and the planar arm (ZZ1R, ZZ2, L1MX2, "
-            "L1MY2) can be simulated"
-        )
-    return np.array(inertia + friction)
+    @property
+    def _gains(self) -> Array:
+        law = self.law
+        limits = np.array([min(joint.torque_limit, LARGE) for joint in self.robot.joints])
+        own = self.encoder
+        encoder = (own.resolution, own.amplitude, own.turns, own.phase)
+        return np.column_stack((law.kp, law.kd, law.ki, limits, *encoder))

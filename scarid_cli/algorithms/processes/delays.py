@@ -9,10 +9,31 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
-from scarid_cli.algorithms.processes.method import MatchedForm, Method
+from scarid_cli.algorithms.processes.method import MatchedForm, Matching, Method
 from scarid_cli.algorithms.processes.process import Causal
 from scarid_cli.arrays import Array
+
+# Orders of derivatives of the motion, and the largest absolute values that a method follows.
+Bounds = tuple[tuple[int, float], ...]
+
+DURATIONS = (0.8, 1.2, 1.6, 2.0)  # of the moves of the reference motion [s]
+SLOWEST = 10.0  # times these durations, however low a bound is
+RESOLUTION = 2.0 * np.pi / 2**18  # of the encoder that sees the reference motion [rad]
+
+
+class MeasuredMethod(Causal, Method):
+    """A nonlinear method without a linearisation, which is matched by measured delays."""
+
+    MATCHING = Matching.MEASURED
+
+    def bounds(self) -> Bounds:
+        """The bounds on derivatives of the motion [1/s^order] under which the method converges."""
+        return ()
+
+    def matched(self) -> MatchedForm:
+        return MeasuredDelays(self)
 
 
 @dataclass(frozen=True)
@@ -47,7 +68,7 @@ class MeasuredDelaysState:
 class MeasuredDelays(Causal, MatchedForm):
     """The matched form: position and velocity are delayed to the instant of the acceleration."""
 
-    method: Method
+    method: MeasuredMethod
 
     @property
     def torque_filter(self) -> AccelerationDelay:
@@ -71,7 +92,7 @@ class MeasuredDelays(Causal, MatchedForm):
 class AccelerationDelay(Causal):
     """Delays a signal by as much as a method delays the acceleration."""
 
-    method: Method
+    method: MeasuredMethod
 
     def init(self, x: float, h: float) -> DelayLine:
         return DelayLine.of(delays(self.method, h)[1], x, h)
@@ -81,33 +102,55 @@ class AccelerationDelay(Causal):
         return after, (late,)
 
 
-def delays(method: Method, h: float) -> tuple[float, float]:
-    """The delays [s] of velocity and acceleration on quintic moves of 1 rad in 0.8 to 2 s.
+def delays(method: MeasuredMethod, h: float) -> tuple[float, float]:
+    """The delays [s] of velocity and acceleration on the reference motion of the method.
 
-    Each delay is that of the least squared error. The delay of the velocity is not allowed to
-    exceed that of the acceleration.
+    The motion is measured by an encoder of 18 bit: without its noise most of these methods would
+    have no delay. Each delay is that of the least squared error over the second half of the motion,
+    when a method that adapts has done so. The delay of the velocity is not allowed to exceed that
+    of the acceleration.
     """
-    q, v, a = reference(h)
+    q, v, a = reference(h, method.bounds())
+    q = RESOLUTION * np.round(q / RESOLUTION)
     _, (got_v, got_a) = method.step(method.init(float(q[0]), h), q)
-    late = lateness(got_a, a, h)
-    return min(lateness(got_v, v, h), late), late
+    half = slice(len(q) // 2, None)
+    late = lateness(got_a[half], a[half], h)
+    return min(lateness(got_v[half], v[half], h), late), late
 
 
-def reference(h: float) -> tuple[Array, Array, Array]:
-    """Position, velocity and acceleration of quintic moves to and fro, sampled every h [s].
+def reference(h: float, bounds: Bounds = ()) -> tuple[Array, Array, Array]:
+    """Position [rad], velocity and acceleration of moves to and fro, sampled every h [s].
 
-    The durations span those of the segments of the paper's excitation.
+    The moves of 1 rad take 0.8 to 2 s, as the segments of the paper's excitation, or longer by one
+    factor, so that no derivative exceeds its bound. They are quintic, or of the least higher
+    degree that bounds those derivatives.
     """
+    move = shape(max([2, *(order - 1 for order, _ in bounds)]))
+    slower = max([1.0, *(excess(move, order, bound) for order, bound in bounds)])
     parts = []
-    for sign, duration in zip((1.0, -1.0) * 4, (0.8, 1.2, 1.6, 2.0) * 2, strict=True):
-        s = np.arange(0.0, duration, h) / duration
-        q = s**3 * (10.0 + s * (-15.0 + 6.0 * s))
-        v = 30.0 * s**2 * (1.0 - s) ** 2 / duration
-        a = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / duration**2
+    for sign, duration in zip((1.0, -1.0) * 4, DURATIONS * 2, strict=True):
+        longer = duration * min(slower, SLOWEST)
+        s = np.arange(0.0, longer, h) / longer
         start = 0.0 if sign > 0.0 else 1.0
+        q, v, a = (move.deriv(k)(s) / longer**k for k in range(3))
         parts.append(np.array([start + sign * q, sign * v, sign * a]))
     q, v, a = np.concatenate(parts, axis=1)
     return q, v, a
+
+
+def shape(degree: int) -> Polynomial:
+    """A move from 0 to 1 in the time 1 whose velocity is proportional to (s (1 - s))^degree.
+
+    The derivative of order degree + 1 is bounded also where one move follows another.
+    """
+    path = (Polynomial([0.0, 1.0, -1.0]) ** degree).integ()
+    return path / path(1.0)
+
+
+def excess(move: Polynomial, order: int, bound: float) -> float:
+    """By how much longer the fastest move must take to have a derivative within its bound."""
+    largest = np.abs(move.deriv(order)(np.linspace(0.0, 1.0, 1001))).max() / DURATIONS[0] ** order
+    return float((largest / bound) ** (1.0 / order))
 
 
 def lateness(estimate: Array, truth: Array, h: float) -> float:

@@ -28,6 +28,7 @@ from scarid_cli.algorithms.imperfections.registry import imperfections_of
 from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.base import with_base_parameters
 from scarid_cli.algorithms.robots.capsules import capsule_of
+from scarid_cli.algorithms.robots.controls import control_of
 from scarid_cli.algorithms.robots.coupled import COUPLED_TERMS
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.joints import JOINT_UNITS, Joint, joint_of
@@ -48,7 +49,17 @@ TERMS: dict[str, type[AxisTerm]] = {
     if _complete(term)
 }
 DEFAULT_TERMS = ("inertia", "viscous", "coulomb", "offset")
-KEYS = ("title", "urdf", "gravity", "joint", "coupling", "capsule", "log", "imperfections")
+KEYS = (
+    "title",
+    "urdf",
+    "gravity",
+    "joint",
+    "coupling",
+    "capsule",
+    "control",
+    "log",
+    "imperfections",
+)
 
 
 def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
@@ -83,7 +94,7 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
             values.text("title", document["title"]),
             tuple(joints),
             tuple(parameters),
-            control=None,
+            control=control_of(document, len(found)),
             body=body,
             log=log_of(document, len(found)),
             imperfections=imperfections_of(document, len(found)),

@@ -44,16 +44,19 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Control:
-    """The controller of the simulated robot (paper eq. 29).
+    """The controller of the simulated robot (plants/controllers.py has the laws).
 
     Gains per joint [N m/rad, N m s/rad, N m/(rad s)], or with N and m for prismatic ones; the
-    cut-off [Hz] of the low-pass of the differentiated encoder.
+    cut-off [Hz] of the low-pass of the differentiated encoder. Without gains they are found from
+    the bandwidth [Hz], 0 for the default one.
     """
 
-    kp: tuple[float, ...]
-    kd: tuple[float, ...]
-    ki: tuple[float, ...]
-    velocity_cutoff: float
+    kp: tuple[float, ...] = ()
+    kd: tuple[float, ...] = ()
+    ki: tuple[float, ...] = ()
+    velocity_cutoff: float = 0.0
+    kind: str = "pid"
+    bandwidth: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,13 @@ import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.planar import L1MX2, L1MY2, MX1R, MX2, ZZ1R, ZZ2, PlanarTerm
-from scarid_cli.algorithms.robots.terms import StandardTerm
+from scarid_cli.algorithms.robots.terms import StandardTerm, Term
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
 STANDARD = 10  # parameters of a link, in the order of rigid.SYMBOLS
-IZZ, MX, MY = 5, 6, 7  # of those of a planar arm
+# The standard parameters that the terms of a planar arm multiply.
+PLANAR: dict[type[Term], int] = {ZZ1R: 5, MX1R: 6, ZZ2: 15, L1MX2: 16, MX2: 16, L1MY2: 17}
 
 
 @dataclass(frozen=True)
@@ -44,28 +45,28 @@ def mechanism(robot: Robot) -> Mechanism:
     """
     joints = len(robot.joints)
     links = np.zeros((joints, STANDARD))
-    planar: dict[str, PlanarTerm] = {}
-    for parameter in robot.parameters:
-        term = parameter.term
-        if isinstance(term, StandardTerm):
-            links.flat[term.place] = parameter.apriori
-        elif isinstance(term, PlanarTerm):
-            planar[term.NAME] = term
+    for place, parameter in zip(places(robot), robot.parameters, strict=True):
+        if place is not None:
+            links.flat[place] += parameter.apriori
     if robot.body:
         return Mechanism(robot.body.axes, links, np.array(robot.body.gravity))
     axes = np.zeros((joints, 16))
     axes[:, [0, 4, 8, 14]] = 1.0
     axes[:, 15] = [joint.type == "prismatic" for joint in robot.joints]
+    planar = {p.term.NAME: p.term for p in robot.parameters if isinstance(p.term, PlanarTerm)}
     length, gravity = _planar(robot.name, planar)
     if planar:
         axes[1, 9] = length
-        links[0, [IZZ, MX]] = robot.value(ZZ1R.NAME), robot.value(MX1R.NAME)
-        links[1, [IZZ, MX, MY]] = (
-            robot.value(ZZ2.NAME),
-            robot.value(L1MX2.NAME) + robot.value(MX2.NAME),
-            robot.value(L1MY2.NAME),
-        )
     return Mechanism(axes, links, np.array([gravity, 0.0, 0.0]))
+
+
+def places(robot: Robot) -> list[int | None]:
+    """The standard parameter that each parameter stands for, as an index of all links' parameters.
+
+    None stands for friction and motors, which are no part of the chain.
+    """
+    terms = [parameter.term for parameter in robot.parameters]
+    return [t.place if isinstance(t, StandardTerm) else PLANAR.get(type(t)) for t in terms]
 
 
 def _planar(name: str, terms: dict[str, PlanarTerm]) -> tuple[float, float]:

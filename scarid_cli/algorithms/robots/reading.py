@@ -9,7 +9,8 @@ from typing import Any
 
 from scarid_cli.algorithms.imperfections.registry import imperfections_of
 from scarid_cli.algorithms.robots import values
-from scarid_cli.algorithms.robots.description import Control, Parameter, Robot
+from scarid_cli.algorithms.robots.controls import control_of
+from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.joints import joint_of
 from scarid_cli.algorithms.robots.logs import log_of
 from scarid_cli.algorithms.robots.planar import PLANAR_TERMS, PlanarTerm
@@ -61,13 +62,12 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
         raise ValueError("it has no [[joint]] or no [[parameter]]; give at least one of each")
     values.distinct("name", [parameter.name for parameter in parameters])
     values.distinct("term of a joint", [(p.term.NAME, *p.term.joints) for p in parameters])
-    control = document.get("control")
     return Robot(
         name=name,
         title=values.text("title", document["title"]),
         joints=joints,
         parameters=parameters,
-        control=_control(control, len(joints)) if control else None,
+        control=control_of(document, len(joints)),
         log=log_of(document, len(joints)),
         imperfections=imperfections_of(document, len(joints)),
     )
@@ -107,12 +107,3 @@ def _term(name: str, entry: dict[str, Any]) -> Term:
         return term(**given)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
-
-
-def _control(entry: dict[str, Any], joints: int) -> Control:
-    rows = {key: tuple(values.number(key, x) for x in entry[key]) for key in ("kp", "kd", "ki")}
-    for key, row in rows.items():
-        if len(row) != joints:
-            raise ValueError(f"{key} has {len(row)} values for {joints} joints")
-    cutoff = values.number("velocity_cutoff", entry["velocity_cutoff"])
-    return Control(**rows, velocity_cutoff=cutoff)

@@ -30,6 +30,12 @@ def between(start: Motion, end: tuple[Array, Array], x: Array, h: float) -> Moti
     )
 
 
+def steady(q: Array, v: Array, q1: Array, v1: Array, h: float) -> Array:
+    """The acceleration at the start with which `between` is a polynomial of third order."""
+    acceleration: Array = (6.0 * (q1 - q) / h - 4.0 * v - 2.0 * v1) / h
+    return acceleration
+
+
 @dataclass(frozen=True)
 class Encoder:
     """An encoder with an eccentricity: it reads q + A sin(n q + phase), quantised; per joint.

@@ -27,7 +27,7 @@ class Rows(NamedTuple):
 
     t: Array
     logged: list[Array]  # q, tau, q_ref, dq_ref, ddq_ref
-    true: list[Array]  # q, dq, ddq, tau
+    true: list[Array]  # q, dq, ddq, tau, friction, q and dq of the motors
     t_true: Array
 
 
@@ -52,7 +52,8 @@ class Recorder:
     """A logger that takes a row every `keep` ticks of a controller with this rate [Hz].
 
     Positions and torques come into the log on a `Path` each. `coloured` noise is added to the
-    torques, which are rounded to their `torque_resolution` (joints) [N m or N].
+    torques, which are rounded to their `torque_resolution` (joints) [N m or N]. For `held` and
+    `on_motor` see `Signals`.
     """
 
     encoder: Encoder
@@ -65,6 +66,8 @@ class Recorder:
     faults: Faults
     keep: int
     control_rate: float
+    held: bool = True
+    on_motor: bool = False
 
     def init(self, seed: int) -> RecorderState:
         """The state before the first tick."""
@@ -75,10 +78,11 @@ class Recorder:
         self, state: RecorderState, log: LoopLog, reference: Motion
     ) -> tuple[RecorderState, Rows]:
         """The state after these ticks, and the rows that are complete by then."""
-        low_pass, *torques = self.torque.step(state.low_pass, log.tau_true)
+        low_pass, *torques = self.torque.step(state.low_pass, log.command)
         noise, coloured = self.coloured.step(state.noise, log.q.shape[1])
         motion = (log.q, log.q_noise, log.q_true, log.dq_true, log.ddq_true, log.tau_true)
-        ticks = np.array([*motion, *reference, *torques, log.tau_noise + coloured])
+        robot = (log.friction_true, log.q_motor_true, log.dq_motor_true)
+        ticks = np.array([*motion, *robot, *reference, *torques, log.tau_noise + coloured])
         if state.ticks is not None:
             ticks = np.concatenate((state.ticks, ticks), axis=2)
         state = replace(state, noise=noise, low_pass=low_pass, ticks=ticks)
@@ -97,7 +101,8 @@ class Recorder:
     def _rows(self, state: RecorderState, ahead: int) -> tuple[RecorderState, Rows]:
         """The rows of the ticks so far but for the last ones, `ahead` in number."""
         assert state.ticks is not None
-        signals = Signals(Ticks(*state.ticks), state.first, 1.0 / self.control_rate)
+        ticks, h = Ticks(*state.ticks), 1.0 / self.control_rate
+        signals = Signals(ticks, state.first, h, held=self.held, on_motor=self.on_motor)
         count = max((signals.last - ahead) // self.keep + 1 - state.row, 0)
         nominal = (state.row + np.arange(count)) * self.keep
         clock, sampled, stamped = self.clock.step(state.clock, count)
@@ -120,7 +125,7 @@ class Recorder:
         q = signals.readings(self.position_path.instants(at, last), self.encoder)
         tau = signals.torques(self.torque_path.instants(at, last), self.torque)
         columns = (q, rounded(tau, self.torque_resolution), *signals.references(now))
-        return [*signals.motion(now), signals.torques_true(now)], np.concatenate(columns)
+        return signals.truth(now), np.concatenate(columns)
 
     def _trimmed(self, state: RecorderState) -> RecorderState:
         """Without the ticks that no later row needs."""

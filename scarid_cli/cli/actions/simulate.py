@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.algorithms.sensors import building
 from scarid_cli.cli.imperfections import imperfections as chosen
 from scarid_cli.cli.job import Job, per_joint
-from scarid_cli.errors import UsageFault
 from scarid_cli.stages import simulate as stage
 
 
@@ -19,6 +17,8 @@ def run(
     *,
     file: str,
     robot: str | None,
+    control: str | None,
+    bandwidth: float | None,
     kp: tuple[float, ...] | None,
     kd: tuple[float, ...] | None,
     ki: tuple[float, ...] | None,
@@ -32,25 +32,18 @@ def run(
 ) -> None:
     """Write what the simulated sensors measure."""
     table, arm = job.read_for(file, "trajectory", robot)
-    joints = arm.joints
-    if arm.control is None:
-        raise UsageFault(
-            f"robot {arm.name} cannot be simulated: its description has no [control]; add one"
-        )
-
-    def each(given: tuple[float, ...] | None, own: Any, option: str) -> Any:
-        return np.array(per_joint(given, len(joints), option) if given else own, dtype=float)
-
-    given = chosen(imperfections, shorthands, arm.imperfections, len(joints))
+    joints = len(arm.joints)
+    gains = {
+        name: np.array(per_joint(values, joints, f"--{name}")) if values else None
+        for name, values in (("kp", kp), ("kd", kd), ("ki", ki))
+    }
+    given = chosen(imperfections, shorthands, arm.imperfections, joints)
     loop = ClosedLoop(
         robot=arm,
-        kp=each(kp, arm.control.kp, "--kp"),
-        kd=each(kd, arm.control.kd, "--kd"),
-        ki=each(ki, arm.control.ki, "--ki"),
-        velocity_cutoff=arm.control.velocity_cutoff,
+        law=law(arm, control, bandwidth, **gains),
         seed=seed,
         control_rate=control_rate,
         substeps=substeps,
-        **building.in_the_loop(given, joints, control_rate),
+        **building.in_the_loop(given, arm.joints, control_rate),
     )
     job.write(stage.simulate(job.recorded(table), loop, log_rate, truth=truth, given=given))

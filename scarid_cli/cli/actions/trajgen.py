@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isfinite
 from typing import Any
 
@@ -10,15 +11,18 @@ import numpy as np
 from scarid_cli.algorithms.choices.registry import EXCITATIONS
 from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.trajectories.joined import Joined, approach
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.algorithms.trajectories.trajectory import Trajectory
 from scarid_cli.algorithms.trajectories.via import through
 from scarid_cli.arrays import Array
+from scarid_cli.cli.designing import Asked, Found, asked, optimised
 from scarid_cli.cli.job import Job, per_joint, robot_of
 from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Metadata
 from scarid_cli.stages import trajgen as stage
+from scarid_cli.stages.design import Prediction
 
 LARGEST_LIMIT = 1e9  # a limit of this size is none
 
@@ -30,29 +34,75 @@ def run(
     arm = robot_of(robot)
     if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
         raise UsageFault("--rate and --duration must be positive")
-    asked = _limits(arm, given)
-    limits = asked.within(Limits.of(arm.joints))
+    given |= {"seed": seed, "duration": duration, "rate": rate}
+    side = job.side_table(given["expected"])
+    bounds = _limits(arm, given)
+    limits = bounds.within(Limits.of(arm.joints))
     home = _home(arm, limits, given["home"])
-    if given["via"]:
-        points, _ = job.read_for(given["via"], "via", arm.name)
-        trajectory: Trajectory = through(stage.via_points(points, arm), limits, home)
-    else:
-        rng = np.random.default_rng(seed)
-        trajectory = _excitation(given).trajectory(limits, home, duration, rng)
+    wish = asked(job, arm, given)
+    found = _optimised(job, arm, limits, home, wish, given)
+    motion = found.curve if found else _motion(job, arm, limits, home, given)
+    trajectory = _joined(motion, arm, limits, home, given)
     stage.checked(trajectory, limits, rate)
-    if narrowed := _narrowed(asked, limits):
+    if narrowed := _narrowed(bounds, limits):
         job.say(f"joint {narrowed}: the description has narrower limits than given, and these hold")
     meta = Metadata(kind="trajectory", robot=arm.name, period=1.0 / rate)
     job.write(job.recorded(stage.tabulate(trajectory, arm, rate, meta)))
-    job.say(
-        f"{arm.name}, {trajectory.duration:g} s, {trajectory.summary}, "
-        + stage.conditioning(trajectory, arm, rate)
-    )
+    about = f"{arm.name}, {trajectory.duration:g} s, {trajectory.summary}"
+    if not (found or side):
+        job.say(f"{about}, {stage.conditioning(trajectory, arm, rate)}")
+        return
+    prediction = Prediction.of(trajectory, arm, rate, wish.noise, wish.known)
+    way = f", the best of {found.starts} starts" if found else ""
+    job.say(f"{about}{way}: {prediction.excitation}")
+    if found:
+        job.say(f"limited by: {found.limited}")
+    job.say(prediction.summary)
+    if side:
+        if wish.noise is None:
+            raise UsageFault("--expected needs the torque noise; give --torque-noise")
+        job.write(job.recorded(prediction.table(replace(meta, period=None))), side)
+
+
+def _optimised(
+    job: Job, arm: Robot, limits: Limits, home: Array, wish: Asked, given: dict[str, Any]
+) -> Found | None:
+    """The best motion, if one was asked for."""
+    if not given["optimise"]:
+        return None
+    if given["via"]:
+        raise UsageFault("--optimise and --via exclude each other")
+    return optimised(job, arm, limits, home, _excitation(given), wish, given)
+
+
+def _motion(job: Job, arm: Robot, limits: Limits, home: Array, given: dict[str, Any]) -> Trajectory:
+    """The motion through the via points that were given, or a random one."""
+    if given["via"]:
+        points, _ = job.read_for(given["via"], "via", arm.name)
+        return through(stage.via_points(points, arm), limits, home)
+    rng = np.random.default_rng(given["seed"])
+    motion: Trajectory = _excitation(given).trajectory(limits, home, given["duration"], rng)
+    return motion
+
+
+def _joined(
+    motion: Trajectory, arm: Robot, limits: Limits, home: Array, given: dict[str, Any]
+) -> Trajectory:
+    """The motion as often as it is repeated, after the approach."""
+    times = given["repeat"]
+    if times > 1:
+        motion = Joined((motion,) * times, f"{motion.summary}, {times} times")
+    if given["approach"]:
+        posture = np.array(per_joint(given["approach"], len(arm.joints), "--approach"))
+        first = approach(posture, home, limits, given["rate"])
+        motion = Joined((first, motion), f"approach of {first.duration:.4g} s, {motion.summary}")
+    return motion
 
 
 def _excitation(given: dict[str, Any]) -> Any:
     """The excitation that was chosen, with the settings that were given."""
-    name = "sequential" if given["sequential"] else given["excitation"]
+    default = "spline" if given["optimise"] else "quintic"
+    name = "sequential" if given["sequential"] else given["excitation"] or default
     method = EXCITATIONS.load(name)
     known = names_of(method)
     values = dict(zip(("shortest", "longest"), given["segment"] or (), strict=False))

@@ -1,0 +1,1 @@
+"""Optimal experiments: the information in a motion, its limits, and the search for the best one."""

@@ -1,0 +1,69 @@
+"""Quintic B-splines between evenly spaced knots (de Boor, A Practical Guide to Splines, 1978)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from scarid_cli.arrays import Array
+
+DEGREE = 5
+AT_REST = 3  # functions at each end that are left out: position, velocity, acceleration
+
+
+@dataclass(frozen=True)
+class SplineBasis:
+    """The B-splines that are at rest at both ends, each with a peak acceleration of 1.
+
+    A coefficient of a curve is then the acceleration [rad/s2 or m/s2] that it adds.
+    """
+
+    duration: float
+    intervals: int
+
+    @property
+    def size(self) -> int:
+        return self.intervals + DEGREE - 2 * AT_REST
+
+    @property
+    def scale(self) -> float:
+        return self.duration / self.intervals
+
+    @property
+    def summary(self) -> str:
+        return f"spline of {self.intervals} intervals"
+
+    def values(self, t: Array, order: int) -> Array:
+        """A derivative of each function (size, samples) at the times t [s]."""
+        values: Array = self._scales[:, None] * self._derivative(t, order)[AT_REST:-AT_REST]
+        return values
+
+    @cached_property
+    def _knots(self) -> Array:
+        inner = np.linspace(0.0, self.duration, self.intervals + 1)
+        return np.concatenate((np.zeros(DEGREE), inner, np.full(DEGREE, self.duration)))
+
+    @cached_property
+    def _scales(self) -> Array:
+        t = np.linspace(0.0, self.duration, 100 * self.intervals + 1)
+        scales: Array = 1.0 / np.abs(self._derivative(t, 2)[AT_REST:-AT_REST]).max(axis=1)
+        return scales
+
+    def _derivative(self, t: Array, order: int) -> Array:
+        """Of all B-splines (intervals + DEGREE, samples), by the recursion over the degree."""
+        knots = self._knots
+        last = DEGREE + self.intervals - 1
+        inside = np.clip(np.searchsorted(knots, t, side="right") - 1, DEGREE, last)
+        values: Array = (np.arange(len(knots) - 1)[:, None] == inside).astype(np.float64)
+        for degree in range(1, DEGREE + 1):
+            width = knots[degree:] - knots[:-degree]
+            per_width = np.divide(1.0, width, out=np.zeros_like(width), where=width > 0.0)
+            share = values * per_width[:, None]
+            if degree > DEGREE - order:
+                values = degree * (share[:-1] - share[1:])
+            else:
+                rising = (t - knots[: -degree - 1, None]) * share[:-1]
+                values = rising + (knots[degree + 1 :, None] - t) * share[1:]
+        return values

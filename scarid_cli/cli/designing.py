@@ -1,0 +1,117 @@
+"""From the options of `scarid trajgen --optimise` to the best motion that is found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.trajectories.curve import Curve
+from scarid_cli.algorithms.trajectories.limits import Limits
+from scarid_cli.arrays import Array
+from scarid_cli.cli.job import Job, per_joint
+from scarid_cli.cli.progress import steps
+from scarid_cli.errors import UsageFault
+from scarid_cli.stages import design as stage
+
+BALANCED, DEFAULT_BUDGET = "balanced", 10.0
+ONLY_OPTIMISED = ("criterion", "wanted", "budget", "starts", "workspace")
+OPTIONS = {"wanted": "for"}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What an optimised motion is to tell: the noise of the torques, and what is known already."""
+
+    noise: Array | None
+    known: Array
+
+
+def asked(job: Job, robot: Robot, given: dict[str, Any]) -> Asked:
+    """The noise that is given, else that of earlier experiments, else that of the description."""
+    for name in ONLY_OPTIMISED:
+        if given[name] is not None and not given["optimise"]:
+            raise UsageFault(f"--{OPTIONS.get(name, name)} needs --optimise")
+    before = None
+    if given["after"]:
+        before = stage.earlier(job.read(given["after"], "parameters"), robot)
+    count, joints = len(robot.parameters), len(robot.joints)
+    own = np.array([joint.torque_noise for joint in robot.joints])
+    if given["torque_noise"]:
+        own = np.array(per_joint(given["torque_noise"], joints, "--torque-noise"))
+        if not (own > 0.0).all():
+            raise UsageFault("--torque-noise must be positive")
+    elif before:
+        own = before.noise
+    known = before.information if before else np.zeros((count, count))
+    return Asked(own if (own > 0.0).all() else None, known)
+
+
+@dataclass(frozen=True)
+class Found:
+    """An optimised motion, and what is reported of it."""
+
+    curve: Curve
+    starts: int
+    limited: str
+
+
+def optimised(
+    job: Job,
+    robot: Robot,
+    limits: Limits,
+    home: Array,
+    excitation: Any,
+    wish: Asked,
+    given: dict[str, Any],
+) -> Found:
+    """The best motion of several starts."""
+    if not hasattr(excitation, "basis"):
+        raise UsageFault("--optimise: the excitation must be spline or fourier")
+    from scarid_cli.algorithms.design.criteria import goal
+    from scarid_cli.algorithms.design.model import Model
+    from scarid_cli.algorithms.design.problem import Wanted, margins
+    from scarid_cli.algorithms.design.search import search
+
+    some = _indices(robot, given["wanted"])
+    criterion = given["criterion"] or ("d" if some else BALANCED)
+    goal(criterion, np.eye(len(robot.parameters)), some)  # refused before other processes start
+    laws = stage.laws(robot, home, _box(given["workspace"]))
+    wanted = Wanted(
+        Model.of(robot),
+        excitation.basis(limits, given["duration"]),
+        home,
+        limits,
+        laws,
+        criterion,
+        np.ones(len(home)) if wish.noise is None else wish.noise,
+        given["rate"] * given["repeat"],
+        wish.known,
+        some,
+    )
+    with steps(quiet=job.quiet, of="starts") as progress:
+        budget = given["budget"] or DEFAULT_BUDGET
+        best = search(wanted, given["seed"], given["starts"], budget, progress)
+    limited = stage.limiting(best.curve, limits, margins(best.curve, laws), laws)
+    return Found(best.curve, best.starts, limited)
+
+
+def _indices(robot: Robot, names: str | None) -> tuple[int, ...]:
+    wanted: Sequence[str] = [name.strip() for name in names.split(",")] if names else []
+    for name in wanted:
+        if name not in robot.names:
+            raise UsageFault(f"--for: no parameter {name!r}; there are {', '.join(robot.names)}")
+    return tuple(robot.names.index(name) for name in wanted)
+
+
+def _box(numbers: tuple[float, ...] | None) -> tuple[float, ...] | None:
+    if numbers is None:
+        return None
+    if len(numbers) != 6 or not all(
+        low < high for low, high in zip(numbers[::2], numbers[1::2], strict=True)
+    ):
+        raise UsageFault("--workspace: give XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX, each pair increasing")
+    return numbers

@@ -1,0 +1,308 @@
+"""The optimisation of experiments: gradients, criteria, constraints and predictions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from scipy.interpolate import BSpline
+
+from scarid_cli.algorithms.design import criteria
+from scarid_cli.algorithms.design.constraints import Along, Constraint, Kinematic, Law, Torque
+from scarid_cli.algorithms.design.geometry import Apart, Workspace
+from scarid_cli.algorithms.design.information import Samples
+from scarid_cli.algorithms.design.lagrangian import minimised
+from scarid_cli.algorithms.design.model import Model
+from scarid_cli.algorithms.design.prediction import Moments, standard_errors, unknown
+from scarid_cli.algorithms.design.problem import Problem, Wanted, kept, margins
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.trajectories.curve import Basis, Curve, random_curve
+from scarid_cli.algorithms.trajectories.fourier import FourierBasis
+from scarid_cli.algorithms.trajectories.limits import Limits
+from scarid_cli.algorithms.trajectories.spline import SplineBasis
+from scarid_cli.arrays import Array
+
+UR10E = str(ROOT / "samples/robots/ur10e.toml")
+ROBOTS = [
+    "scara2",
+    "emps",
+    "planar2-gravity",
+    str(ROOT / "samples/emps-asymmetric.toml"),
+    str(ROOT / "samples/arm.toml"),
+    UR10E,
+]
+every_robot = pytest.mark.parametrize("name", ROBOTS, ids=lambda name: Path(name).stem)
+STEP = 1e-6
+
+
+def motion_of(joints: int, speed: float, samples: int = 20) -> tuple[Array, Array, Array]:
+    """A random motion, whose velocities are about this fast."""
+    rng = np.random.default_rng(3)
+    q, dq, ddq = rng.standard_normal((3, joints, samples))
+    return q, dq * speed, ddq
+
+
+@every_robot
+def test_the_model_is_the_robot_wherever_no_axis_is_slow(name: str) -> None:
+    """Friction is smooth below some .05 rad/s."""
+    robot = load(name)
+    q, dq, ddq = motion_of(len(robot.joints), 1.0)
+    dq = np.sign(dq) * (1.0 + 0.7 * np.arange(len(dq)))[:, None]  # shafts of two joints turn too
+    found = Model.of(robot).regressor((q, dq, ddq))
+    np.testing.assert_allclose(found, robot.regressor(q, dq, ddq), rtol=1e-9, atol=1e-9)
+
+
+@every_robot
+def test_the_gradient_of_the_model_is_its_slope(name: str) -> None:
+    model = Model.of(load(name))
+    motion = np.array(motion_of(len(model.axes), 0.3))
+    G = np.random.default_rng(0).standard_normal(model.regressor(tuple(motion)).shape)  # type: ignore[arg-type]
+    found = model.gradient(tuple(motion), G)  # type: ignore[arg-type]
+    for signal in range(3):
+        for joint in range(len(model.axes)):
+            step = np.zeros_like(motion)
+            step[signal, joint] = STEP
+            ahead, behind = (model.regressor(tuple(motion + s * step)) for s in (1.0, -1.0))  # type: ignore[arg-type]
+            slope = ((ahead - behind) * G).sum(axis=(1, 2)) / (2.0 * STEP)
+            np.testing.assert_allclose(found[signal][joint], slope, rtol=1e-5, atol=1e-4)
+
+
+BASES = [SplineBasis(6.0, 7), FourierBasis(6.0, 3)]
+every_basis = pytest.mark.parametrize("basis", BASES, ids=["spline", "fourier"])
+
+
+@every_basis
+def test_the_functions_of_a_basis_have_a_peak_acceleration_of_1_and_start_and_end_at_rest(
+    basis: Basis,
+) -> None:
+    t = np.linspace(0.0, basis.duration, 4001)
+    for order in range(4):
+        values, slopes = basis.values(t, order), basis.values(t, order + 1)
+        differences = (values[:, 2:] - values[:, :-2]) / (2.0 * t[1])
+        np.testing.assert_allclose(differences, slopes[:, 1:-1], atol=0.02 * np.abs(slopes).max())
+        if order < 3:
+            assert (values[:, [0, -1]] == 0.0).all()
+    assert np.abs(basis.values(t, 2)).max(axis=1) == pytest.approx(1.0, rel=1e-3)
+
+
+def test_splines_are_those_of_scipy() -> None:
+    t = np.linspace(0.0, 6.0, 50)
+    knots = np.concatenate((np.zeros(5), np.linspace(0.0, 6.0, 8), np.full(5, 6.0)))
+    theirs = BSpline.design_matrix(t, knots, 5).toarray().T[3:-3]
+    ours = SplineBasis(6.0, 7).values(t, 0)
+    np.testing.assert_allclose(ours, theirs * (ours.max(axis=1) / theirs.max(axis=1))[:, None])
+
+
+@every_basis
+def test_the_largest_values_of_a_curve_bound_all_its_values(basis: Basis) -> None:
+    limits = Limits(*np.array([[-1.0, -2.0], [2.0, 0.5], [1.0, 3.0], [2.0, 4.0]]))
+    curve = random_curve(basis, np.zeros(2), limits, np.random.default_rng(1))
+    q, dq, ddq = curve.sample(np.linspace(0.0, basis.duration, 100_003))
+    below, above, fast, hard = curve.largest()
+    for bound, values in ((below, -q), (above, q), (fast, np.abs(dq)), (hard, np.abs(ddq))):
+        assert np.all(values.max(axis=1) <= bound)
+        assert values.max(axis=1) == pytest.approx(bound, rel=1e-4, abs=1e-6)
+
+
+def matrices(count: int = 6) -> Array:
+    """A symmetric positive definite matrix whose eigenvalues differ."""
+    A = np.random.default_rng(2).standard_normal((40, count)) * np.geomspace(1.0, 30.0, count)
+    return A.T @ A
+
+
+SCALES = np.array([1.0, 2.0, 0.5, 1.5, 3.0, 0.7])
+CRITERIA: dict[str, Callable[[Array], tuple[float, Array]]] = {
+    "d": criteria.determinant,
+    "c": lambda M: criteria.condition(M, np.eye(6)),
+    "scaled-c": lambda M: criteria.scaled_condition(M, np.eye(6)),
+    "a": lambda M: criteria.goal("a", np.diag(SCALES**2)).of(M, M)[::2],  # type: ignore[return-value]
+    "d of some": lambda M: criteria.goal("d", np.diag(SCALES**2), (1, 4)).of(M, M)[::2],  # type: ignore[return-value]
+    "a of some": lambda M: criteria.goal("a", np.diag(SCALES**2), (1, 4)).of(M, M)[::2],  # type: ignore[return-value]
+}
+
+
+@pytest.mark.parametrize("name", CRITERIA)
+def test_the_gradient_of_a_criterion_is_its_slope(name: str) -> None:
+    M = matrices()
+    _, found = CRITERIA[name](M)
+    for i in range(len(M)):
+        for j in range(i + 1):
+            step = np.zeros_like(M)
+            step[i, j] = step[j, i] = 1e-5 * np.sqrt(M[i, i] * M[j, j])
+            ahead, behind = CRITERIA[name](M + step)[0], CRITERIA[name](M - step)[0]
+            assert (found * step).sum() == pytest.approx((ahead - behind) / 2.0, rel=1e-4, abs=1e-9)
+
+
+def test_criteria_are_what_textbooks_say() -> None:
+    M = matrices()
+    covariance = np.linalg.inv(M)
+    some = np.ix_((1, 4), (1, 4))
+    values = {name: criterion(M)[0] for name, criterion in CRITERIA.items()}
+    assert values["d"] == pytest.approx(-np.log(np.linalg.det(M)) / 12.0)
+    assert values["d of some"] == pytest.approx(np.log(np.linalg.det(covariance[some])) / 4.0)
+    scaled = np.diag(covariance) * SCALES**2
+    assert values["a"] == pytest.approx(np.log(scaled.mean()) / 2.0)
+    assert values["a of some"] == pytest.approx(np.log(scaled[[1, 4]].mean()) / 2.0)
+    lengths = np.sqrt(np.diag(M))
+    for name, matrix in (("c", M), ("scaled-c", M / np.outer(lengths, lengths))):
+        exact = 0.5 * np.log(np.linalg.cond(matrix))
+        assert exact <= values[name] <= exact + np.log(6.0) / criteria.POWER
+
+
+def test_what_no_motion_excites_has_no_say_in_the_condition_number() -> None:
+    typical = np.diag([1.0, 4.0, 1e-12])
+    M = np.diag([9.0, 1.0, 1e-10])
+    value, slope = criteria.goal("c", typical).of(M, M)[:2]
+    assert value == pytest.approx(np.log(3.0), rel=1e-6)
+    assert slope[2, 2] == pytest.approx(0.0, abs=1e-12)
+
+
+def boxed(robot: str) -> tuple[Samples, Limits]:
+    joints = load(robot).joints
+    ones = np.ones(len(joints))
+    limits = Limits(-ones, ones, ones, ones)
+    samples = Samples.of(SplineBasis(4.0, 4), 0.1 * ones, np.linspace(0.0, 4.0, 9))
+    return samples, limits
+
+
+def laws() -> dict[str, Law]:
+    robot = load(UR10E)
+    assert robot.body
+    return {
+        "torque": Torque(Model.of(robot), np.full(6, 50.0)),
+        "workspace": Workspace.of(robot.body, (-0.5, 0.5, -0.6, 0.6, 0.1, 0.8)),
+        "apart": Apart.of(robot.body, np.array([0.0, -1.5, 0.0, -1.5, 0.0, 0.0])),
+    }
+
+
+@pytest.mark.parametrize("name", ["kinematic", "torque", "workspace", "apart"])
+def test_the_gradient_of_a_constraint_is_its_slope(name: str) -> None:
+    samples, limits = boxed(UR10E)
+    constraint: Constraint = (
+        Kinematic(samples, limits) if name == "kinematic" else Along.of(samples, laws()[name])
+    )
+    rng = np.random.default_rng(4)
+    at = 2.0 * rng.standard_normal((6, samples.values.shape[1]))
+    violations, pull = constraint.evaluate(at)
+    multipliers = rng.uniform(0.0, 1.0, violations.shape)
+    found = pull(multipliers)
+    for place in np.ndindex(at.shape):
+        step = np.zeros_like(at)
+        step[place] = STEP
+        ahead, behind = (constraint.evaluate(at + s * step)[0] for s in (1.0, -1.0))
+        slope = ((ahead - behind) * multipliers).sum() / (2.0 * STEP)
+        assert found[place] == pytest.approx(slope, rel=1e-4, abs=1e-5)
+
+
+def test_a_quadratic_under_limits_has_the_minimum_of_its_lagrange_conditions() -> None:
+    """One joint whose acceleration may be 1: the point nearest to 2.5 and 0.2 is 1 and 0.2."""
+    basis = SplineBasis(20.0, 40)  # of its functions 0 and 20, whose supports do not overlap
+    places = [0, 20]
+
+    class Two:
+        duration, size, scale, summary = 20.0, 2, 0.5, ""
+
+        def values(self, t: Array, order: int) -> Array:
+            return basis.values(t, order)[places]
+
+    samples = Samples.of(Two(), np.zeros(1), np.linspace(0.0, 20.0, 2001))
+    wide = np.full(1, 1e3)
+    limits = Kinematic(samples, Limits(-wide, wide, wide, np.ones(1)))
+    target = np.array([[2.5, 0.2]])
+    found = minimised(
+        lambda c: (float(((c - target) ** 2).sum()), 2.0 * (c - target)),
+        [limits],
+        np.zeros((1, 2)),
+        np.ones(1),
+        (3.0, 30.0, 300.0, 300.0, 300.0),
+        100,
+    )
+    assert found == pytest.approx(np.array([[1.0, 0.2]]), abs=1e-3)
+
+
+def wish(name: str = "scara2", criterion: str = "balanced", duration: float = 5.0) -> Wanted:
+    robot = load(name)
+    limits = Limits.of(robot.joints)
+    count = len(robot.parameters)
+    return Wanted(
+        Model.of(robot),
+        SplineBasis(duration, round(2 * duration)),
+        limits.home,
+        limits,
+        (),
+        criterion,
+        np.ones(len(robot.joints)),
+        200.0,
+        np.zeros((count, count)),
+    )
+
+
+def test_the_gradient_of_an_experiment_is_its_slope() -> None:
+    problem = Problem.of(wish())
+    at = np.random.default_rng(0).standard_normal((2, problem.wanted.basis.size))
+    value, found = problem.experiment.evaluate(problem.samples, at)
+    for place in ((0, 2), (1, 5)):
+        step = np.zeros_like(at)
+        step[place] = 1e-5
+        ahead, behind = (
+            problem.experiment.evaluate(problem.samples, at + s * step)[0] for s in (1.0, -1.0)
+        )
+        assert found[place] == pytest.approx((ahead - behind) / 2e-5, rel=1e-5)
+    assert np.isfinite(value)
+
+
+@pytest.mark.parametrize("criterion", criteria.NAMES)
+def test_an_optimised_motion_is_better_than_its_start_and_keeps_its_limits(criterion: str) -> None:
+    problem = Problem.of(wish(criterion=criterion))
+    wanted = problem.wanted
+    rng = np.random.default_rng((1, 0))
+    start = random_curve(wanted.basis, wanted.home, wanted.limits, rng)
+    found = problem.optimised(1, 0)
+    assert problem.value(found) < problem.value(start) - 0.1
+    t = np.linspace(0.0, wanted.basis.duration, 20_001)
+    wanted.limits.require(t, *found.sample(t))
+
+
+def test_a_curve_shrinks_until_its_torques_keep_their_limits() -> None:
+    wanted = wish()
+    curve = random_curve(wanted.basis, wanted.home, wanted.limits, np.random.default_rng(0))
+    robot = load("scara2")
+    t = np.arange(5001) / 1000.0
+    torques = robot.torques(robot.regressor(*curve.sample(t)), robot.apriori)
+    half = 0.5 * np.abs(torques).max(axis=1)
+    law = Torque(wanted.model, half)
+    assert margins(curve, (law,))[0] == pytest.approx(1.0, abs=1e-6)
+    smaller = kept(curve, wanted.limits, (law,))
+    torques = robot.torques(robot.regressor(*smaller.sample(t)), robot.apriori)
+    assert np.all(np.abs(torques).max(axis=1) <= half)
+    assert np.abs(torques).max() > 0.0
+
+
+def test_predicted_errors_are_those_of_simulated_estimates() -> None:
+    """White noise, exact regressor, rows weighted by the noise of their joint."""
+    robot = load("scara2")
+    wanted = wish()
+    curve = random_curve(wanted.basis, wanted.home, wanted.limits, np.random.default_rng(0))
+    W = robot.regressor(*curve.sample(np.arange(1001) / 200.0))
+    noise = np.array([0.2, 0.01])
+    predicted = standard_errors(Moments.of([W[:400], W[400:]]).information(noise))
+    rows = (W / noise[:, None]).reshape(-1, 8)
+    white = np.random.default_rng(1).standard_normal((len(rows), 2000))
+    estimates = np.linalg.lstsq(rows, white, rcond=None)[0]
+    assert predicted == pytest.approx(estimates.std(axis=1), rel=0.06)
+
+
+def test_a_parameter_that_no_row_depends_on_is_unknown() -> None:
+    robot = load("scara2")
+    still = Curve(SplineBasis(5.0, 5), np.zeros(2), np.zeros((2, 4)))
+    coefficients = still.coefficients.copy()
+    coefficients[1, 1] = 5.0  # only joint 2 moves: nothing of joint 1 but its inertial coupling
+    curve = Curve(still.basis, still.home, coefficients)
+    W = robot.regressor(*curve.sample(np.arange(1001) / 200.0))
+    errors = standard_errors(Moments.of([W]).information(np.array([0.2, 0.01])))
+    assert set(unknown(errors, robot.parameters)) >= {"ZZ1R", "Fv1", "Fs1"}
+    assert np.isinf(errors[[0, 1, 2]]).all()
+    assert np.isfinite(errors[robot.names.index("Fs2")])
