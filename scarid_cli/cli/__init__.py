@@ -18,6 +18,7 @@ COMMANDS = {
     "differentiate": "Estimate velocities and accelerations from positions (the soft sensor).",
     "identify": "Estimate a robot's dynamic parameters from a motion.",
     "validate": "Measure how well identified parameters predict torques.",
+    "compare": "Tell which parameters of two identifications differ, and how they drift.",
     "report": "Print tables and draw figures of parameters, traces, metrics and predictions.",
     "urdf": "Write identified parameters into a URDF as physically consistent links.",
     "robot": "Check a robot description.",

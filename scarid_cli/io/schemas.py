@@ -105,6 +105,7 @@ KINDS = (
     "parameters",
     "expected",
     "metrics",
+    "comparison",
     "trials",
     "published",
     "prediction",

@@ -37,9 +37,10 @@ USES = {
     "measurement": ("`simulate`, a real robot", "`resample`, `filter`, `tune`, `differentiate`"),
     "trials": ("`tune`", "you"),
     "motion": ("`differentiate`", "`identify`, `validate`"),
-    "parameters": ("`identify`", "`validate --parameters`, `urdf --parameters`"),
+    "parameters": ("`identify`", "`validate --parameters`, `compare`, `urdf --parameters`"),
     "trace": ("`identify --trace`", "`report`"),
     "metrics": ("`validate`", "`report`"),
+    "comparison": ("`compare`", "you"),
     "prediction": ("`validate --predictions`", "`report`"),
     "published": ("you", "`report --published`"),
 }

@@ -48,7 +48,7 @@ def estimates_with_covariance(table: Table, robot: Robot) -> Estimates:
     whole = pa.Table.from_batches(batches)
     names, units = (whole.column(key).to_pylist() for key in ("parameter", "unit"))
     fixed = tuple(zip(names, units, whole.column("estimate").to_pylist(), strict=True))
-    count, errors = len(values), _errors(whole)
+    count, errors = len(values), errors_of(whole)
     covariance, remark = _covariance(table, errors)
     full = values if remark else _full_estimates(table, values, len(errors))
     return Estimates(
@@ -64,7 +64,7 @@ def estimates_with_covariance(table: Table, robot: Robot) -> Estimates:
     )
 
 
-def _errors(whole: pa.Table) -> Array:
+def errors_of(whole: pa.Table) -> Array:
     """The robust standard errors, or else the classical ones; nan where a parameter has none."""
     for name in ("robust_error", "standard_error"):
         if name in whole.column_names:
@@ -88,7 +88,7 @@ def _covariance(table: Table, errors: Array) -> tuple[Array, str]:
             f"{table.name}: no covariance of the estimates (CSV cannot hold it), so their "
             f"correlations are neglected and R2 may fall; {REMEDY}"
         )
-    covariance = _array(table, "covariance", stored, (len(errors), len(errors)))
+    covariance = array_of(table, "covariance", stored, (len(errors), len(errors)))
     covariance = 0.5 * (covariance + covariance.T)
     unknown = ~np.isfinite(np.diag(covariance))
     covariance[unknown, :] = covariance[:, unknown] = np.nan
@@ -105,7 +105,7 @@ def _full_estimates(table: Table, values: Array, rows: int) -> Array:
     stored = table.meta.extra.get("full_estimates")
     if stored is None:
         return values
-    return _array(table, "full_estimates", stored, (rows,))[: len(values)]
+    return array_of(table, "full_estimates", stored, (rows,))[: len(values)]
 
 
 def _diagonal(errors: Array) -> Array:
@@ -118,7 +118,7 @@ def _diagonal(errors: Array) -> Array:
     return covariance
 
 
-def _array(table: Table, key: str, stored: object, shape: tuple[int, ...]) -> Array:
+def array_of(table: Table, key: str, stored: object, shape: tuple[int, ...]) -> Array:
     """Nested lists in the metadata as an array; null becomes nan."""
     try:
         array = np.array(stored, dtype=np.float64)

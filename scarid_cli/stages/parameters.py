@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
@@ -18,6 +19,8 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, table_of
+
+EVIDENCE = "evidence"  # key of the metadata
 
 
 @dataclass(frozen=True)
@@ -147,6 +150,7 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
                 strict=False,
             )
         ),
+        EVIDENCE: stored(found.evidence, labels.names),
         **found.found.extra,
     }
     if np.isfinite(found.covariance).all():
@@ -197,6 +201,17 @@ def _effects(diagnostics: Diagnostics) -> dict[str, Any]:
             }
             for effect in diagnostics.effects
         }
+
+
+def stored(found: LogEvidence, columns: list[str]) -> dict[str, Any]:
+    """Evidence as the metadata keep it: the lower triangle of the information, row by row."""
+    return {
+        "columns": columns,
+        "information": found.information[np.tril_indices(len(found.score))].tolist(),
+        "score": found.score.tolist(),
+        "deviations": found.deviations.tolist(),
+        "blocks": found.blocks,
+    }
 
 
 def _or_none(value: float) -> float | None:

@@ -10,10 +10,12 @@ import pyarrow as pa
 from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.prediction import Quality, empty
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, number, numbers, segment_field, table_of, with_columns
 from scarid_cli.stages import Sink
+from scarid_cli.stages.changes import Known, verdict
 from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.prediction import added, predicted
 
@@ -24,11 +26,14 @@ def validate(
     *,
     treatment: Treatment | None = None,
     predictions: Sink | None = None,
+    before: Known | None = None,
 ) -> Table:
     """The metrics of the torques that identified parameters predict for a motion, a row per joint.
 
     The predicted torques lead the motion by the delay that was fitted with the parameters.
-    `predictions` receives the measured and predicted torques of every sample (Fig. 7-8).
+    `predictions` receives the measured and predicted torques of every sample (Fig. 7-8). With
+    `before`, what is known of the log of the identification, the metadata say whether the robot
+    has changed since then.
     """
     robot = model.robot
     sums = [empty() for _ in robot.joints]
@@ -36,15 +41,20 @@ def validate(
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
+    subsample = Checkpoint.at_start(None, table.period, holds=False).subsample
     treatment, left_out = treatment or Treatment(), LeftOut()
     for batch, rows, (torques,) in predicted(table, [model], treatment, left_out):
         sums = added(sums, rows, torques)
+        if before:
+            subsample = subsample.add(rows)
         if predictions and batch is not None:
             new = dict(zip(schema.names[1:], (*rows.y.T, *torques), strict=False))
             predictions.write(with_columns(batch, schema, new))
     extra: dict[str, Any] = {"left_out": asdict(left_out)} if treatment.counting else {}
     if model.delay:
         extra["delay"] = model.delay
+    if before:
+        extra["change"] = verdict(subsample.rows(), model, before).extra
     return _metrics(table, robot, [Quality.of(joint) for joint in sums], extra)
 
 

@@ -18,6 +18,7 @@ from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
 from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.io.table import Table
+from scarid_cli.stages.changes import Known
 from scarid_cli.stages.differentiate import differentiate, matched
 from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
@@ -54,6 +55,16 @@ def simulated(source: Table) -> Table:
     return simulate(source, loop, 250.0, truth=True)
 
 
+def changed(source: Table) -> Table:
+    """With a verdict on what has changed, in a column of its own."""
+    before = Known(None, np.full(8, 0.01))
+    result = validate(source, Identified(SCARA, 1.1 * SCARA.apriori, 0.0), before=before)
+    (batch,) = result.batches
+    said = pa.array([str(result.meta.extra["change"])] * batch.num_rows)
+    batch = batch.append_column("change", said)
+    return replace(result, schema=batch.schema, batches=iter([batch]))
+
+
 STAGES: dict[str, Stage] = {
     "filter": lambda source: filtered(source, dict.fromkeys(["q1", "tau2"], Butterworth(20.0))),
     "filter zero-phase": lambda source: filtered(
@@ -61,6 +72,7 @@ STAGES: dict[str, Stage] = {
     ),
     "validate": lambda source: validate(source, Identified(SCARA, SCARA.apriori, 0.0)),
     "validate, early": lambda source: validate(source, Identified(SCARA, SCARA.apriori, 2e-3)),
+    "validate, changed": changed,
     "simulate": simulated,
     **{f"differentiate {name}": differentiated(name) for name in DIFFERENTIATORS.names},
     **{f"differentiate {name} --match": matching(name) for name in DIFFERENTIATORS.names},

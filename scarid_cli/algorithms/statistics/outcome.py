@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, faded
@@ -73,7 +74,7 @@ class Outcome:
     were dropped, and `covariance` their covariance, nan if it is not known. `delay` is the fitted
     delay of the torques and its standard error [s]. `excitation` (parameters) is the root-mean-
     square torque that one unit of each parameter causes on this motion. `samples` is the number of
-    samples.
+    samples. `evidence` is that of the rows, at these estimates, which later logs are compared with.
     """
 
     found: Estimation
@@ -85,6 +86,7 @@ class Outcome:
     delay: tuple[float, float] | None
     excitation: Array
     samples: int
+    evidence: LogEvidence
 
 
 def outcome(
@@ -108,18 +110,33 @@ def outcome(
             problem = whole.reduced(reduction)
             diagnostics = problem.diagnostics(treatment.gain_error)
     own, fit = problem.own, problem.found.fit
-    delay = None if problem.delay is None else (problem.delay, float(diagnostics.scatter[own]))
+    kept = (reduction.kept if reduction else list(range(own)))[:own]
+    delay, rest = None, 0.0
+    if problem.delay is not None:
+        delay, rest = (problem.delay, float(diagnostics.scatter[own])), float(fit.estimates[own])
     return Outcome(
         found=replace(problem.found, fit=fit.part(slice(own))),
         diagnostics=diagnostics,
-        kept=(reduction.kept if reduction else list(range(own)))[:own],
+        kept=kept,
         reduction=reduction,
         full=whole.found.fit.part(slice(whole.own)),
         covariance=covariance,
         delay=delay,
         excitation=_excitation(whole),
         samples=end.subsample.total,
+        evidence=_evidence(whole, fit.estimates[:own], kept, rest),
     )
+
+
+def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -> LogEvidence:
+    """The evidence about all parameters, of which those that were dropped are zero.
+
+    `delay` [s] is what remains of the delay of the torques of these rows.
+    """
+    theta = np.zeros(whole.own)
+    theta[kept] = estimates
+    W = np.ascontiguousarray(whole.rows.W[:, :, : whole.own])
+    return evidence(replace(whole.rows, W=W), theta, delay)
 
 
 def _problem(

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
+
+import pyarrow as pa
 
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import validate as stage
+from scarid_cli.stages.changes import known
+from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.parameters import identified
 
 
@@ -25,14 +30,27 @@ def run(
     if treatment.holds and predictions:
         raise UsageFault("--predictions needs every row and cannot be combined with --decimate")
     side = job.side_table(predictions)
-    known = job.read(parameters, "parameters")
-    table, arm = job.read_for(file, "motion", robot or known.meta.robot, torques=True)
+    stored = job.read(parameters, "parameters")
+    table, arm = job.read_for(file, "motion", robot or stored.meta.robot, torques=True)
     arm, treatment = for_robot(arm, treatment, given)
     treatment = for_motion(table.meta, treatment, given)
-    model = identified(known, arm)
-    result = stage.validate(job.recorded(table), model, treatment=treatment, predictions=side)
+    batches = list(stored.batches)
+    model = identified(replace(stored, batches=iter(batches)), arm)
+    before = known(stored, model.robot, errors_of(pa.Table.from_batches(batches)))
+    result = stage.validate(
+        job.recorded(table),
+        model,
+        treatment=treatment,
+        predictions=side,
+        before=before if before.testable else None,
+    )
     job.write(result)
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
     if model.delay:
         delay = 1e3 * model.delay
         job.say(f"applied the delay that identify fitted: torques lead by {delay:.3g} ms")
+    if before.testable:
+        change = result.meta.extra["change"]
+        job.say(f"{change['verdict']}: {change['reason']}")
+    if before.remark:
+        job.say(before.remark)

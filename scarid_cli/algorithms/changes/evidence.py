@@ -1,0 +1,153 @@
+"""What a log says about the parameters of a robot, and about all else that may have changed.
+
+Beside the columns of W there are columns for what the parameters cannot express: a delay of all
+torques, the motor constant of each joint, and the offset of each joint. Two logs are compared
+through their information matrices and scores over all of these columns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.rows import Rows, delay_column
+from scarid_cli.algorithms.statistics.jackknife import BLOCK_COUNTS, BLOCK_DURATION
+from scarid_cli.arrays import Array, Numbers
+
+REFITS = 3  # times that the joints are weighted by their residuals
+LEAST = 1e-9  # of the rms torque of a joint: a smaller residual is rounding
+TINY = 1e-30  # the least variance, of a joint without torques
+MOST_LEVERAGE = 0.9  # of a block that counts in full
+FLAT = 1e-10  # of the largest eigenvalue: directions below it are not in the motion
+
+
+@dataclass(frozen=True)
+class LogEvidence:
+    """The information of a log about all columns, at given parameters.
+
+    `information` (columns, columns) is W'W with joints weighted by the inverse variances of their
+    residuals, which account for autocorrelation; `score` (columns) is W' times the residual,
+    weighted alike. The columns are those of W, then the delay [s], then the relative error of the
+    motor constant of each joint, then the offset of each joint [N m or N]. `deviations` (joints)
+    are the standard deviations of the residual after all columns have been fitted, and `scores`
+    (blocks, columns) those of blocks of half a second with this residual.
+    """
+
+    information: Array
+    score: Array
+    deviations: Array
+    scores: Array
+
+    @property
+    def blocks(self) -> int:
+        """The number of blocks with samples."""
+        return len(self.scores)
+
+
+def evidence(rows: Rows, theta: Array, delay: float = 0.0) -> LogEvidence:
+    """The evidence of the rows of a log, at parameters and a delay [s] of the torques."""
+    products = _products(rows, theta, delay)  # (joints, blocks, columns + 1, columns + 1)
+    whole = products.sum(axis=1)
+    counts = np.maximum(np.count_nonzero(rows.scales, axis=0), 1)
+    torque = np.sum((rows.y * (rows.scales > 0.0)) ** 2, axis=0) / counts
+    variances = whole[:, -1, -1] / counts
+    for _ in range(REFITS):
+        variances = np.maximum(variances, LEAST**2 * torque + TINY)
+        weighted = np.tensordot(1.0 / variances, whole, 1)
+        along = np.append(-solved(weighted[:-1, :-1], weighted[:-1, -1]), 1.0)
+        variances = np.einsum("i,jik,k->j", along, whole, along).clip(min=0.0) / counts
+    variances = np.maximum(variances, LEAST**2 * torque + TINY)
+    scores = np.einsum("jbik,k->jbi", products[:, :, :-1], along)
+    scores = _without_leverage(scores, np.tensordot(1.0 / variances, products[:, :, :-1, :-1], 1))
+    weights = 1.0 / (variances * _inflations(scores, whole, variances))
+    total = np.tensordot(weights, whole, 1)
+    return LogEvidence(
+        information=total[:-1, :-1],
+        score=total[:-1, -1],
+        deviations=np.sqrt(variances),
+        scores=np.tensordot(weights, scores, 1),
+    )
+
+
+def solved(gram: Array, right: Array) -> Array:
+    """The solution of normal equations, 0 along directions that they leave undetermined."""
+    found: Array = inverse(gram) @ right
+    return found
+
+
+def inverse(gram: Array) -> Array:
+    """The pseudo-inverse of a Gram matrix whose columns may have any units."""
+    size = np.sqrt(np.diag(gram))
+    size[size == 0.0] = np.inf
+    values, vectors = np.linalg.eigh(gram / np.outer(size, size))
+    kept = values > FLAT * values[-1]
+    scaled = vectors[:, kept] / size[:, None]
+    found: Array = (scaled / values[kept]) @ scaled.T
+    return found
+
+
+def _without_leverage(scores: Array, grams: Array) -> Array:
+    """The scores of each joint and block, as large as if the fit had not made them small.
+
+    Each is divided by one minus the leverage of its block ("CR3"; Bell and McCaffrey 2002), which
+    counts as at most MOST_LEVERAGE. `grams` (blocks, columns, columns) are W'W of each block.
+    """
+    total = grams.sum(axis=0)
+    size = np.sqrt(np.diag(total))
+    size[size == 0.0] = 1.0
+    values, vectors = np.linalg.eigh(total / np.outer(size, size))
+    kept = values > FLAT * values[-1]
+    to = vectors[:, kept] / np.sqrt(values[kept]) / size[:, None]  # to' total to = 1
+    back = vectors[:, kept] * np.sqrt(values[kept]) * size[:, None]
+    larger = np.empty_like(scores)
+    for b, gram in enumerate(grams):
+        leverage, along = np.linalg.eigh(to.T @ gram @ to)
+        factors = 1.0 / (1.0 - leverage.clip(0.0, MOST_LEVERAGE)) - 1.0
+        extra = scores[:, b] @ to @ along
+        larger[:, b] = scores[:, b] + (extra * factors) @ along.T @ back.T
+    return larger
+
+
+def _inflations(scores: Array, whole: Array, variances: Array) -> Array:
+    """By how much autocorrelation increases the variance of the scores of each joint (joints).
+
+    It is the mean over the columns, and at least 1.
+    """
+    joints, blocks, _ = scores.shape
+    squares = (scores**2).sum(axis=1) * blocks / max(blocks - 1, 1)
+    white = variances[:, None] * np.diagonal(whole, axis1=1, axis2=2)[:, :-1]
+    there = white > 1e-12 * white.max(axis=1, keepdims=True)
+    ratios = [np.mean(squares[j][there[j]] / white[j][there[j]]) for j in range(joints)]
+    return np.maximum(ratios, 1.0)
+
+
+def _products(rows: Rows, theta: Array, delay: float) -> Array:
+    """A'A of each joint and block, where A = [all columns, residual]."""
+    predicted = rows.W @ theta
+    column = delay_column(rows, predicted)
+    residual = rows.y - predicted - delay * column
+    joints, p = rows.y.shape[1], len(theta)
+    starts = _blocks(rows)
+    found = np.zeros((joints, len(starts), p + 2 + 2 * joints, p + 2 + 2 * joints))
+    for j in range(joints):
+        counted = (rows.scales[:, j : j + 1] > 0.0).astype(np.float64)
+        narrow = np.column_stack(
+            (rows.W[:, j], column[:, j], predicted[:, j], np.ones(rows.samples), residual[:, j])
+        )
+        at = np.array([*range(p + 1), p + 1 + j, p + 1 + joints + j, p + 1 + 2 * joints])
+        narrow *= counted
+        for b, (start, stop) in enumerate(starts):
+            part = narrow[start:stop]
+            found[j, b, at[:, None], at] = part.T @ part
+    return found
+
+
+def _blocks(rows: Rows) -> list[tuple[int, int]]:
+    """The first sample of each block of half a second, and the one after its last."""
+    first, last = int(rows.at[0]), int(rows.at[-1]) + 1
+    count = int(np.clip(round((last - first) * rows.h / BLOCK_DURATION), *BLOCK_COUNTS))
+    block: Numbers = (rows.at - first) * count // (last - first)
+    edges = np.searchsorted(block, np.arange(count + 1)).tolist()
+    return [(a, b) for a, b in pairwise(edges) if b > a]

@@ -1,0 +1,132 @@
+"""Which changes explain the difference of two logs, found one after another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp, log
+
+import numpy as np
+
+from scarid_cli.algorithms.changes.hypotheses import Hypothesis
+from scarid_cli.algorithms.changes.likelihood import (
+    Difference,
+    Test,
+    everything,
+    penalty,
+    tested,
+)
+from scarid_cli.algorithms.statistics.tails import log_tail_f
+
+FALSE_ALARMS = 0.01  # of comparisons in which nothing changed, over all tests together
+MOST = 3  # changes that are named
+WORTH = 0.003  # of the whole difference: a further change that explains less is not named
+MOST_RANK = 0.5  # of all directions: several changes that span more would explain anything
+LEFT = 0.2  # of the whole difference: if more is left, the changes do not explain it
+CLOSE = 6.0  # twice the logarithm of 20: another change is then 20 times less likely
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """A change that explains a part of the difference.
+
+    `amounts` (k) and `errors` (k) are those of the hypothesis, estimated together with all changes.
+    `rivals` are hypotheses that explain the difference nearly as well.
+    """
+
+    hypothesis: Hypothesis
+    amounts: tuple[float, ...]
+    errors: tuple[float, ...]
+    rivals: tuple[Hypothesis, ...] = ()
+
+
+@dataclass(frozen=True)
+class Change:
+    """Whether two logs of a robot differ by more than noise, and what explains it.
+
+    `p_value` is the smallest of all tests, multiplied by their number `tests` (Bonferroni).
+    `explained` is the share of the difference that the explanations account for, and `left` the
+    p-value of the rest.
+    """
+
+    p_value: float
+    tests: int
+    explanations: tuple[Explanation, ...] = ()
+    explained: float = 0.0
+    left: float = 0.0
+
+    @property
+    def changed(self) -> bool:
+        return self.p_value < FALSE_ALARMS
+
+    @property
+    def complete(self) -> bool:
+        """Whether the explanations account for the difference."""
+        enough = self.explained >= 1.0 - LEFT or self.left >= FALSE_ALARMS
+        return bool(self.explanations) and enough
+
+
+def change(difference: Difference, possible: list[Hypothesis]) -> Change:
+    """Test all hypotheses, and anything else whatever; then look for explanations."""
+    whole = everything(difference)
+    log_ps = [whole.log_p, *(tested(difference, [h]).log_p for h in possible)]
+    log_p = min(min(log_ps) + log(len(log_ps)), 0.0)
+    if not log_p < log(FALSE_ALARMS):
+        return Change(exp(log_p), len(log_ps))
+    chosen, rivals = _chosen(difference, possible, whole)
+    if not chosen:
+        return Change(exp(log_p), len(log_ps))
+    found = tested(difference, chosen)
+    rest, rank = max(whole.raw - found.raw, 0.0), max(whole.rank - found.rank, 1)
+    left = log_tail_f(rest / whole.excess / rank, rank, difference.freedom)
+    share = found.beyond_noise / (found.beyond_noise + max(rest - rank * whole.excess, 0.0))
+    explanations = _described(chosen, rivals, found)
+    return Change(exp(log_p), len(log_ps), explanations, share, exp(left))
+
+
+def _chosen(
+    difference: Difference, possible: list[Hypothesis], whole: Test
+) -> tuple[list[Hypothesis], list[tuple[Hypothesis, ...]]]:
+    """Hypotheses that explain the difference one after another, each with its rivals."""
+    chosen: list[Hypothesis] = []
+    rivals: list[tuple[Hypothesis, ...]] = []
+    before = Test.nothing()
+    while len(chosen) < MOST:
+        rest = [h for h in possible if not any(h is c for c in chosen)]
+        tests = [tested(difference, [*chosen, h]) for h in rest]
+        gains = [t.raw - t.excess * penalty(difference, t.rank) for t in tests]
+        best = int(np.argmax(gains))
+        if chosen and tests[best].rank > MOST_RANK * whole.rank:
+            break
+        # That something changed is settled: the first explanation need not pass for all tests
+        among = len(possible) + 1 if chosen else 1
+        if not _significant(difference, before, tests[best], whole, among):
+            break
+        chosen.append(rest[best])
+        near = [h for h, gain in zip(rest, gains, strict=True) if gain > gains[best] - CLOSE]
+        rivals.append(tuple(h for h in near if h is not rest[best]))
+        before = tests[best]
+    return chosen, rivals
+
+
+def _significant(
+    difference: Difference, before: Test, after: Test, whole: Test, tests: int
+) -> bool:
+    """Whether one more change explains more than noise does, and a part worth naming."""
+    gain, rank = after.raw - before.raw, after.rank - before.rank
+    if rank < 1 or (before.rank and gain < WORTH * whole.raw):
+        return False
+    log_p = log_tail_f(gain / after.excess / rank, rank, difference.freedom)
+    return log_p + log(tests) < log(FALSE_ALARMS)
+
+
+def _described(
+    chosen: list[Hypothesis], rivals: list[tuple[Hypothesis, ...]], found: Test
+) -> tuple[Explanation, ...]:
+    errors = np.sqrt(np.maximum(np.diag(found.covariance), 0.0))
+    explanations, start = [], 0
+    for hypothesis, near in zip(chosen, rivals, strict=True):
+        own = slice(start, start + hypothesis.directions.shape[1])
+        amounts, own_errors = (tuple(x[own].tolist()) for x in (found.amounts, errors))
+        explanations.append(Explanation(hypothesis, amounts, own_errors, near))
+        start = own.stop
+    return tuple(explanations)

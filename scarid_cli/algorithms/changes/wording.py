@@ -1,0 +1,129 @@
+"""The verdict on a change, in words and for the metadata."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from scarid_cli.algorithms.changes.explanation import Change, Explanation
+from scarid_cli.algorithms.changes.hypotheses import DELAY, DRIFT, MOTOR, PAYLOAD, Hypothesis
+from scarid_cli.arrays import Array
+
+SHOWN = 4  # amounts that a message names at most
+CLEAR = 3.0  # errors: a smaller amount is not named
+NOISIER = 2.0  # times the residual at identification
+
+UNCHANGED, CHANGED, UNEXPLAINED = "unchanged", "changed", "unexplained"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The grade, its reason in words, and everything for the metadata."""
+
+    grade: str
+    reason: str
+    facts: dict[str, Any]
+
+    @property
+    def sentence(self) -> str:
+        return f"{self.grade}: {self.reason}"
+
+    @property
+    def extra(self) -> dict[str, Any]:
+        return {"verdict": self.grade, "reason": self.reason, **self.facts}
+
+
+def of_wiring(steps: tuple[str, ...]) -> Verdict:
+    """The verdict if signals of joints were reversed or swapped."""
+    return Verdict(CHANGED, f"reversed or swapped joints: {', '.join(steps)}", {"wiring": [*steps]})
+
+
+def of_change(change: Change, values: dict[str, float], ratios: Array | None) -> Verdict:
+    """The verdict of the tests.
+
+    `values` are the parameters at identification; `ratios` (joints) the deviations of the residual,
+    divided by those at identification, if these are known.
+    """
+    noisy = [] if ratios is None else np.flatnonzero(ratios > NOISIER).tolist()
+    noise = "; ".join(f"joint {j + 1} {ratios[j]:.2g} times" for j in noisy if ratios is not None)
+    facts = _facts(change, ratios)
+    if not change.changed:
+        tests = f"no change in {change.tests} tests (smallest p {change.p_value:.2g})"
+        if not noise:
+            return Verdict(UNCHANGED, f"residuals as at identification: {tests}", facts)
+        cause = "noise, vibration, friction that the model lacks, or another soft sensor"
+        reason = f"larger residuals than at identification ({noise}), but {tests}: {cause}"
+        return Verdict(UNEXPLAINED, reason, facts)
+    found = " and ".join(map(_sentence_of(values), change.explanations))
+    if change.complete:
+        share = f"explains {100.0 * change.explained:.3g} % of the difference"
+        return Verdict(CHANGED, f"{found}; this {share}", facts)
+    reason = "differs in a way that no payload, friction, delay, offset or motor constant explains"
+    best = f"; most likely {found}, but this explains only {100.0 * change.explained:.2g} %"
+    return Verdict(UNEXPLAINED, reason + (best if found else ""), facts)
+
+
+def _facts(change: Change, ratios: Array | None) -> dict[str, Any]:
+    return {
+        "p_value": change.p_value,
+        "tests": change.tests,
+        "explained": change.explained,
+        "explanations": [
+            {
+                "kind": e.hypothesis.kind,
+                "joints": list(e.hypothesis.joints),
+                "amounts": dict(zip(e.hypothesis.names, e.amounts, strict=True)),
+                "errors": {
+                    name: error if np.isfinite(error) else None
+                    for name, error in zip(e.hypothesis.names, e.errors, strict=True)
+                },
+                "rivals": [short(rival) for rival in e.rivals],
+            }
+            for e in change.explanations
+        ],
+        "residual_ratios": None if ratios is None else ratios.tolist(),
+    }
+
+
+def short(hypothesis: Hypothesis) -> str:
+    """A hypothesis in a few words."""
+    joints = hypothesis.joints
+    if not joints:
+        return "another payload or set-up" if hypothesis.kind == PAYLOAD else "another delay"
+    which = f"joint {joints[0]}" if len(joints) == 1 else "all joints"
+    return f"{hypothesis.kind} of {which}"
+
+
+def _sentence_of(values: dict[str, float]) -> Any:
+    def sentence(e: Explanation) -> str:
+        text = f"{short(e.hypothesis)} ({_amounts(e, values)})"
+        if not e.rivals:
+            return text
+        return f"{text}, or {' or '.join(short(rival) for rival in e.rivals)}"
+
+    return sentence
+
+
+def _amounts(e: Explanation, values: dict[str, float]) -> str:
+    """The clearest amounts with their errors."""
+    hypothesis = e.hypothesis
+    if hypothesis.kind == MOTOR:
+        return f"torques {100.0 * e.amounts[0]:+.3g} +- {100.0 * e.errors[0]:.2g} %"
+    if hypothesis.kind == DELAY:
+        return f"torques lead by {1e3 * e.amounts[0]:.3g} +- {1e3 * e.errors[0]:.2g} ms more"
+    clarity = np.abs(e.amounts) / np.maximum(e.errors, 1e-300)
+    order = np.argsort(-clarity)
+    clear = [int(i) for i in order if clarity[i] > CLEAR] or [int(order[0])]
+    texts = [_amount(e, i, values) for i in clear[:SHOWN]]
+    return ", ".join(texts) + (", ..." if len(clear) > SHOWN else "")
+
+
+def _amount(e: Explanation, i: int, values: dict[str, float]) -> str:
+    name, unit = e.hypothesis.names[i], e.hypothesis.units[i]
+    amount, error, before = e.amounts[i], e.errors[i], values.get(name, 0.0)
+    text = f"{name} {amount:+.3g} +- {error:.2g} {unit}"
+    if e.hypothesis.kind == DRIFT and before:
+        text += f" ({100.0 * amount / before:+.2g} %)"
+    return text

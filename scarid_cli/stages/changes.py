@@ -1,0 +1,115 @@
+"""Whether a log still fits the identification: the verdict of `scarid validate`.
+
+The parameter table carries the evidence of the log that it was identified from. A table without it
+(CSV) has errors at best; the evidence is then taken to be like that of the new log, as large as the
+errors say.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence, inverse
+from scarid_cli.algorithms.changes.explanation import change
+from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, hypotheses
+from scarid_cli.algorithms.changes.likelihood import Difference
+from scarid_cli.algorithms.changes.wiring import rewired
+from scarid_cli.algorithms.changes.wording import Verdict, of_change, of_wiring
+from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.alignment import shifted
+from scarid_cli.arrays import Array
+from scarid_cli.io.table import Table
+from scarid_cli.stages.parameters import EVIDENCE, Identified
+
+
+@dataclass(frozen=True)
+class Known:
+    """What a parameter table says about the log that it was identified from.
+
+    `evidence` is that log's, None if the table does not have it; `errors` (parameters) are the
+    standard errors of the estimates, nan where there are none.
+    """
+
+    evidence: LogEvidence | None
+    errors: Array
+
+    @property
+    def remark(self) -> str:
+        """What the verdict lacks, to be reported; empty if it lacks nothing."""
+        if self.evidence:
+            return ""
+        if not self.testable:
+            return (
+                "no verdict, because the parameters have no errors; validate a table of "
+                "`identify -o FILE.parquet`"
+            )
+        return (
+            "CSV does not keep the residuals of the identification, so the verdict tests neither "
+            "the delay nor the offsets and assumes a similar log: `identify -o FILE.parquet`"
+        )
+
+    @property
+    def testable(self) -> bool:
+        return self.evidence is not None or bool(np.isfinite(self.errors).any())
+
+
+def known(table: Table, robot: Robot, errors: Array) -> Known:
+    """What the table says, for the robot as it was identified."""
+    stored = table.meta.extra.get(EVIDENCE)
+    if not stored:
+        return Known(None, errors)
+    names, joints = robot.names, len(robot.joints)
+    p = len(stored["columns"])
+    if stored["columns"][: len(names)] != names or len(stored["deviations"]) != joints:
+        return Known(None, errors)
+    q = p + 1 + 2 * joints
+    lower = np.zeros((q, q))
+    lower[np.tril_indices(q)] = stored["information"]
+    kept = np.array([*range(len(names)), *range(p, q)])
+    information = (lower + np.tril(lower, -1).T)[np.ix_(kept, kept)]
+    found = LogEvidence(
+        information,
+        np.array(stored["score"])[kept],
+        np.array(stored["deviations"]),
+        np.zeros((stored["blocks"], len(kept))),
+    )
+    return Known(found, errors)
+
+
+def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
+    """The verdict on the rows of a log."""
+    robot, theta = model.robot, model.theta
+    steps = rewired(robot, rows, theta)
+    if steps:
+        return of_wiring(steps)
+    whole = round(model.delay / rows.h) if rows.h > 0.0 else 0
+    now = evidence(shifted(rows, whole), theta, model.delay - whole * rows.h)
+    first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
+    possible = hypotheses(robot)
+    ratios = None
+    if before.evidence:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = np.nan_to_num(now.deviations / before.evidence.deviations, posinf=1.0)
+    else:
+        possible = [h for h in possible if h.kind not in (DELAY, OFFSET)]
+    values = dict(zip(robot.names, theta.tolist(), strict=True))
+    return of_change(change(Difference.between(first, now), possible), values, ratios)
+
+
+def _alike(now: LogEvidence, errors: Array, robot: Robot) -> LogEvidence:
+    """LogEvidence of the shape of this log's and of the size that the errors imply.
+
+    It says nothing about the delay and about offsets that are not parameters.
+    """
+    p, joints = len(errors), len(robot.joints)
+    own = np.diag(inverse(now.information[:p, :p]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = own / errors**2
+    size = float(np.median(ratios[np.isfinite(ratios) & (ratios > 0.0)]))
+    information = size * now.information
+    unknown = [p, *range(p + 1 + joints, p + 1 + 2 * joints)]
+    information[unknown] = information[:, unknown] = 0.0
+    return replace(now, information=information, score=np.zeros_like(now.score))

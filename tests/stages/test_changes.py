@@ -1,0 +1,166 @@
+"""The verdict of `validate`: what has changed is called by its name, and nothing else is."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from crossvalidation import COMMON, log
+from stages.tables import SCARA
+from unit.support import adjusted
+
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.regression.estimation import BaseEstimator
+from scarid_cli.algorithms.regression.treatment import Treatment
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.arrays import Array
+from scarid_cli.io.table import Metadata, Table, doubles
+from scarid_cli.stages.changes import known
+from scarid_cli.stages.differentiate import matched
+from scarid_cli.stages.estimates import errors_of
+from scarid_cli.stages.identify import identify
+from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.validate import validate
+
+PERIOD = 0.005
+KALMAN = DIFFERENTIATORS.load("kalman")()
+SLOW = Treatment(slow=(0.1, 0.1))
+Edit = Callable[[Array, Array], tuple[Array, Array]]
+
+
+def motion(q: Array, tau: Array, method: Any = KALMAN) -> pa.RecordBatch:
+    """The motion that a soft sensor estimates from a log (joints, rows)."""
+    arrays = [doubles(x) for x in (PERIOD * np.arange(q.shape[1]), *q, *tau)]
+    batch = pa.RecordBatch.from_arrays(arrays, ["t", "q1", "q2", "tau1", "tau2"])
+    measured = Table("log", batch.schema, Metadata(period=PERIOD), iter([batch]))
+    made = matched(measured, [method] * 2)
+    return pa.Table.from_batches(list(made.batches)).combine_chunks().to_batches()[0]
+
+
+def table(batch: pa.RecordBatch) -> Table:
+    return Table("motion", batch.schema, Metadata(kind="motion", period=PERIOD), iter([batch]))
+
+
+LOGS = {seed: log(seed) for seed in (11, 12, 13)}
+
+
+def parameters(treatment: Treatment = SLOW, estimator: BaseEstimator | None = None) -> Table:
+    """Parameters identified from the first log, kept so that they can be read again and again."""
+    estimator = estimator or ESTIMATORS.load("wls")()
+    return identify(table(motion(*LOGS[11])), SCARA, estimator, np.zeros(8), treatment=treatment)
+
+
+def change(before: Table, q: Array, tau: Array, treatment: Treatment = SLOW) -> dict[str, Any]:
+    """What `validate` says about a log, with the metadata as a file would give them back."""
+    batches = list(before.batches)
+    before = replace(before, meta=Metadata.from_json(before.meta.to_json()))
+    model = identified(replace(before, batches=iter(batches)), SCARA)
+    last = known(before, model.robot, errors_of(pa.Table.from_batches(batches)))
+    result = validate(table(motion(q, tau)), model, treatment=treatment, before=last)
+    found: dict[str, Any] = json.loads(json.dumps(result.meta.extra["change"]))
+    return found
+
+
+def kinds(found: dict[str, Any]) -> list[tuple[str, list[int]]]:
+    return [(e["kind"], e["joints"]) for e in found["explanations"]]
+
+
+@pytest.mark.parametrize("estimator", ["wls", "rls", "ls", "irls"])
+@pytest.mark.parametrize("seed", [11, 12, 13])
+def test_the_same_robot_is_unchanged(seed: int, estimator: str) -> None:
+    """On the log of the identification itself as on others, whatever the estimator."""
+    found = change(parameters(estimator=ESTIMATORS.load(estimator)()), *LOGS[seed])
+    assert found["verdict"] == "unchanged"
+    if seed == 11:
+        assert found["p_value"] > 0.5
+
+
+@pytest.mark.parametrize("treatment", [replace(SLOW, align=True), replace(SLOW, essential=True)])
+def test_a_fitted_delay_and_dropped_parameters_change_nothing(treatment: Treatment) -> None:
+    assert change(parameters(treatment), *LOGS[12])["verdict"] == "unchanged"
+
+
+def scaled(joint: int, gain: float) -> Edit:
+    gains = np.ones((2, 1))
+    gains[joint - 1] = gain
+    return lambda q, tau: (q, gains * tau)
+
+
+@pytest.mark.parametrize("joint", [1, 2])
+def test_a_motor_constant_that_is_off(joint: int) -> None:
+    found = change(parameters(), *scaled(joint, 1.05)(*LOGS[12]))
+    assert found["verdict"] == "changed"
+    assert kinds(found) == [("motor constant", [joint])]
+    (amount,), (error,) = (found["explanations"][0][key].values() for key in ("amounts", "errors"))
+    assert amount == pytest.approx(0.05, abs=4.0 * error)
+
+
+def test_another_delay() -> None:
+    q, tau = LOGS[12]
+    found = change(parameters(), q[:, 2:], tau[:, :-2])
+    assert kinds(found) == [("delay", [])]
+    assert found["explanations"][0]["amounts"]["delay"] == pytest.approx(-0.01, rel=0.2)
+
+
+WIRING: dict[str, Edit] = {
+    "torque of joint 2 reversed": scaled(2, -1.0),
+    "torque of joints 1 and 2 swapped": lambda q, tau: (q, tau[::-1]),
+    "position and torque of joints 1 and 2 swapped": lambda q, tau: (q[::-1], tau[::-1]),
+    "position of joint 2 reversed": lambda q, tau: (q * [[1.0], [-1.0]], tau),
+}
+
+
+@pytest.mark.parametrize("wrong", WIRING)
+def test_reversed_and_swapped_joints(wrong: str) -> None:
+    found = change(parameters(), *WIRING[wrong](*LOGS[12]))
+    assert found["verdict"] == "changed"
+    assert found["wiring"] == [wrong]
+
+
+def other(**values: float) -> Array:
+    """What other parameters add to the torques of the second log."""
+    batch = motion(*LOGS[12], COMMON)
+    q, dq, ddq = (
+        np.array([batch.column(f"{signal}{i}").to_numpy() for i in (1, 2)])
+        for signal in ("q", "dq", "ddq")
+    )
+    robot: Robot = adjusted("scara2", **values)
+    W = SCARA.regressor(q, dq, ddq)
+    return SCARA.torques(W, robot.apriori - SCARA.apriori)
+
+
+def test_a_payload() -> None:
+    """A tenth of a kilogram at .25 m on the second link."""
+    added = other(ZZ2=0.064 + 0.00625, L1MX2=0.131 + 0.0125, ZZ1R=3.42 + 0.025)
+    found = change(parameters(), LOGS[12][0], LOGS[12][1] + added)
+    assert kinds(found) == [("payload", [])]
+    amounts = found["explanations"][0]["amounts"]
+    assert amounts["L1MX2"] == pytest.approx(0.0125, abs=0.002)
+
+
+def test_friction_that_has_risen() -> None:
+    added = other(Fv2=0.02, Fs2=0.208)
+    found = change(parameters(), LOGS[12][0], LOGS[12][1] + added)
+    assert kinds(found) == [("friction", [2])]
+    assert "Fs2" in found["reason"]
+
+
+def test_a_force_that_no_change_explains() -> None:
+    q, tau = LOGS[12]
+    rng = np.random.default_rng(1)
+    found = change(parameters(), q, tau + rng.standard_normal(tau.shape) * [[3.0], [1.0]])
+    assert found["verdict"] == "unexplained"
+    assert "larger residuals than at identification" in found["reason"]
+
+
+def test_a_table_without_metadata_is_tested_with_its_errors() -> None:
+    """As CSV gives it back: errors are known, residuals are not."""
+    before = replace(parameters(), meta=Metadata(kind="parameters"))
+    assert change(before, *LOGS[12])["verdict"] == "unchanged"
+    before = replace(parameters(), meta=Metadata(kind="parameters"))
+    assert kinds(change(before, *scaled(2, 1.1)(*LOGS[12]))) == [("motor constant", [2])]

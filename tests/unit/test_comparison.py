@@ -1,0 +1,80 @@
+"""The comparison of estimates: known differences are found, and nothing else is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from statsmodels.stats.multitest import multipletests
+
+from scarid_cli.algorithms.statistics.comparison import (
+    Estimate,
+    comparison,
+    freedom_of,
+    holm,
+    trend,
+)
+from scarid_cli.algorithms.statistics.jackknife import t95
+from scarid_cli.arrays import Array
+
+P = 6
+MIX = np.random.default_rng(5).standard_normal((P, P))
+COVARIANCE = MIX @ MIX.T
+FREEDOM = np.full(P, 39.0)
+
+
+def estimate(values: Array, *, known: bool = True) -> Estimate:
+    errors = np.sqrt(np.diag(COVARIANCE))
+    return Estimate(values, errors, FREEDOM, COVARIANCE if known else None)
+
+
+def test_holm_as_statsmodels_does_it() -> None:
+    tails = np.random.default_rng(1).uniform(size=12) ** 3
+    expected = multipletests(tails, method="holm")[1]
+    assert holm(tails) == pytest.approx(expected)
+    with_gap = holm(np.insert(tails, 4, np.nan))
+    assert np.isnan(with_gap[4])
+    assert np.delete(with_gap, 4) == pytest.approx(expected)
+
+
+def test_false_alarms_are_at_most_one_in_twenty() -> None:
+    """With either covariance known; errors are exact here, so t and F are conservative."""
+    rng = np.random.default_rng(2)
+    draws = rng.multivariate_normal(np.zeros(P), COVARIANCE, (400, 2))
+    for known in (True, False):
+        alarms = [comparison(*(estimate(x, known=known) for x in pair)).differ for pair in draws]
+        assert np.mean(alarms) <= 0.05
+
+
+def test_a_difference_along_the_best_known_direction_is_found_by_the_joint_test() -> None:
+    values, vectors = np.linalg.eigh(COVARIANCE)
+    moved = comparison(estimate(np.zeros(P)), estimate(12.0 * np.sqrt(values[0]) * vectors[:, 0]))
+    assert moved.joint
+    assert moved.joint.p_value < 1e-4
+    assert moved.joint.f == pytest.approx(144.0 / 2.0 / P)
+
+
+def test_a_parameter_that_differs_is_named() -> None:
+    moved = np.zeros(P)
+    moved[3] = 10.0 * np.sqrt(COVARIANCE[3, 3])
+    found = comparison(estimate(np.zeros(P), known=False), estimate(moved, known=False))
+    assert found.differing == [3]
+    assert found.counts[3] == pytest.approx(10.0 / np.sqrt(2.0))
+
+
+@pytest.mark.parametrize("n", [1, 5, 39, 120])
+def test_degrees_of_freedom_are_read_from_the_intervals(n: int) -> None:
+    found = freedom_of(np.array([2.0]), np.array([2.0 * t95(n)]))
+    assert found == [n]
+
+
+def test_a_trend_is_that_of_weighted_least_squares() -> None:
+    rng = np.random.default_rng(3)
+    errors = rng.uniform(0.5, 2.0, (5, P))
+    values = rng.standard_normal((5, P))
+    found = trend([Estimate(v, e, FREEDOM, None) for v, e in zip(values, errors, strict=True)])
+    for i in range(P):
+        line, covariance = np.polyfit(
+            np.arange(5), values[:, i], 1, w=1.0 / errors[:, i], cov="unscaled"
+        )
+        assert found.difference[i] == pytest.approx(line[0])
+        assert found.errors[i] == pytest.approx(np.sqrt(covariance[0, 0]))
