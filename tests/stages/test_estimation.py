@@ -75,22 +75,28 @@ def test_an_unmatched_soft_sensor_is_called_biased_by_every_estimator(
 ) -> None:
     extra = found(motion("p2smd", match=False), estimator, settings).meta.extra
     assert extra["verdict"] == "doubtful"
-    assert extra["reasons"][0].startswith("biased")
+    assert blamed(extra)
 
 
-def good(late: int) -> int:
-    """How many of ten experiments are good with forgetting, the torques late by so many samples."""
-    runs = (
-        found(motion(seed=seed, late=late), "rls", {"forgetting": 0.999, "weights": 0})
-        for seed in range(1, 11)
-    )
-    return [run.meta.extra["verdict"] for run in runs].count("good")
+def with_forgetting(late: int) -> list[dict[str, Any]]:
+    """The metadata of ten experiments with forgetting, the torques late by so many samples."""
+    runs = (found(motion(seed=n, late=late), "rls", {"forgetting": 0.999}) for n in range(1, 11))
+    return [run.meta.extra for run in runs]
+
+
+def blamed(extra: dict[str, Any]) -> bool:
+    """Whether the signals are a reason for doubt."""
+    words = ("the estimates depend on the soft sensor", "torque and motion are not those")
+    return any(reason.startswith(words) for reason in extra["reasons"])
 
 
 def test_torques_10_ms_late_are_never_good_with_forgetting() -> None:
-    """Which says something because most of the same experiments are good on time."""
-    assert good(late=2) == 0
-    assert good(late=0) > 5
+    """Which says something because the signals are blamed for none of the experiments on time."""
+    late, on_time = with_forgetting(late=2), with_forgetting(late=0)
+    assert all(extra["verdict"] != "good" for extra in late)
+    assert sum(map(blamed, late)) > 5
+    assert not any(map(blamed, on_time))
+    assert any(extra["verdict"] == "good" for extra in on_time)
 
 
 @pytest.mark.parametrize(
@@ -126,13 +132,16 @@ def test_barely_excited_rows_with_a_delay_get_a_verdict() -> None:
 
 
 def test_validation_applies_the_delay_that_was_fitted() -> None:
-    """On the rows it was identified from, R2 is the one that identify reports."""
+    """On the rows it was identified from, R2 is the one that identify reports.
+
+    But for the two last samples, which have no torque of two samples later.
+    """
     parameters = found(motion(late=2), "wls", align=True)
     expected = [joint["r2"] for joint in parameters.meta.extra["joints"]]
     model = identified(parameters, SCARA)
     assert model.delay == parameters.meta.extra["delay"] < -5e-3
     late = column(validate(motion(late=2), model), "r2")
-    np.testing.assert_allclose(late, expected, atol=2e-5)
+    np.testing.assert_allclose(late, expected, atol=1e-4)
     at_once = column(validate(motion(late=2), replace(model, delay=0.0)), "r2")
     assert np.all(at_once < late - 1e-3)
 

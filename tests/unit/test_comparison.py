@@ -13,7 +13,7 @@ from scarid_cli.algorithms.statistics.comparison import (
     holm,
     trend,
 )
-from scarid_cli.algorithms.statistics.jackknife import t95
+from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.arrays import Array
 
 P = 6
@@ -63,7 +63,7 @@ def test_a_parameter_that_differs_is_named() -> None:
 
 @pytest.mark.parametrize("n", [1, 5, 39, 120])
 def test_degrees_of_freedom_are_read_from_the_intervals(n: int) -> None:
-    found = freedom_of(np.array([2.0]), np.array([2.0 * t95(n)]))
+    found = freedom_of(np.array([2.0]), np.array([2.0 * quantile(0.975, n)]))
     assert found == [n]
 
 
