@@ -65,7 +65,7 @@ def for_motion(motion: Metadata, treatment: Treatment, given: dict[str, Any]) ->
     return replace(treatment, counting=Counting(bandwidth, noise))
 
 
-def report(job: Job, table: Table, counting: Counting | None, left_out: dict[str, int]) -> None:
+def report(job: Job, table: Table, counting: Counting | None, left_out: dict[str, Any]) -> None:
     """Report which rows were left out, and what could not be known about them."""
     if not counting:
         return

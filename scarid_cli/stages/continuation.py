@@ -12,6 +12,7 @@ import numpy as np
 
 from scarid_cli.algorithms.estimators.ekf import FilterState
 from scarid_cli.algorithms.estimators.rls import WeightedInformation
+from scarid_cli.algorithms.regression.counting import LeftOut, Speeds
 from scarid_cli.algorithms.regression.information import Information
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
@@ -26,7 +27,9 @@ KNOWN = {
         Information,
         Checkpoint,
         FilterState,
+        LeftOut,
         Rows,
+        Speeds,
         Subsample,
         WeightedInformation,
     )

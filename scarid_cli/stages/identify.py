@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import pyarrow as pa
 
-from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows
@@ -52,7 +51,7 @@ def identify(
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
-    left_out = LeftOut()
+    left_out = checkpoint.left_out
     for batch, rows in treated(table, robot, treatment, checkpoint.seen, estimator, left_out):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
@@ -69,7 +68,7 @@ def identify(
     result = parameters(found, robot, meta, treatment, variance=variance)
     if not treatment.counting:
         return result
-    extra = {**result.meta.extra, "left_out": asdict(left_out)}
+    extra = {**result.meta.extra, "left_out": left_out.counts}
     return replace(result, meta=replace(result.meta, extra=extra))
 
 
@@ -89,7 +88,9 @@ def _stepped(
     state, estimates = estimator.step(checkpoint.state, rows, trace=trace)
     seen = int(rows.at[-1]) + 1 if rows.samples else checkpoint.seen
     blocks = checkpoint.blocks.add(rows) if checkpoint.blocks else None
-    return Checkpoint(state, checkpoint.subsample.add(rows), blocks, seen), estimates
+    subsample = checkpoint.subsample.add(rows)
+    following = replace(checkpoint, state=state, subsample=subsample, blocks=blocks, seen=seen)
+    return following, estimates
 
 
 def _not_identifiable(table: Table, robot: Robot, error: NotIdentifiableError) -> BadData:

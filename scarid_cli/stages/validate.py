@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 import pyarrow as pa
@@ -50,7 +50,7 @@ def validate(
         if predictions and batch is not None:
             new = dict(zip(schema.names[1:], (*rows.y.T, *torques), strict=False))
             predictions.write(with_columns(batch, schema, new))
-    extra: dict[str, Any] = {"left_out": asdict(left_out)} if treatment.counting else {}
+    extra: dict[str, Any] = {"left_out": left_out.counts} if treatment.counting else {}
     if model.delay:
         extra["delay"] = model.delay
     if before:

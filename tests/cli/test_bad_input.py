@@ -157,7 +157,8 @@ def test_text_in_a_typed_column_is_reported(scarid: Run, tmp_path: Path) -> None
 
 
 def test_a_motion_without_derivatives_points_to_differentiate(scarid: Run, samples: Path) -> None:
-    result = scarid("identify", samples / "scara2.csv")
+    log, parameters = samples / "scara2.csv", samples / "scara2.parameters.csv"
+    result = scarid("validate", "--parameters", parameters, log)
     assert result.status == 65
     assert "column dq1" in result.err
     assert "estimate it with `scarid differentiate`" in result.err

@@ -25,13 +25,14 @@ FORMATS = {"csv": "csv", "parquet": "parquet", "arrow": "arrows", "arrow-file": 
 CHAINS = [
     *[f"scarid differentiate --method {name} LOG" for name in DIFFERENTIATORS.names],
     *[
-        f"scarid differentiate LOG | scarid identify -q --estimator {name}"
+        f"scarid differentiate LOG | scarid identify -q --all-rows --estimator {name}"
         + (" --initial apriori" if ESTIMATORS.load(name).INITIAL else "")
         for name in ESTIMATORS.names
     ],
     "scarid filter LOG",
     "scarid filter --zero-phase LOG",
-    "scarid differentiate LOG | scarid validate --parameters $SAMPLES/scara2.parameters.csv",
+    "scarid differentiate LOG | scarid validate -q --all-rows --parameters"
+    " $SAMPLES/scara2.parameters.csv",
 ]
 
 
@@ -57,7 +58,7 @@ def test_every_format_and_way_in_gives_the_same_bytes(chain: str, shell: Run) ->
 def test_a_binary_pipe_ends_like_one_of_csv(shell: Run) -> None:
     pipe = (
         "scarid trajgen -q --duration 3 | scarid simulate | scarid filter | scarid differentiate"
-        " | scarid identify -q"
+        " | scarid identify -q --all-rows"
     )
     binary = shell(f"{pipe} --format csv", SCARID_FORMAT="arrow")
     assert binary.status == 0, binary.err
@@ -152,7 +153,7 @@ def test_history_names_every_stage_with_a_digest_and_no_clock(
 ) -> None:
     pipe = (
         "scarid filter --format arrow --cutoff 15 $SAMPLES/scara2.csv |"
-        " scarid differentiate --method 2smd --set eta0=9,10 -o motion.parquet"
+        " scarid differentiate --method 2smd --set eta0=9,10 --per-joint -o motion.parquet"
     )
     assert shell(pipe).status == 0
     first = (tmp_path / "motion.parquet").read_bytes()
@@ -161,7 +162,7 @@ def test_history_names_every_stage_with_a_digest_and_no_clock(
     commands = [entry["command"] for entry in meta.history]
     assert commands == [
         f"scarid filter {log} --cutoff 15.0",
-        "scarid differentiate --method 2smd --set eta0=9,10",
+        "scarid differentiate --method 2smd --set eta0=9,10 --per-joint",
     ]
     digest = shell("sha256sum $SAMPLES/scara2.csv | cut -d' ' -f1").out.strip()
     assert [entry["inputs"] for entry in meta.history] == [{log: digest}, {"<stdin>": None}]

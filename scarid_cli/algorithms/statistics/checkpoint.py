@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
+from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.effects import INTERVAL
 from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
@@ -15,13 +16,15 @@ class Checkpoint:
     """The state of an estimation after some rows.
 
     `state` is that of the estimator. The statistics need `subsample` and, unless this holds all
-    rows, `blocks`. `seen` is the number of samples so far, including those that were left out.
+    rows, `blocks`. `seen` is the number of samples so far, including those that were left out;
+    `left_out` counts these.
     """
 
     state: Any
     subsample: Subsample
     blocks: Blocks | None
     seen: int = 0
+    left_out: LeftOut = field(default_factory=LeftOut)
 
     @classmethod
     def at_start(cls, state: Any, h: float, *, holds: bool) -> Checkpoint:

@@ -20,7 +20,7 @@ from scarid_cli.algorithms.statistics.consequences import (
     consequences,
     gain_sensitivities,
 )
-from scarid_cli.algorithms.statistics.effects import Effect, Trial
+from scarid_cli.algorithms.statistics.effects import FRICTION, Effect, Trial
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
     inflation,
@@ -79,8 +79,11 @@ def diagnose(
     effects = trial.effects(found.fit.estimates, model)
     gains = gain_sensitivities(whole.total, weights)[:, :own]
     shifts = np.array([e.bias for e in effects]).reshape(-1, own)
-    directions = [e.direction(scatter[:own]) for e in effects]
-    matrix = _matrix(found.fit.part(slice(own)), scatter[:own], [*directions, *gain_error * gains])
+    fit, moves = found.fit.part(slice(own)), [(e.name, e.direction(scatter[:own])) for e in effects]
+    matrix = _matrix(fit, scatter[:own], [*(move for _, move in moves), *gain_error * gains])
+    # What friction gains in other columns the parameters lose: the torque remains what it was.
+    other = [move for name, move in moves if name not in FRICTION]
+    torque_matrix = _matrix(fit, scatter[:own], [*other, *gain_error * gains])
     widest = np.max(shifts**2, axis=0, initial=0.0) + np.sum((gain_error * gains) ** 2, axis=0)
     return Diagnostics(
         covariance=covariance and covariance.part(own),
@@ -92,7 +95,7 @@ def diagnose(
         effects=effects,
         gains=gains,
         consequences=consequences(
-            whole, weights, found.fit.estimates, matrix, model, rows.motion[0]
+            whole, weights, found.fit.estimates, torque_matrix, model, rows.motion[0]
         ),
     )
 

@@ -22,6 +22,7 @@ INTERVAL = 0.005  # s: the rows are thinned to intervals of at most this length
 REVERSALS, OFFSET, STRIBECK = "reversals", "offset", "Stribeck"
 ASYMMETRY, PARALLEL, SIGNALS = "asymmetry", "parallel", "signals"
 ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL)  # widen the intervals whether significant or not
+FRICTION = (OFFSET, ASYMMETRY, STRIBECK)  # further columns, whose torques are not in the model
 CERTAIN = 0.01  # probability of calling an effect significant that is none
 LIKELY = 0.05
 TRUST = 1.5  # variances of an effect that are subtracted from its square
