@@ -14,6 +14,7 @@ cpdef update(
     const double[:, :, ::1] W, const double[:, ::1] y, const double[:, ::1] scales,
     double[:, ::1] triangle, double[::1] row, double[::1] sums, double[:, ::1] estimates,
     const double[::1] forgetting, double floor, double[:, ::1] residuals,
+    double apart,
 )
 
 @cython.locals(p=cython.Py_ssize_t, n=cython.Py_ssize_t)
@@ -34,10 +35,10 @@ cdef void take(
 ) noexcept nogil
 
 @cython.locals(n=cython.Py_ssize_t, largest=double, least=double, own=double)
-cdef void weigh(double[:, ::1] residuals, Py_ssize_t joints, Py_ssize_t p) noexcept nogil
+cdef void weigh(double[:, ::1] residuals, Py_ssize_t joints, double needed, double apart) noexcept nogil
 
 @cython.locals(rows=double, share=double)
-cdef double variance(double[:, ::1] residuals, Py_ssize_t n, Py_ssize_t p) noexcept nogil
+cdef double variance(double[:, ::1] residuals, Py_ssize_t n, double needed, double apart) noexcept nogil
 
 @cython.locals(i=cython.Py_ssize_t, count=cython.Py_ssize_t)
 cdef bint differs(const double[::1] factors, double value, Py_ssize_t p) noexcept nogil

@@ -14,7 +14,7 @@ from math import sqrt
 LEAST = 1e-6  # of the largest deviation of a residual
 
 
-def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor, residuals):
+def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor, residuals, apart):
     """Take in the rows of W and y sample by sample, and write theta after each to estimates.
 
     W (samples, joints, parameters), y (samples, joints). scales (samples, joints): what each row is
@@ -24,7 +24,7 @@ def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor, resi
     parameters). All but W, y, scales and forgetting are changed in place. forgetting (parameters):
     factors per sample; the residual forgets by the first of them. floor: see `forget`. residuals
     (joints or 0, 4): if not empty, rows are weighted by the running residual of their joint, see
-    `weigh`; changed in place.
+    `weigh`; changed in place. apart: the number of rows for each that is independent.
     """
     p = triangle.shape[0]
     samples = W.shape[0]
@@ -39,7 +39,7 @@ def update(W, y, scales, triangle, row, sums, estimates, forgetting, floor, resi
             sums[1] = float(sums[1]) * float(forgetting[0])
             forget(triangle, row, forgetting, floor, int(float(sums[2])) % p, p)
         if weighs:
-            weigh(residuals, joints, p)
+            weigh(residuals, joints, apart * p, apart)
         for n in range(joints):
             take(W, y, scales, triangle, row, sums, residuals, float(forgetting[0]), k, n, p)
         sums[2] = float(sums[2]) + 1.0
@@ -87,32 +87,33 @@ def take(W, y, scales, triangle, row, sums, residuals, forgetting, k, n, p):
         residuals[n, 2] = float(residuals[n, 2]) * forgetting + tau * tau
 
 
-def weigh(residuals, joints, p):
+def weigh(residuals, joints, needed, apart):
     """Write the weight of each joint: the largest deviation of a residual over that of the joint.
 
     residuals (joints, 4): [0] the sum of squares of the recursive residuals so far (Brown, Durbin
     and Evans 1975: each is what its row leaves of the fit of the rows before it, over the square
     root of 1 + x' P x), [1] the number of rows, [2] the sum of squares of the torques, all subject
     to forgetting and without rows whose torque is 0, [3] the weight. The residual of n rows counts
-    as at least the share p / n of the torque, because few rows are fitted by p parameters anyhow. A
-    joint without torque so far weighs as much as the least certain one, and no joint outweighs
-    another by more than a factor of a million.
+    as at least the share needed / n of the torque, because fewer rows than needed are fitted
+    anyhow. A joint with fewer rows with a torque than are one independent row, the number apart,
+    weighs as much as the least certain one, and no joint outweighs another by more than a factor
+    of a million.
     """
     largest = 0.0
     for n in range(joints):
-        largest = max(largest, variance(residuals, n, p))
+        largest = max(largest, variance(residuals, n, needed, apart))
     for n in range(joints):
-        own = variance(residuals, n, p)
+        own = variance(residuals, n, needed, apart)
         least = LEAST * LEAST * largest
         residuals[n, 3] = sqrt(largest / max(own, least)) if own > 0.0 else 1.0
 
 
-def variance(residuals, n, p):
-    """The variance of the residual of joint n; 0 before its first row."""
+def variance(residuals, n, needed, apart):
+    """The variance of the residual of joint n; 0 before its first independent row."""
     rows = float(residuals[n, 1])
-    if rows == 0.0:
+    if rows < apart:
         return 0.0
-    share = p / rows
+    share = needed / rows
     return (float(residuals[n, 0]) + share * share * float(residuals[n, 2])) / rows
 
 

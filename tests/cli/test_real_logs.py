@@ -89,8 +89,9 @@ def test_the_verdict_recognises_a_real_log_that_is_not_matched(
     pipe = (
         f"scarid differentiate MATCH {real_logs}/emps/emps_train.csv | scarid identify --robot emps"
     )
-    assert "good: 4 of 4 parameters known" in shell(pipe.replace("MATCH", "--match")).err
-    assert "doubtful: biased" in shell(pipe.replace("MATCH", "--no-match")).err
+    assert "good: 3 of 4 parameters known" in shell(pipe.replace("MATCH", "--match")).err
+    unmatched = shell(pipe.replace("MATCH", "--no-match")).err
+    assert "doubtful: the estimates depend on the soft sensor" in unmatched
 
 
 @pytest.mark.parametrize(("method", "within"), [("p2smd", 0.02), ("ed-fir", 0.003)])
@@ -196,9 +197,9 @@ def test_six_axes_are_identified_online(six_axes: Path, shell: Shell) -> None:
     assert result.status == 0, result.err
     table, metrics = result.out.split("\n\n")
     far = far_from_published(table, six_axes)
-    assert far <= {"Ixy4", "Izz4", "Ixx5", "Ixx6", "Izz6", "my6", "fvm6"}
+    assert far <= {"my2", "Ixx5", "off5", "Iyz6", "Izz6", "mx6"}
     assert quality(metrics)[0] >= 0.98
-    assert "biased" not in result.err
+    assert "the estimates depend on the soft sensor" not in result.err
     weighted = shell(f"scarid identify -q --robot tx40.toml {SLOW} --estimator wls motion.parquet")
     assert far_from_published(weighted.out, six_axes) <= {"Ixx5", "Izz6", "my6"}
 
@@ -324,7 +325,7 @@ def r2_of(folder: Path) -> list[float]:
 def test_blind_emps(shell: Shell, real_logs: Path, tmp_path: Path) -> None:
     """Published offline: 95.1089 kg, and an error of 4.08 %."""
     said = blind("emps", f"{real_logs}/emps/emps_train.csv", shell)
-    assert "good: 4 of 4 parameters known" in said
+    assert "good: 3 of 4 parameters known" in said  # and the offset, as friction is asymmetric
     assert estimates_in(tmp_path)["M"] == pytest.approx(95.1089, rel=0.001)
     (row,) = rows_in(tmp_path / "m.csv")
     assert float(row["relative_error"]) <= 4.2
@@ -424,4 +425,4 @@ def test_blind_ur10(shell: Shell, real_logs: Path, tmp_path: Path) -> None:
     reported = [float(x) for x in found[1].split(", ")]
     r2 = r2_of(tmp_path)
     assert min(r2) >= 0.985
-    assert r2 == pytest.approx(reported, abs=1e-4)
+    assert r2 == pytest.approx(reported, abs=5e-4)  # at the ends rows have no torque when shifted

@@ -146,7 +146,7 @@ def information(
     factors = np.resize(forgetting, p).astype(float)
     residuals = np.zeros((joints if weights else 0, 4))
     work, sums = np.empty(p + 1), rng.random(3)
-    return [W, y, scales, triangle, work, sums, estimates, factors, 0.05, residuals]
+    return [W, y, scales, triangle, work, sums, estimates, factors, 0.05, residuals, 2.0]
 
 
 def moments(rng: np.random.Generator) -> Arguments:

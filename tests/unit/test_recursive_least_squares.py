@@ -195,13 +195,14 @@ def unequal(samples: int) -> tuple[Array, Array]:
 def test_rls_weights_joints_by_their_recursive_residuals(forgetting: float) -> None:
     """By definition, in the covariance form: e^2 / (1 + w' P w) of each row, in torque units."""
     W, y = unequal(300)
+    apart = 0.5 / (10.0 * 0.01)  # rows within half a period of 10 Hz are one
     theta, covariance = np.zeros(P), 100.0 * np.eye(P)
     squares, rows, torques = (np.zeros(2) for _ in range(3))
     for w_sample, y_sample in zip(W, y, strict=True):
         covariance = covariance / forgetting
         weights = np.ones(2)
-        if rows.all():
-            variances = (squares + (P / rows) ** 2 * torques) / rows
+        if rows.min() >= apart:
+            variances = (squares + (P * apart / rows) ** 2 * torques) / rows
             weights = variances.max() / variances
         for j, (w, tau) in enumerate(zip(w_sample, y_sample, strict=True)):
             spread = 1.0 / weights[j] + w @ covariance @ w
@@ -211,7 +212,8 @@ def test_rls_weights_joints_by_their_recursive_residuals(forgetting: float) -> N
             rows[j] = forgetting * rows[j] + 1.0
             torques[j] = forgetting * torques[j] + tau**2
             covariance = covariance - np.outer(gain, w @ covariance)
-    fit = fitted(rls.Estimator(forgetting, p0=100.0), W, y)
+    estimator = rls.Estimator(forgetting, p0=100.0)
+    fit = estimator.of_rows(plain(W, y, 0.01)).fit
     # A little information is given back when it forgets.
     np.testing.assert_allclose(fit.estimates, theta, rtol=1e-9 if forgetting == 1.0 else 1e-6)
 

@@ -31,6 +31,7 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
 SUM, COUNT = 0, 1  # of the running residual of a joint
+BANDWIDTH = 10.0  # Hz, of the torque of a robot: rows within half a period are much alike
 FADED = 1e-10  # the part of the initial information that forgetting leaves in the long run
 
 
@@ -91,6 +92,7 @@ class Estimator(BaseEstimator):
             forgetting=np.resize(self.factors, state.information.parameters),
             floor=FADED / self.p0,
             residuals=residuals,
+            apart=_rows_apart(rows.h),
             trace=trace,
         )
         return WeightedInformation(information, residuals), estimates
@@ -109,3 +111,8 @@ class Estimator(BaseEstimator):
             whitening = np.diag(inverse_deviations(deviations))
         scores = Scores(whitening=whitening, forgetting=min(self.factors))
         return Estimation(solve(state.information), scores)
+
+
+def _rows_apart(h: float) -> float:
+    """How many rows, sampled every h [s], there are for one that is independent; at least 1."""
+    return max(1.0, 0.5 / (BANDWIDTH * h)) if h > 0.0 else 1.0

@@ -103,6 +103,7 @@ def absorb(
     forgetting: Array | None = None,
     floor: float = 0.0,
     residuals: Array | None = None,
+    apart: float = 1.0,
     trace: bool = False,
 ) -> tuple[Information, Array]:
     """The information after these rows, each multiplied by its scale.
@@ -110,7 +111,8 @@ def absorb(
     With `trace` the estimates after each sample (samples, parameters) are returned as well.
     `forgetting` (parameters) are factors per sample; `floor` is the information on each parameter
     that forgetting leaves in the long run. `residuals` (joints, RUNNING), if given, are the running
-    residuals by which joints are weighted, and are changed in place.
+    residuals by which joints are weighted, and are changed in place; `apart` is the number of rows
+    for each that is independent.
     """
     samples, _, parameters = W.shape
     weighted = state.weighted.copy()
@@ -127,6 +129,7 @@ def absorb(
         np.ones(parameters) if forgetting is None else forgetting,
         floor,
         np.empty((0, RUNNING)) if residuals is None else residuals,
+        apart,
     )
     return Information(weighted, *map(float, sums)), estimates
 
