@@ -20,7 +20,9 @@ from scarid_cli.arrays import Array
 P = 3
 SCARA = load("scara2")
 GOOD = JointResidual(1000, 0.999, 0.1, 0.1, 2.0, 0.0, 5.0)
-KNOWN = Consequences(np.ones(2), np.array([0.001, 0.002]), np.array([0.003, 0.004]))
+KNOWN = Consequences(
+    np.ones(2), np.array([0.001, 0.002]), np.full(2, 0.001), np.array([0.003, 0.004])
+)
 BLOCKS = 40
 
 
@@ -109,12 +111,16 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             "R2 0.9990, undefined, condition number 20",
         ),
         (
-            {"errors": np.full(8, np.nan), **consequence(torque=NOT_KNOWN)},
+            {"errors": np.full(8, np.nan), **consequence(noise=NOT_KNOWN)},
             "doubtful",
             "0 of 8 parameters known within 30 %",
         ),
-        (consequence(torque=NOT_KNOWN), "doubtful", "uncertainty of the torque of joint 1"),
-        (consequence(torque=np.array([0.1, 0.0])), "doubtful", "joint 1 is known only within 20 %"),
+        (consequence(noise=NOT_KNOWN), "doubtful", "uncertainty of the torque of joint 1"),
+        (
+            consequence(noise=np.array([0.1, 0.0])),
+            "doubtful",
+            "determines the torque of joint 1 only within 20 %",
+        ),
         (
             consequence(held_out=np.array([1.0, 2.5])),
             "doubtful",
@@ -147,7 +153,7 @@ def test_a_delay_is_not_advised_twice() -> None:
 
 
 def test_essential_parameters_are_not_advised_twice() -> None:
-    poor = consequence(torque=np.array([0.5, 0.5]))
+    poor = consequence(noise=np.array([0.5, 0.5]))
     hint = "--essential leaves out the parameters that are not known"
     assert hint in verdict(evidence(**poor), SCARA).reasons
     assert hint not in verdict(evidence(treatment=Treatment(essential=True), **poor), SCARA).reasons

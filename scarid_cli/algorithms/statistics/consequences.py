@@ -26,12 +26,14 @@ class Consequences:
 
     `held_out` is the root-mean-square residual of parts of the record that were left out of the
     fit, divided by that of the fit itself. `torque` is the standard error of the predicted torque,
-    divided by the root-mean-square torque. `inertia` is the standard error of the diagonal of the
+    divided by the root-mean-square torque, and `noise` the part of it that is due to noise alone,
+    which a longer log would reduce. `inertia` is the standard error of the diagonal of the
     inertia matrix, divided by its value, as a median over poses of the record.
     """
 
     held_out: Array
     torque: Array
+    noise: Array
     inertia: Array
 
 
@@ -40,20 +42,22 @@ def consequences(
     weights: Array,
     estimates: Array,
     covariance: Array,
+    noise: Array,
     model: Model | None,
     poses: Array,
 ) -> Consequences:
     """The consequences of a covariance (own, own) of the first `own` estimates.
 
+    noise (own, own): the part of the covariance that is due to noise alone.
     poses: positions of the joints (joints, samples) [rad or m].
     """
     own = len(covariance)
-    torque = _torque(record.total, covariance)
+    torque, of_noise = (_torque(record.total, x) for x in (covariance, noise))
     nothing = np.full(len(weights), np.nan)
     inertia = nothing
     if model is not None and poses.size:
         inertia = _inertia(model, estimates[:own], covariance, poses)
-    return Consequences(_held_out(record, weights, estimates), torque, inertia)
+    return Consequences(_held_out(record, weights, estimates), torque, of_noise, inertia)
 
 
 def _held_out(record: Blocks, weights: Array, estimates: Array) -> Array:

@@ -95,7 +95,13 @@ def diagnose(
         effects=effects,
         gains=gains,
         consequences=consequences(
-            whole, weights, found.fit.estimates, torque_matrix, model, rows.motion[0]
+            whole,
+            weights,
+            found.fit.estimates,
+            torque_matrix,
+            _matrix(fit, scatter[:own], []),
+            model,
+            rows.motion[0],
         ),
     )
 

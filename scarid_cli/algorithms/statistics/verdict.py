@@ -137,10 +137,10 @@ def _vague(evidence: Evidence) -> list[str]:
     """Joints whose torque is not known, or not predicted within its noise."""
     found, width = evidence.diagnostics.consequences, _width(evidence)
     reasons = [
-        f"the torque of joint {i} is known only within {100.0 * width * error:.2g} %"
+        f"the log determines the torque of joint {i} only within {100.0 * width * error:.2g} %"
         if np.isfinite(error)
         else f"the uncertainty of the torque of joint {i} is not known"
-        for i, error in enumerate(found.torque, start=1)
+        for i, error in enumerate(found.noise, start=1)
         if not width * error <= VAGUE
     ]
     reasons += [
