@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
+import os
+import shlex
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryFile
+from typing import IO
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from conftest import Result
+from conftest import ROOT, Result
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from scarid_cli.__main__ import main
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.csvio import CsvWriter
@@ -21,6 +28,7 @@ from scarid_cli.io.reader import open_table
 from scarid_cli.io.table import METADATA_KEY, Metadata
 
 Run = Callable[..., Result]
+SAMPLE = ROOT / "samples" / "scara2.csv"
 FORMATS = {"csv": "csv", "parquet": "parquet", "arrow": "arrows", "arrow-file": "arrow"}
 CHAINS = [
     *[f"scarid differentiate --method {name} LOG" for name in DIFFERENTIATORS.names],
@@ -36,8 +44,66 @@ CHAINS = [
 ]
 
 
+# One of each command, run as processes too; these spend most of their time on imports
+IN_A_SHELL = [
+    "scarid differentiate LOG",
+    "scarid differentiate LOG | scarid identify -q --estimator ls",
+    CHAINS[-3],
+    CHAINS[-1],
+]
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """The sample in every format."""
+    folder = tmp_path_factory.mktemp("logs")
+    found = [folder / f"log.{extension}" for extension in FORMATS.values()]
+    for name, path in zip(FORMATS, found, strict=True):
+        assert main(["convert", "--format", name, str(SAMPLE), "-o", str(path)]) == 0
+    return found
+
+
+@contextmanager
+def standard(number: int, file: IO[bytes]) -> Iterator[None]:
+    """With the file as standard input (0) or output (1) of this process."""
+    kept = os.dup(number)
+    os.dup2(file.fileno(), number)
+    try:
+        yield
+    finally:
+        os.dup2(kept, number)
+        os.close(kept)
+
+
+def printed(chain: str, log: Path | str, source: IO[bytes]) -> bytes:
+    """What a chain prints whose commands run one after the other in this process."""
+    first, *others = chain.replace("LOG", str(log)).split(" | ")
+    with TemporaryFile() as out:
+        with standard(0, source), standard(1, out):
+            assert main(shlex.split(first)[1:]) == 0
+        out.seek(0)
+        return printed(" | ".join(others), "", out) if others else out.read()
+
+
 @pytest.mark.parametrize("chain", CHAINS)
-def test_every_format_and_way_in_gives_the_same_bytes(chain: str, shell: Run) -> None:
+def test_every_format_and_way_in_gives_the_same_bytes(
+    chain: str, logs: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    chain = chain.replace("$SAMPLES", str(SAMPLE.parent))
+    with Path(os.devnull).open("rb") as nothing, logs[1].open("rb") as file:
+        found = [printed(chain, log, nothing) for log in logs]
+        found.append(printed(chain, "", file))
+        with subprocess.Popen(["cat", logs[1]], stdout=subprocess.PIPE) as cat:
+            assert cat.stdout
+            found.append(printed(chain, "", cat.stdout))
+        monkeypatch.setenv("SCARID_FORMAT", "arrow")
+        found.append(printed(f"{chain} | scarid convert --format csv", logs[0], nothing))
+    assert found[0].count(b"\n") >= 3
+    assert set(found) == {found[0]}
+
+
+@pytest.mark.parametrize("chain", IN_A_SHELL)
+def test_processes_give_the_same_bytes_too(chain: str, shell: Run) -> None:
     made = [
         f"scarid convert --format {name} $SAMPLES/scara2.csv -o log.{extension}"
         for name, extension in FORMATS.items()

@@ -5,16 +5,23 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from conftest import Result, refused
 
 Shell = Callable[..., Result]
-MOTION = "scarid differentiate $SAMPLES/scara2.csv -o motion.csv"
 HALVES = (
-    f"{MOTION} && head -301 motion.csv > first.csv && (head -1 motion.csv; tail -n +302 motion.csv)"
-    " > second.csv"
+    "head -301 motion.csv > first.csv && (head -1 motion.csv; tail -n +302 motion.csv) > second.csv"
 )
+
+
+@pytest.fixture(autouse=True)
+def motion(scarid: Callable[..., Result], samples: Path, tmp_path: Path) -> None:
+    """The motion of the sample, in the directory of the shell."""
+    assert (
+        scarid("differentiate", samples / "scara2.csv", "-o", tmp_path / "motion.csv").status == 0
+    )
 
 
 @pytest.mark.parametrize("options", ["", "--forgetting 0.999,Fs1=0.99", "--estimator wls",
@@ -51,7 +58,7 @@ def test_a_saved_state_is_for_the_same_estimation(shell: Shell) -> None:
 def test_a_file_that_is_not_a_saved_estimation_is_refused(
     make: str, status: int, reported: str, shell: Shell
 ) -> None:
-    result = shell(f"{MOTION}; {make}; scarid identify --from state.npz motion.csv")
+    result = shell(f"{make}; scarid identify --from state.npz motion.csv")
     assert result.status == status
     assert reported in result.err
     assert len(result.err.splitlines()) == 1
@@ -59,7 +66,7 @@ def test_a_file_that_is_not_a_saved_estimation_is_refused(
 
 def test_a_failed_estimation_saves_no_state(shell: Shell) -> None:
     result = shell(
-        f"{MOTION}; awk 'NR == 50 {{sub(/^[^,]*/, \"x\")}} 1' motion.csv > bad.csv;"
+        "awk 'NR == 50 {sub(/^[^,]*/, \"x\")} 1' motion.csv > bad.csv;"
         " scarid identify --save state.npz bad.csv -o p.csv; ls"
     )
     assert "state.npz" not in result.out
@@ -73,7 +80,7 @@ def rows_of(result: Result) -> dict[str, dict[str, str]]:
 
 def test_rows_skipped_at_both_ends_are_as_if_they_were_not_there(shell: Shell) -> None:
     result = shell(
-        f"{MOTION} && (head -1 motion.csv; sed -n '12,481p' motion.csv) > inner.csv && for e in"
+        "(head -1 motion.csv; sed -n '12,481p' motion.csv) > inner.csv && for e in"
         " 'ls' 'wls --align'; do scarid identify -q --estimator $e inner.csv > a.csv && scarid"
         " identify -q --skip 10,21 --estimator $e motion.csv | cmp - a.csv; done"
     )
@@ -119,7 +126,7 @@ def test_didim_needs_no_measured_positions(shell: Shell) -> None:
 
 def test_stribeck_friction_goes_on_to_validate(shell: Shell) -> None:
     result = shell(
-        f"{MOTION} && scarid identify -q --estimator separable motion.csv -o p.csv &&"
+        "scarid identify -q --estimator separable motion.csv -o p.csv &&"
         " cut -d, -f1,2 p.csv | tail -4 && scarid validate --parameters p.csv motion.csv"
     )
     assert result.status == 0, result.err
@@ -132,7 +139,7 @@ def test_friction_is_smoothed_alike_in_identify_and_validate(shell: Shell) -> No
     judge = "scarid validate --smooth-sign 0.1 motion.csv --parameters"
     squares = "awk -F, 'NR > 1 { sum += $3 * $3 } END { print sum }'"
     result = shell(
-        f"{MOTION} && {fit} --smooth-sign 0.1 -o smooth.csv && {fit} -o sharp.csv &&"
+        f"{fit} --smooth-sign 0.1 -o smooth.csv && {fit} -o sharp.csv &&"
         f" for p in smooth sharp; do {judge} $p.csv | {squares}; done"
     )
     smooth, sharp = map(float, result.out.split())
@@ -165,7 +172,7 @@ def test_the_metadata_hold_the_verdict_and_its_numbers(shell: Shell) -> None:
     ],
 )
 def test_too_few_rows_are_reported_in_one_line(options: str, reported: str, shell: Shell) -> None:
-    result = shell(f"{MOTION}; scarid {options} motion.csv -o out.csv; s=$?; ls; exit $s")
+    result = shell(f"scarid {options} motion.csv -o out.csv; s=$?; ls; exit $s")
     assert result.status == 65
     assert reported in result.err
     assert "leave out fewer rows" in result.err
@@ -177,7 +184,7 @@ def test_too_few_rows_are_reported_in_one_line(options: str, reported: str, shel
 def test_initial_parameters_are_refused_by_an_estimator_without_them(
     estimator: str, shell: Shell
 ) -> None:
-    pipe = f"{MOTION}; scarid identify --estimator {estimator} --initial apriori motion.csv"
+    pipe = f"scarid identify --estimator {estimator} --initial apriori motion.csv"
     result = shell(pipe)
     refused(result, 2, f"--initial: {estimator} has no initial parameters")
 
@@ -197,7 +204,7 @@ def test_the_delay_goes_with_the_parameters_to_validate(options: str, shell: She
 
 def test_the_friction_of_separable_is_no_initial_value_of_others(shell: Shell) -> None:
     result = shell(
-        f"{MOTION} && scarid identify -q --estimator separable motion.csv -o p.csv;"
+        "scarid identify -q --estimator separable motion.csv -o p.csv;"
         " scarid identify --initial p.csv motion.csv"
     )
     refused(result, 2, "p.csv has friction that fades with speed (separable)")
@@ -205,7 +212,7 @@ def test_the_friction_of_separable_is_no_initial_value_of_others(shell: Shell) -
 
 def test_an_error_of_the_delay_that_is_unknown_is_said_to_be(shell: Shell) -> None:
     """Without the rows of joint 1, none of its parameters is known, and so no error is."""
-    result = shell(f"{MOTION} && scarid identify --align --drop-slow 100,0 motion.csv")
+    result = shell("scarid identify --align --drop-slow 100,0 motion.csv")
     assert result.status == 0, result.err
     assert "(error unknown)" in result.err
     assert "nan" not in result.err

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.tables import SCARA, Kept, collected, motion, references, table
+from unit.support import GIVEN, without_search
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
@@ -32,11 +33,11 @@ SIZES = st.lists(st.sampled_from([1, 2, 7, 64, 8192]), min_size=1, max_size=4)
 
 
 def differentiated(name: str) -> Stage:
-    return lambda source: differentiate(source, [DIFFERENTIATORS.load(name)()] * 2)
+    return lambda source: differentiate(source, [without_search(name)] * 2)
 
 
 def matching(name: str) -> Stage:
-    return lambda source: matched(source, [DIFFERENTIATORS.load(name)()] * 2)
+    return lambda source: matched(source, [without_search(name)] * 2)
 
 
 def identified(name: str) -> Stage:
@@ -85,6 +86,18 @@ STAGES: dict[str, Stage] = {
 @settings(max_examples=8, deadline=None)
 def test_a_stage_gives_the_same_bits_however_its_rows_arrive(name: str, sizes: list[int]) -> None:
     assert collected(STAGES[name](table(source_of(name), sizes))).equals(at_once(name))
+
+
+@pytest.mark.parametrize("stage", [differentiate, matched])
+@pytest.mark.parametrize("name", GIVEN)
+def test_settings_found_in_a_record_are_the_same_however_its_rows_arrive(
+    name: str, stage: Callable[..., Table]
+) -> None:
+    def found(sizes: list[int]) -> pa.Table:
+        methods = [DIFFERENTIATORS.load(name)()] * 2
+        return collected(stage(table(motion(60), sizes), methods))
+
+    assert found([1, 7, 2]).equals(found([]))
 
 
 def source_of(name: str) -> dict[str, np.ndarray]:

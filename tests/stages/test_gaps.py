@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.tables import PERIOD, SCARA, Kept, collected, cut, motion, table
+from unit.support import GIVEN, without_search
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
@@ -32,10 +33,10 @@ LENGTHS = (150, 3, 120, 127)  # rows of the segments; the second is too short fo
 SIZES = st.lists(st.sampled_from([1, 2, 7, 64, 8192]), min_size=1, max_size=4)
 
 
-def gapped(sizes: list[int] | None = None) -> Table:
+def gapped(sizes: list[int] | None = None, lengths: tuple[int, ...] = LENGTHS) -> Table:
     """A motion in segments, time jumping by a tenth of a second between them."""
     columns = motion()
-    segment = np.repeat(np.arange(len(LENGTHS)), LENGTHS)
+    segment = np.repeat(np.arange(len(lengths)), lengths)
     rows = len(segment)
     columns = {name: x[:rows] for name, x in columns.items()}
     columns["t"] = columns["t"] + 0.1 * segment
@@ -51,7 +52,7 @@ STAGES: dict[str, Stage] = {
     "filter zero-phase": lambda source: filtered(source, {"q1": ZeroPhase(20.0)}),
     **{
         f"differentiate {name}{' --match' if stage is matched else ''}": (
-            lambda source, name=name, stage=stage: stage(source, [DIFFERENTIATORS.load(name)()] * 2)
+            lambda source, name=name, stage=stage: stage(source, [without_search(name)] * 2)
         )
         for name in DIFFERENTIATORS.names
         for stage in (differentiate, matched)
@@ -62,16 +63,27 @@ STAGES: dict[str, Stage] = {
 @pytest.mark.parametrize("name", STAGES)
 def test_each_segment_is_a_record_of_its_own(name: str) -> None:
     """Bit for bit; those that the stage refuses alone are left out."""
+    assert of_its_own(STAGES[name], LENGTHS) >= 3
+
+
+@pytest.mark.parametrize("name", GIVEN)
+def test_settings_are_found_in_each_segment(name: str) -> None:
+    methods = [DIFFERENTIATORS.load(name)()] * 2
+    assert of_its_own(lambda source: differentiate(source, methods), (60, 50)) == 2
+
+
+def of_its_own(stage: Stage, lengths: tuple[int, ...]) -> int:
+    """How many segments are not refused, each of which gives together what it gives alone."""
     alone = []
-    for segment in segments(gapped()):
+    for segment in segments(gapped(lengths=lengths)):
         batches = list(segment.batches)
         try:
-            alone.append(collected(STAGES[name](replace(segment, batches=iter(batches)))))
+            alone.append(collected(stage(replace(segment, batches=iter(batches)))))
         except TooShort:
             assert sum(batch.num_rows for batch in batches) < 100
-    together = collected(STAGES[name](gapped([64, 7])))
+    together = collected(stage(gapped([64, 7], lengths)))
     assert together.equals(pa.concat_tables(alone).combine_chunks())
-    assert len(alone) >= 3
+    return len(alone)
 
 
 @pytest.mark.parametrize("stage", [differentiate, matched])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import fields
-from functools import cache
+from functools import cache, partial
 from math import inf, nan
 from typing import Any
 
@@ -13,7 +13,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import signal
-from unit.support import PERIOD, cuts, derivatives, encoder_readings, every_differentiator, sine
+from unit.support import (
+    GIVEN,
+    PERIOD,
+    cuts,
+    derivatives,
+    encoder_readings,
+    every_differentiator,
+    sine,
+    without_search,
+)
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.differentiators import central, ed_fir, p2smd
@@ -25,6 +34,8 @@ LSB = 2.0 * np.pi / 2**13
 
 METHODS = dict(every_differentiator())
 every_method = pytest.mark.parametrize("make", METHODS.values(), ids=METHODS)
+# Without searches for settings, for properties of many examples
+QUICK = METHODS | {name: partial(without_search, name) for name in GIVEN}
 
 astd, smd2 = DIFFERENTIATORS.load("astd"), DIFFERENTIATORS.load("2smd")
 
@@ -32,7 +43,7 @@ astd, smd2 = DIFFERENTIATORS.load("astd"), DIFFERENTIATORS.load("2smd")
 # What all of them share
 
 
-@every_method
+@pytest.mark.parametrize("make", QUICK.values(), ids=QUICK)
 @given(chunks=cuts(ROWS))
 @settings(max_examples=30, deadline=None)
 def test_chunks_do_not_change_a_bit(make: Any, chunks: list[slice]) -> None:
