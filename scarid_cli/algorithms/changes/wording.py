@@ -50,11 +50,15 @@ def of_change(change: Change, values: dict[str, float], ratios: Array | None) ->
     noise = "; ".join(f"joint {j + 1} {ratios[j]:.2g} times" for j in noisy if ratios is not None)
     facts = _facts(change, ratios)
     if not change.changed:
-        tests = f"no change in {change.tests} tests (smallest p {change.p_value:.2g})"
+        tests = f"{change.tests} tests find no change (smallest p-value {change.p_value:.2g})"
         if not noise:
-            return Verdict(UNCHANGED, f"residuals as at identification: {tests}", facts)
+            return Verdict(
+                UNCHANGED, f"the residuals are those of the identification; {tests}", facts
+            )
         cause = "noise, vibration, friction that the model lacks, or another soft sensor"
-        reason = f"larger residuals than at identification ({noise}), but {tests}: {cause}"
+        reason = (
+            f"the residuals are larger than at the identification ({noise}), but {tests}: {cause}"
+        )
         return Verdict(UNEXPLAINED, reason, facts)
     found = " and ".join(map(_sentence_of(values), change.explanations))
     if change.complete:
