@@ -155,7 +155,7 @@ def test_a_force_that_no_change_explains() -> None:
     rng = np.random.default_rng(1)
     found = change(parameters(), q, tau + rng.standard_normal(tau.shape) * [[3.0], [1.0]])
     assert found["verdict"] == "unexplained"
-    assert "larger residuals than at identification" in found["reason"]
+    assert "the residuals are larger than at the identification" in found["reason"]
 
 
 def test_a_table_without_metadata_is_tested_with_its_errors() -> None:
