@@ -9,6 +9,7 @@
 # make crossvalidate   online identification of twenty simulated experiments
 # make montecarlo      coverage of the stated intervals
 # make bench-verdicts   whether intervals and verdicts hold under imperfect conditions
+# make gauntlet       the blind procedure on four robots under all conditions (an hour)
 # make bench-changed   how often validate calls a change between two logs by its name
 # make emps EMPS=emps_train.csv   every differentiator on the real EMPS log
 # make docs     generate docs/tables.md from schemas/
@@ -23,7 +24,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-differentiators crossvalidate montecarlo bench-verdicts bench-changed emps docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-differentiators crossvalidate montecarlo bench-verdicts bench-changed gauntlet emps docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -80,6 +81,9 @@ montecarlo: $(VENV)/tested
 
 bench-verdicts: $(VENV)/tested
 	$(BIN)/python benchmarks/verdicts.py
+
+gauntlet: $(VENV)/tested
+	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/gauntlet.py
 
 bench-changed: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/changed.py

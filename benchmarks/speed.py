@@ -109,7 +109,7 @@ def regressions() -> dict[str, tuple[ModuleType, KernelRun]]:
         work, sums, scales = np.empty(9), np.zeros(3), np.ones((k, 2))
         running = np.zeros((2 if trace else 0, 4))
         arrays = (W[:k], y[:k], scales, triangle, work, sums, out, factors)
-        module.update(*arrays, 1e-12, running)
+        module.update(*arrays, 1e-12, running, 10.0)
 
     return {
         "ls, row of 8": (information, lambda m, k: update(m, k // 2, trace=False)),
