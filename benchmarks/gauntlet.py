@@ -318,7 +318,10 @@ def cells(robots: list[str], conditions: list[str]) -> Iterator[tuple[str, Condi
     for name in robots:
         if name in ("ur10", "panda") and not URDFS.exists():
             continue
+        rigid = not any(p.term.NAME == "mass" for p in robot_named(name).parameters)
         for condition in CONDITIONS:
+            if rigid and condition.name.startswith(FLEXIBLE):
+                continue  # a flexible joint has an inertia of its motor, for which there is no term
             if not conditions or any(part in condition.name for part in conditions):
                 yield name, condition
 

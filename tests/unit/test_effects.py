@@ -18,6 +18,7 @@ from scarid_cli.algorithms.statistics.alignment import aligned, shifted
 from scarid_cli.algorithms.statistics.alternatives import Model, away_from_reversals, differences
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.effects import (
+    LOAD,
     OFFSET,
     PARALLEL,
     SIGNALS,
@@ -112,6 +113,20 @@ def test_intervals_allow_for_stribeck_friction() -> None:
     wrong = np.abs(estimated(ls.Estimator(), rows).fit.estimates - AXIS.apriori)
     assert np.any(wrong > 5.0 * found.scatter)
     assert np.all(wrong < 3.0 * found.errors)
+
+
+def loaded(motion: Array) -> Array:
+    """Friction that grows by 5 % of the force of inertia."""
+    _, dq, ddq = motion
+    return np.asarray(0.05 * np.abs(AXIS.apriori[0] * ddq) * np.sign(dq))
+
+
+def test_intervals_allow_for_friction_that_grows_with_the_load() -> None:
+    found = diagnosed(axis(tau=loaded))
+    off = np.abs(estimated(ls.Estimator(), axis(tau=loaded)).fit.estimates - AXIS.apriori)
+    assert np.any(off > 3.0 * found.scatter)
+    assert np.all(off < 3.0 * found.errors)
+    assert next(effect for effect in found.effects if effect.name == LOAD).significant()
 
 
 def test_what_the_model_has_is_no_alternative() -> None:

@@ -15,10 +15,11 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows, delay_column, runs
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array, Marks, Numbers
 
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
 STRIBECK = 0.3  # of the root-mean-square velocity: where the Stribeck effect has decayed
+BESIDE_FRICTION = ("offset", "stribeck")  # terms that are not friction alone, but go with it
 EDGE = 4  # samples at both ends of a run where the differences are not central
 
 
@@ -33,19 +34,29 @@ class Model:
         """W of the kept columns (samples, joints, parameters)."""
         return self.robot.regressor(q, dq, ddq)[:, :, self.kept]
 
+    @property
+    def transmits(self) -> Marks:
+        """Which of the kept parameters are of torques that a joint transmits: all but friction."""
+        terms = [self.robot.parameters[i].term for i in self.kept]
+        return np.array([not (t.NEVER_NEGATIVE or t.NAME in BESIDE_FRICTION) for t in terms])
 
-def friction_columns(dq: Array) -> dict[str, Array]:
+
+def friction_columns(rows: Rows, model: Model | None, estimates: Array) -> dict[str, Array]:
     """Further columns (samples, joints, joints) of each alternative for the friction.
 
-    dq: velocities (joints, samples) [rad/s or m/s].
+    Friction of gears grows with the torque that they transmit, which only a model can tell.
     """
-    v = dq.T
+    v = rows.motion[1].T
     fade = STRIBECK * np.sqrt(np.mean(v**2, axis=0)) + 1e-300
-    return {
+    columns = {
         "offset": _diagonal(np.ones_like(v)),
         "asymmetry": _diagonal(np.abs(v)),
         "Stribeck": _diagonal(np.sign(v) * np.exp(-((v / fade) ** 2))),
     }
+    if model:
+        own = np.flatnonzero(model.transmits)
+        columns["load"] = _diagonal(np.sign(v) * np.abs(rows.W[:, :, own] @ estimates[own]))
+    return columns
 
 
 def _diagonal(values: Array) -> Array:

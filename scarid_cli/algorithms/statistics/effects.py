@@ -20,9 +20,14 @@ from scarid_cli.arrays import Array, Numbers
 
 INTERVAL = 0.005  # s: the rows are thinned to intervals of at most this length
 REVERSALS, OFFSET, STRIBECK = "reversals", "offset", "Stribeck"
-ASYMMETRY, PARALLEL, SIGNALS = "asymmetry", "parallel", "signals"
+ASYMMETRY, LOAD, PARALLEL, SIGNALS = "asymmetry", "load", "parallel", "signals"
 ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL)  # widen the intervals whether significant or not
-FRICTION = (OFFSET, ASYMMETRY, STRIBECK)  # further columns, whose torques are not in the model
+FRICTION = (
+    OFFSET,
+    ASYMMETRY,
+    STRIBECK,
+    LOAD,
+)  # further columns, whose torques are not in the model
 CERTAIN = 0.01  # probability of calling an effect significant that is none
 LIKELY = 0.05
 TRUST = 1.5  # variances of an effect that are subtracted from its square
@@ -117,7 +122,8 @@ class Trial:
         """The effects of all alternatives that the rows determine."""
         if self.plain is None:
             return ()
-        return (*self.friction(self.plain), *self.signals(self.plain, estimates, model))
+        friction = self.friction(self.plain, estimates, model)
+        return (*friction, *self.signals(self.plain, estimates, model))
 
     def products(
         self, scales: Array, further: dict[str, Array]
@@ -134,9 +140,11 @@ class Trial:
         weighted = A * (scales * self.weights)[:, :, None]
         return Products.of(weighted, number, self.count, self.rows.W.shape[2])
 
-    def friction(self, plain: Solved) -> list[Effect]:
+    def friction(self, plain: Solved, estimates: Array, model: Model | None) -> list[Effect]:
         """The effects of what friction may have beyond the model, and of rows near reversals."""
-        products, places = self.products(self.rows.scales, friction_columns(self.rows.motion[1]))
+        products, places = self.products(
+            self.rows.scales, friction_columns(self.rows, model, estimates)
+        )
         found = []
         for name, columns in places.items():
             new = products.independent(columns)

@@ -9,6 +9,7 @@ import numpy as np
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import (
     ASYMMETRY,
+    LOAD,
     OFFSET,
     REVERSALS,
     STRIBECK,
@@ -22,6 +23,7 @@ ADVICE = {
     ASYMMETRY: "friction differs between the two directions (add the terms viscous-forward and "
     "viscous-backward to the robot)",
     STRIBECK: "friction decreases with speed (add Stribeck friction with --estimator separable)",
+    LOAD: "friction grows with the torque that a joint transmits, for which there is no term",
     REVERSALS: "friction near reversals differs from the model (leave slow rows out with "
     "--drop-slow)",
 }

@@ -35,8 +35,9 @@ class Limits:
     @property
     def home(self) -> Array:
         """Zero where it lies within the limits, else the middle of the interval (joints)."""
-        middle = 0.5 * (self.lower + self.upper)
-        home: Array = np.where((self.lower <= 0.0) & (self.upper >= 0.0), 0.0, middle)
+        has_zero = (self.lower <= 0.0) & (self.upper >= 0.0)
+        lower, upper = (np.where(has_zero, 0.0, x) for x in (self.lower, self.upper))
+        home: Array = 0.5 * (lower + upper)
         return home
 
     def within(self, other: Limits) -> Limits:
