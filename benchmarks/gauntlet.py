@@ -38,7 +38,9 @@ from arms import URDFS, described
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, EXCITATIONS
 from scarid_cli.algorithms.estimators import rls, wls
 from scarid_cli.algorithms.plants.controllers import law
+from scarid_cli.algorithms.plants.imperfections import PlantImperfections
 from scarid_cli.algorithms.plants.loop import ClosedLoop
+from scarid_cli.algorithms.plants.model import dynamics, model
 from scarid_cli.algorithms.regression.counting import Counting
 from scarid_cli.algorithms.regression.rows import joined
 from scarid_cli.algorithms.regression.treatment import Treatment
@@ -160,7 +162,7 @@ def log(robot: Robot, condition: Condition, seed: int) -> Table:
         for name, (unit, factor) in condition.relative.items()
     }
     words = (
-        f"{name}={','.join(f'{x:.9g}' for x in value)}"
+        f"{name}={','.join(f'{x}' for x in value)}"
         for name, value in {**condition.given, **relative}.items()
     )
     known = imperfections(tuple(words), {}, robot.imperfections, joints)
@@ -198,13 +200,29 @@ def regressor(name: str, seed: int) -> Array:
 
 
 def truth_of(robot: Robot, condition: Condition) -> Array:
-    """The true parameters, with the offset of the torques if the robot has a parameter for it."""
+    """The true parameters, with what the condition adds to those that the robot has.
+
+    These are the offset of the torques, and the inertia of a motor behind a flexible joint where
+    that of the description is a part of the link's inertia.
+    """
     unit, factor = condition.relative.get("torque-offset", ("coulomb", 0.0))
     truth = robot.apriori.copy()
     for i, parameter in enumerate(robot.parameters):
         if parameter.term.NAME == "offset":
             truth[i] += factor * abs(robot.value(unit, parameter.term.joints[0]))
+        if "flexibility" in condition.given:
+            parts = dict(parameter.parts)
+            truth[i] += sum(parts.get(name, 0.0) * x for name, x in added_motors(robot).items())
     return truth
+
+
+def added_motors(robot: Robot) -> dict[str, float]:
+    """The inertia [kg m2] of motors that a flexible joint gets, by the name of its parameter."""
+    arm = model(robot)
+    own = np.diag(arm.motors)
+    _, matrix = dynamics(arm, Limits.of(robot.joints).home)
+    shares = np.where(own > 0.0, 0.0, PlantImperfections().motor_share * (np.diag(matrix) - own))
+    return {f"Ia{i}": float(x) for i, x in enumerate(shares, start=1)}
 
 
 def torque_error(name: str, truth: Array, seed: int, estimates: Array) -> float:
