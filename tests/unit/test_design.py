@@ -160,6 +160,14 @@ def test_what_no_motion_excites_has_no_say_in_the_condition_number() -> None:
     assert slope[2, 2] == pytest.approx(0.0, abs=1e-12)
 
 
+def test_a_motion_far_beyond_its_limits_has_a_value() -> None:
+    """A trial of the line search, whose smallest eigenvalue is rounding."""
+    M = np.diag([1e20, 1.0, -1.0])
+    value, slope = criteria.condition(M, np.eye(3))
+    assert np.isfinite(value)
+    assert np.isfinite(slope).all()
+
+
 def boxed(robot: str) -> tuple[Samples, Limits]:
     joints = load(robot).joints
     ones = np.ones(len(joints))
