@@ -1,11 +1,11 @@
 """Arms known by their URDF alone: planned, simulated and identified, in one pipe each.
 
-    python benchmarks/arms.py --seeds 10
+    python benchmarks/arms.py --seeds 5
 
 The URDFs are those in ../shared/data/urdf. They have no motors and no friction; a description gives
 each joint an inertia of the motor, viscous and Coulomb friction as shares of its torque limit. The
 table has the processor time of each command, the errors (estimate less true value) in units of the
-stated robust errors, over all estimates of all simulated logs, and how many are beyond three.
+stated robust errors, over all estimates of several motions, and how many are beyond three.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ NOISE = 0.003  # of the torque limit
 RESOLUTION = 2.0 * pi / 2.0**17
 TIMED = 'TIMEFORMAT="{name} %U"; {{ time {command} 2> /dev/null; }} 2>> times'
 STEPS = {
-    "trajgen": "scarid trajgen --robot arm.toml --optimise --starts 2 --seed 1 --format arrow",
-    "simulate": "scarid simulate --robot arm.toml --seed {seed} --format arrow {reference}",
+    "trajgen": "scarid trajgen --robot arm.toml --optimise --starts 2 --seed {seed} --format arrow",
+    "simulate": "scarid simulate --robot arm.toml --seed {seed} --format arrow",
     "differentiate": "scarid differentiate --format arrow",
     "identify": "scarid identify --robot arm.toml --estimator wls --drop-slow 0.1 --align",
 }
@@ -60,29 +60,25 @@ def described(urdf: Path, folder: Path) -> Path:
 
 
 def pipe(folder: Path, seed: int) -> tuple[str, dict[str, float]]:
-    """The table of one pipe, whose motion is planned for the first seed; times of its steps [s]."""
+    """The table that one pipe writes, and the processor times of its steps [s]."""
     (folder / "times").unlink(missing_ok=True)
-    reference = "" if seed == 0 else "reference.arrow"
-    steps = {name: step.format(seed=seed, reference=reference) for name, step in STEPS.items()}
-    if reference:
-        del steps["trajgen"]
-    parts = [TIMED.format(name=name, command=command) for name, command in steps.items()]
-    if not reference:
-        parts.insert(1, "tee reference.arrow")
+    parts = (
+        TIMED.format(name=name, command=command.format(seed=seed))
+        for name, command in STEPS.items()
+    )
     table = shell(folder, " | ".join(f"( {part} )" for part in parts))
     rows = (line.split() for line in (folder / "times").read_text().splitlines())
     return table, {name: float(time) for name, time in rows}
 
 
 def identified(name: str, seeds: int) -> tuple[Array, dict[str, float]]:
-    """Errors in units of stated errors, of all estimates that have one; times of the first pipe."""
+    """Errors in units of stated errors, of all estimates that have one; times of the last pipe."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         arm = load(str(described(URDFS / f"{name}.urdf", folder)))
-        found, times = [], {}
+        found = []
         for seed in range(seeds):
-            table, own = pipe(folder, seed)
-            times = times or own
+            table, times = pipe(folder, seed)
             estimates, errors = (
                 column(table, what, arm.names) for what in ("estimate", "robust_error")
             )
@@ -92,7 +88,7 @@ def identified(name: str, seeds: int) -> tuple[Array, dict[str, float]]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--seeds", type=int, default=5)
     seeds = parser.parse_args().seeds
     print(f"| arm | parameters | {' | '.join(f'{name} [s]' for name in STEPS)} | rms | beyond 3 |")
     print("|---|---|---|---|---|---|---|---|")

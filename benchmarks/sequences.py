@@ -1,7 +1,8 @@
 """Do three planned experiments of 10 s tell more than a random one of 60 s? By whole pipes.
 
-    python benchmarks/sequences.py
-    python benchmarks/sequences.py --robot samples/robots/ur10e.toml --home 0,-1.5708,0,-1.5708,0,0
+    python benchmarks/sequences.py --planning "--starts 2 --criterion d --set interval=0.8"
+    python benchmarks/sequences.py --robot samples/robots/ur10e.toml --method kalman \\
+      --home 0,-1.5708,0,-1.5708,0,0 --planning "--starts 1 --criterion d"
 
 Each experiment after the first is planned by `trajgen --optimise --after` from the parameters that
 the logs so far have given, all of them identified together. Both sides go through the same pipe.
@@ -40,8 +41,7 @@ class Study:
     folder: Path
     robot: str
     home: str
-    criterion: str
-    starts: int
+    planning: str
     method: str
 
     def move(self, options: str, name: str) -> None:
@@ -68,8 +68,8 @@ class Study:
         names: list[str] = []
         for k in range(EXPERIMENTS):
             names.append(f"planned{k}")
-            how = f"--optimise --criterion {self.criterion} --starts {self.starts}"
-            self.move(f"{how} --duration {SHORT} --seed {plan} {after}", names[-1])
+            how = f"--optimise {self.planning} --duration {SHORT} --seed {plan}"
+            self.move(f"{how} {after}", names[-1])
             after = "--after known.parquet"
             found = self.errors(names, runs * plan, "known")
         return [found, *(self.errors(names, runs * plan + n, "other") for n in range(1, runs))]
@@ -105,16 +105,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robot", default="scara2")
     parser.add_argument("--home", default="")
-    parser.add_argument("--criterion", default="balanced")
+    parser.add_argument("--planning", default="--starts 2", help="options of `trajgen --optimise`")
     parser.add_argument("--method", default="rts", help="of `scarid differentiate`")
-    parser.add_argument("--starts", type=int, default=2)
     parser.add_argument("--plans", type=int, default=5)
     parser.add_argument("--runs", type=int, default=4, help="of each plan")
     given = parser.parse_args()
     path = Path(given.robot)
     robot = str(path.resolve()) if path.exists() else given.robot
     with tempfile.TemporaryDirectory() as folder:
-        study = Study(Path(folder), robot, given.home, given.criterion, given.starts, given.method)
+        study = Study(Path(folder), robot, given.home, given.planning, given.method)
         compare(study, given.plans, given.runs)
 
 
