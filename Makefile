@@ -72,7 +72,7 @@ bench-experiments: $(VENV)/tested
 	$(BIN)/python benchmarks/experiments.py
 	$(BIN)/python benchmarks/arms.py
 	$(BIN)/python benchmarks/sequences.py --planning "--starts 2 --criterion d --set interval=0.8"
-	$(BIN)/python benchmarks/sequences.py --robot samples/robots/ur10e.toml --method kalman \
+	$(BIN)/python benchmarks/sequences.py --robot samples/robots/ur10e.toml \
 	  --home 0,-1.5708,0,-1.5708,0,0 --planning "--starts 1 --criterion d"
 
 bench-differentiators: $(VENV)/compared

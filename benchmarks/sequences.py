@@ -1,7 +1,7 @@
 """Do three planned experiments of 10 s tell more than a random one of 60 s? By whole pipes.
 
     python benchmarks/sequences.py --planning "--starts 2 --criterion d --set interval=0.8"
-    python benchmarks/sequences.py --robot samples/robots/ur10e.toml --method kalman \\
+    python benchmarks/sequences.py --robot samples/robots/ur10e.toml \\
       --home 0,-1.5708,0,-1.5708,0,0 --planning "--starts 1 --criterion d"
 
 Each experiment after the first is planned by `trajgen --optimise --after` from the parameters that
@@ -106,7 +106,7 @@ def main() -> None:
     parser.add_argument("--robot", default="scara2")
     parser.add_argument("--home", default="")
     parser.add_argument("--planning", default="--starts 2", help="options of `trajgen --optimise`")
-    parser.add_argument("--method", default="rts", help="of `scarid differentiate`")
+    parser.add_argument("--method", default="zero-phase --set cutoff=20", help="of `differentiate`")
     parser.add_argument("--plans", type=int, default=5)
     parser.add_argument("--runs", type=int, default=4, help="of each plan")
     given = parser.parse_args()
