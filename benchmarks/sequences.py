@@ -29,7 +29,8 @@ EXPERIMENTS, SHORT, LONG = 3, 10.0, 60.0  # number of planned ones; durations [s
 # torques is fitted.
 IDENTIFY = (
     "scarid resample -q --rate 200 record.parquet | scarid differentiate -q --method {method} | "
-    "scarid identify -q --estimator wls --drop-slow 0.1 --align -o {table}.parquet; "
+    "scarid identify -q --robot {robot} --estimator wls --drop-slow 0.1 --align "
+    "-o {table}.parquet; "
     "scarid convert -q {table}.parquet"
 )
 
@@ -58,7 +59,9 @@ class Study:
             options = f"--robot {self.robot} --seed {EXPERIMENTS * seed + i} -o {log}"
             shell(self.folder, f"scarid simulate -q {options} {motion}.parquet")
         recorded(logs, self.folder / "record.parquet")
-        found = shell(self.folder, IDENTIFY.format(method=self.method, table=table))
+        found = shell(
+            self.folder, IDENTIFY.format(robot=self.robot, method=self.method, table=table)
+        )
         robot = load(self.robot)
         return column(found, "estimate", robot.names) - robot.apriori
 
