@@ -5,6 +5,7 @@
 # make lint     ruff and mypy
 # make bench    start-up, time per sample, memory
 # make bench-excitation   optimised excitations of several robots beside random ones (an hour)
+# make bench-experiments  expected errors, sequences of experiments, arms of URDFs (an hour)
 # make bench-differentiators   every differentiator and its peers on known signals
 # make crossvalidate   online identification of twenty simulated experiments
 # make montecarlo      coverage of the stated intervals
@@ -24,7 +25,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-differentiators crossvalidate montecarlo bench-verdicts bench-changed gauntlet emps docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-changed gauntlet emps docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -69,6 +70,13 @@ bench-excitation: $(VENV)/tested
 	$(BIN)/python benchmarks/excitation.py
 	$(BIN)/python benchmarks/excitation.py --seconds 10
 	$(BIN)/python benchmarks/excitation.py --seconds 120 --seeds 1
+
+bench-experiments: $(VENV)/tested
+	$(BIN)/python benchmarks/experiments.py
+	$(BIN)/python benchmarks/arms.py
+	$(BIN)/python benchmarks/sequences.py --planning "--starts 2 --criterion d --set interval=0.8"
+	$(BIN)/python benchmarks/sequences.py --robot samples/robots/ur10e.toml \
+	  --home 0,-1.5708,0,-1.5708,0,0 --planning "--starts 1 --criterion d"
 
 bench-differentiators: $(VENV)/compared
 	$(BIN)/python benchmarks/differentiators.py

@@ -31,8 +31,7 @@ TIMED = 'TIMEFORMAT="{name} %U"; {{ time {command} 2> /dev/null; }} 2>> times'
 STEPS = {
     "trajgen": "scarid trajgen --robot arm.toml --optimise --starts 2 --seed {seed} --format arrow",
     "simulate": "scarid simulate --robot arm.toml --seed {seed} --format arrow",
-    "differentiate": "scarid differentiate --format arrow",
-    "identify": "scarid identify --robot arm.toml --estimator wls --drop-slow 0.1 --align",
+    "identify": "scarid identify --robot arm.toml",
 }
 
 

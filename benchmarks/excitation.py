@@ -32,6 +32,15 @@ ROOT = Path(__file__).parent.parent
 URDFS = ROOT.parent / "shared/data/urdf"
 UR10E_HOME = np.array([0.0, -np.pi / 2, 0.0, -np.pi / 2, 0.0, 0.0])
 DURATION, COARSE = 20.0, 5.0  # s; samples per second, as published figures have them
+RANDOM = 10  # random motions of each kind
+OPTIMISED = (
+    ("balanced", "spline"),
+    ("balanced", "fourier"),
+    ("d", "spline"),
+    ("a", "spline"),
+    ("c", "spline"),
+    ("scaled-c", "spline"),
+)
 ACCELERATION = 5.0  # of robots whose description has no limit
 
 
@@ -47,12 +56,17 @@ def robots() -> Iterator[tuple[str, Robot, Limits, Array]]:
         yield Path(name).stem, robot, limits, UR10E_HOME if "ur10e" in name else limits.home
 
 
+def noise_of(robot: Robot) -> Array:
+    """The noise of the torques (joints); 1 where it is not known."""
+    return np.array([joint.torque_noise or 1.0 for joint in robot.joints])
+
+
 def wish(robot: Robot, limits: Limits, home: Array, criterion: str, excitation: str) -> Wanted:
     """An optimised motion of this duration."""
     model = Model.of(robot)
     torques = np.array([joint.torque_limit for joint in robot.joints])
     laws = (Torque(model, torques),) if np.isfinite(torques).any() else ()
-    noise = np.array([joint.torque_noise or 1.0 for joint in robot.joints])
+    noise = noise_of(robot)
     basis = EXCITATIONS.load(excitation)().basis(limits, DURATION)
     known = np.zeros((len(model.theta), len(model.theta)))
     return Wanted(model, basis, home, limits, laws, criterion, noise, 200.0, known)
@@ -68,37 +82,28 @@ def measured(robot: Robot, motion: Trajectory, noise: Array) -> tuple[float, flo
     return *coarse, float(np.exp(np.log(known).mean()))
 
 
-def row(name: str, what: str, found: list[tuple[float, float, float]], seconds: str) -> None:
+def row(
+    name: str, what: str, found: list[tuple[float, float, float]], seconds: str, usual: float = 1.0
+) -> None:
+    """Print a line of the table, with errors relative to usual ones."""
     plain, scaled, errors = (sorted(column) for column in zip(*found, strict=True))
     print(
         f"| {name} | {what} | {median(plain):.3g} ({plain[0]:.3g} to {plain[-1]:.3g}) "
-        f"| {median(scaled):.3g} | {median(errors):.3g} | {seconds} |",
+        f"| {median(scaled):.3g} | {median(errors) / usual:.3g} | {seconds} |",
         flush=True,
     )
 
 
 def compare(seeds: int, starts: int) -> None:
-    """Every robot, random and optimised, by every criterion."""
+    """Every robot, random and optimised, by every criterion.
+
+    Mean errors are relative to those of the default random motion.
+    """
     print("| robot | motion | condition number | scaled | mean error | s each |")
     print("|---|---|---|---|---|---|")
     for name, robot, limits, home in robots():
-        noise = np.array([joint.torque_noise or 1.0 for joint in robot.joints])
-        for kind in ("quintic", "spline", "fourier"):
-            motions = [
-                EXCITATIONS.load(kind)().trajectory(
-                    limits, home, DURATION, np.random.default_rng(seed)
-                )
-                for seed in range(seeds)
-            ]
-            row(name, f"random {kind}", [measured(robot, m, noise) for m in motions], "")
-        for criterion, kind in (
-            ("balanced", "spline"),
-            ("balanced", "fourier"),
-            ("d", "spline"),
-            ("a", "spline"),
-            ("c", "spline"),
-            ("scaled-c", "spline"),
-        ):
+        usual = randoms(name, robot, limits, home)
+        for criterion, kind in OPTIMISED:
             wanted = wish(robot, limits, home, criterion, kind)
             began, found = time.monotonic(), []
             for seed in range(seeds):
@@ -106,9 +111,24 @@ def compare(seeds: int, starts: int) -> None:
                 t = np.arange(0.0, DURATION, 1e-3)
                 limits.require(t, *curve.sample(t))
                 assert all(m.max() <= 0.0 for m in margins(curve, wanted.laws))
-                found.append(measured(robot, curve, noise))
+                found.append(measured(robot, curve, wanted.noise))
             each = (time.monotonic() - began) / seeds
-            row(name, f"{kind}, {criterion}", found, f"{each:.1f}")
+            row(name, f"{kind}, {criterion}", found, f"{each:.1f}", usual)
+
+
+def randoms(name: str, robot: Robot, limits: Limits, home: Array) -> float:
+    """The rows of random motions; the mean error of the default one."""
+    usual = 0.0
+    for kind in ("quintic", "spline", "fourier"):
+        excitation = EXCITATIONS.load(kind)()
+        motions = (
+            excitation.trajectory(limits, home, DURATION, np.random.default_rng(seed))
+            for seed in range(RANDOM)
+        )
+        found = [measured(robot, motion, noise_of(robot)) for motion in motions]
+        usual = usual or median(errors for *_, errors in found)
+        row(name, f"random {kind}", found, "", usual)
+    return usual
 
 
 def timed(seconds: float, seeds: int) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +11,11 @@ import click
 from scarid_cli.cli import options
 
 if TYPE_CHECKING:
+    from scarid_cli.algorithms.robots.capsules import Capsule
     from scarid_cli.algorithms.robots.description import Robot
     from scarid_cli.algorithms.robots.joints import Joint
     from scarid_cli.algorithms.robots.logs import LogFormat
+    from scarid_cli.algorithms.robots.rigid import Body
 
 
 @click.group(name="robot")
@@ -40,8 +42,9 @@ def check(robot: str, **_rest: Any) -> None:
     or a URDF. The command shows what the logs of the robot hold (see `scarid convert --robot`), its
     joints with their limits, the imperfections of the simulated robot (see `scarid simulate
     --with`), and the parameters that `scarid identify` estimates: name, unit and a priori value.
-    For a robot with a URDF it also shows which joints are locked and why, and the combination of
-    standard parameters that each base parameter stands for.
+    For a robot with a URDF it also shows which joints are locked and why, the link of the tool, the
+    shapes that are kept apart (see `scarid trajgen --optimise`), and the combination of standard
+    parameters that each base parameter stands for.
     """
     from scarid_cli.algorithms.robots.reading import load
 
@@ -74,31 +77,62 @@ def _limits(joint: Joint) -> Iterator[str]:
             yield f"{name} {limit:g} {unit}"
 
 
+def _numbers(values: Sequence[float]) -> str:
+    return " ".join(f"{x:g}" for x in values)
+
+
+def _shape(capsule: Capsule) -> str:
+    """The sphere or capsule, in the frame of its link."""
+    if capsule.start == capsule.end:
+        return f"sphere at {_numbers(capsule.start)} m, radius {capsule.radius:g} m"
+    ends = f"{_numbers(capsule.start)} to {_numbers(capsule.end)}"
+    return f"capsule from {ends} m, radius {capsule.radius:g} m"
+
+
 def described(robot: Robot) -> Iterator[str]:
     """The lines on the robot, each of its joints and each of its parameters."""
-    from scarid_cli.algorithms.imperfections.registry import written
-
-    joints, parameters = len(robot.joints), len(robot.parameters)
-    yield f"robot       {robot.name}: {robot.title}"
-    yield f"freedom     {joints} joint{'s' if joints > 1 else ''}, {parameters} parameters"
-    controller = robot.control.kind if robot.control else "none; `simulate` uses its default"
-    yield f"controller  {controller}"
-    if robot.body:
-        yield f"gravity     {' '.join(f'{x:g}' for x in robot.body.gravity)} m/s2"
-    if robot.log:
-        yield f"logs        {_contents(robot.log)}"
+    yield from _summary(robot)
     yield "joints"
     for i, joint in enumerate(robot.joints, start=1):
         yield f"  {i}  {joint.type:<9}  {', '.join(_limits(joint)) or 'no limits'}"
-    for name, why in (robot.body.locked if robot.body else {}).items():
-        yield f"  locked: {name} ({why})"
-    if robot.imperfections:
-        yield "imperfections of the simulated robot"
-    for name, values in robot.imperfections.items():
-        yield f"  {written(name, values)}"
+    if robot.body:
+        yield from _links(robot.body)
+    yield from _imperfections(robot)
     yield "parameters"
     width = max(len(parameter.name) for parameter in robot.parameters)
     for parameter in robot.parameters:
         more = f"  = {parameter.stands_for}" if parameter.stands_for else ""
         line = f"  {parameter.name:<{width}}  {parameter.unit:<9}  {parameter.apriori:g}{more}"
         yield line.rstrip()
+
+
+def _summary(robot: Robot) -> Iterator[str]:
+    joints, parameters = len(robot.joints), len(robot.parameters)
+    yield f"robot       {robot.name}: {robot.title}"
+    yield f"freedom     {joints} joint{'s' if joints > 1 else ''}, {parameters} parameters"
+    controller = robot.control.kind if robot.control else "none; `simulate` uses its default"
+    yield f"controller  {controller}"
+    if robot.body:
+        yield f"gravity     {_numbers(robot.body.gravity)} m/s2"
+        yield f"tool        {robot.body.tool}"
+    if robot.log:
+        yield f"logs        {_contents(robot.log)}"
+
+
+def _links(body: Body) -> Iterator[str]:
+    """The joints that are locked, and the shapes of the links."""
+    for name, why in body.locked.items():
+        yield f"  locked: {name} ({why})"
+    if body.capsules:
+        yield "shapes of the links"
+    for capsule in body.capsules:
+        yield f"  {capsule.link}: {_shape(capsule)}"
+
+
+def _imperfections(robot: Robot) -> Iterator[str]:
+    from scarid_cli.algorithms.imperfections.registry import written
+
+    if robot.imperfections:
+        yield "imperfections of the simulated robot"
+    for name, values in robot.imperfections.items():
+        yield f"  {written(name, values)}"

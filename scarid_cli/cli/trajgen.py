@@ -99,6 +99,17 @@ from scarid_cli.cli.options import NUMBERS
     "--expected", help="Write the expected error of each parameter to FILE, a table."
 )
 @click.option(
+    "--drop-slow",
+    type=NUMBERS,
+    metavar="V[,V...]",
+    help="Predict errors for `identify` with this option, which leaves out rows of slow joints.",
+)
+@click.option(
+    "--align",
+    is_flag=True,
+    help="Predict errors for `identify` with this option, which also fits a delay.",
+)
+@click.option(
     "--repeat",
     type=click.IntRange(min=1),
     default=1,

@@ -15,7 +15,7 @@ from scarid_cli.io.table import Metadata, Table
 
 def treatment_of(given: dict[str, Any]) -> Treatment:
     """The treatment that the options ask for, before the robot is known."""
-    factors, slow, smooth = given["decimate"] or (), given["drop_slow"] or (), given["smooth_sign"]
+    factors, smooth = given["decimate"] or (), given["smooth_sign"]
     skip = [*(given["skip"] or (0.0,)), 0.0]
     if len(skip) > 3 or any(rows % 1 or rows < 0 for rows in skip):
         raise UsageFault(
@@ -23,14 +23,12 @@ def treatment_of(given: dict[str, Any]) -> Treatment:
         )
     if any(factor % 1 or factor < 2 for factor in factors):
         raise UsageFault("--decimate: factors must be whole numbers of at least 2")
-    if any(not v >= 0.0 for v in slow):
-        raise UsageFault("--drop-slow: velocities cannot be negative")
     if smooth is not None and not smooth > 0.0:
         raise UsageFault(f"--smooth-sign must be positive, not {smooth:g}")
     return Treatment(
         skip=(int(skip[0]), int(skip[1])),
         decimate=tuple(map(int, factors)),
-        slow=tuple(slow),
+        slow=slow_of(given),
         align=bool(given.get("align")),
         essential=given.get("essential", False),
         gain_error=_part(given.get("torque_gain_error") or "0", "--torque-gain-error"),
@@ -48,12 +46,27 @@ def _part(text: str, option: str) -> float:
     return part
 
 
+def slow_of(given: dict[str, Any]) -> tuple[float, ...]:
+    """The velocities of --drop-slow."""
+    slow = tuple(given["drop_slow"] or ())
+    if any(not v >= 0.0 for v in slow):
+        raise UsageFault("--drop-slow: velocities cannot be negative")
+    return slow
+
+
 def for_robot(robot: Robot, treatment: Treatment, given: dict[str, Any]) -> tuple[Robot, Treatment]:
     """The robot with smoothed Coulomb friction, and the treatment with one velocity per joint."""
-    smooth, slow = given["smooth_sign"], treatment.slow
-    if slow:
-        slow = tuple(per_joint(slow, len(robot.joints), "--drop-slow"))
-    return robot.smoothed(smooth) if smooth else robot, replace(treatment, slow=slow)
+    smooth, of_joints = given["smooth_sign"], with_slow(robot, treatment)
+    return robot.smoothed(smooth) if smooth else robot, of_joints
+
+
+def with_slow(robot: Robot, treatment: Treatment) -> Treatment:
+    """The treatment with one velocity per joint."""
+    if not treatment.slow:
+        return treatment
+    return replace(
+        treatment, slow=tuple(per_joint(treatment.slow, len(robot.joints), "--drop-slow"))
+    )
 
 
 def for_motion(motion: Metadata, treatment: Treatment, given: dict[str, Any]) -> Treatment:

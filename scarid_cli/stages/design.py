@@ -17,6 +17,8 @@ from scarid_cli.algorithms.design.prediction import (
     standard_errors,
     unknown,
 )
+from scarid_cli.algorithms.regression.rows import rows_of, with_delay
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.trajectories.curve import Curve
 from scarid_cli.algorithms.trajectories.limits import Limits
@@ -137,28 +139,60 @@ def _together(name: str, members: list[str]) -> str:
     return f"{name} of joint{'s' if len(numbers) > 1 else ''} {', '.join(words)}"
 
 
+def _treated(robot: Robot, motion: tuple[Array, ...], h: float, treatment: Treatment) -> Array:
+    """W (samples, joints, parameters) without slow rows, and with the delay as a parameter."""
+    q, dq, ddq = motion
+    slow = np.array(treatment.slow) if treatment.slow else None
+    rows = rows_of(
+        robot, np.array([q, dq, ddq, np.zeros_like(q)]), np.arange(q.shape[1]), h, slow=slow
+    )
+    if treatment.align:
+        rows = with_delay(rows, robot.apriori)
+    return rows.W * rows.scales[:, :, None]
+
+
 @dataclass(frozen=True)
 class Prediction:
-    """What a motion will tell about a robot; without noise (joints), only how well it excites."""
+    """What a motion will tell about a robot; without noise (joints), only how well it excites.
+
+    `moments` are those of all rows, `fitted` those of the rows as they will be identified.
+    """
 
     robot: Robot
     moments: Moments
+    fitted: Moments
     noise: Array | None
     known: Array
 
     @classmethod
     def of(
-        cls, trajectory: Trajectory, robot: Robot, rate: float, noise: Array | None, known: Array
+        cls,
+        trajectory: Trajectory,
+        robot: Robot,
+        rate: float,
+        noise: Array | None,
+        known: Array,
+        treatment: Treatment,
     ) -> Prediction:
         """From the rows of the trajectory's table, at this rate [Hz]."""
-        rows = (robot.regressor(*motion) for _, motion in samples(trajectory, rate))
-        return cls(robot, Moments.of(rows), noise, known)
+        W = (robot.regressor(*motion) for _, motion in samples(trajectory, rate))
+        moments = Moments.of(W)
+        if not (treatment.slow or treatment.align):
+            return cls(robot, moments, moments, noise, known)
+        treated = (
+            _treated(robot, motion, 1.0 / rate, treatment)
+            for _, motion in samples(trajectory, rate)
+        )
+        return cls(robot, moments, Moments.of(treated), noise, known)
 
     @property
     def errors(self) -> Array:
         """The expected standard errors (parameters)."""
         assert self.noise is not None
-        return standard_errors(self.moments.information(self.noise) + self.known)
+        information = self.fitted.information(self.noise)
+        count = len(self.known)
+        information[:count, :count] += self.known
+        return standard_errors(information)[:count]
 
     @property
     def excitation(self) -> str:

@@ -14,6 +14,7 @@ from scarid_cli.algorithms.robots.clearance import Clearance, closest, inside
 from scarid_cli.algorithms.robots.pose import Points, Pose, Pullback
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.rigid import Body
+from scarid_cli.cli.robot import described
 from scarid_cli.errors import UsageFault
 
 pinocchio = pytest.importorskip("pinocchio")
@@ -193,9 +194,17 @@ def test_capsules_of_a_description_come_beside_those_of_the_urdf(tmp_path: Path)
         "[[capsule]]\nlink = 'base'\nfrom = [0.0, 0.0, -0.5]\nradius = 0.1\n"
         "[[capsule]]\nlink = 'two'\nfrom = [0.0, 0.0, 0.0]\nto = [0.4, 0.0, 0.0]\nradius = 0.05\n"
     )
-    body = described_arm(str(urdf), tmp_path, lines).body
+    robot = described_arm(str(urdf), tmp_path, lines)
+    body = robot.body
     assert body
     assert not list(capsules_of(str(urdf)))
+    shown = list(described(robot))
+    at = shown.index("shapes of the links")
+    assert shown[at + 1 : at + 3] == [
+        "  base: sphere at 0 0 -0.5 m, radius 0.1 m",
+        "  two: capsule from 0 0 0 to 0.4 0 0 m, radius 0.05 m",
+    ]
+    assert f"tool        {body.tool}" in shown
     clearance = Clearance.of(body)
     assert clearance.names == ("base and two",)
     q = np.array([[0.5 * np.pi], [0.0]])  # the arm hangs down; its tip at z = 0.1 - 0.7

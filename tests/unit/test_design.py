@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +19,16 @@ from scarid_cli.algorithms.design.lagrangian import minimised
 from scarid_cli.algorithms.design.model import Model
 from scarid_cli.algorithms.design.prediction import Moments, standard_errors, unknown
 from scarid_cli.algorithms.design.problem import Problem, Wanted, kept, margins
+from scarid_cli.algorithms.excitations.quintic import Excitation as Quintic
+from scarid_cli.algorithms.excitations.spline import Excitation as Spline
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.trajectories.curve import Basis, Curve, random_curve
 from scarid_cli.algorithms.trajectories.fourier import FourierBasis
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.algorithms.trajectories.spline import SplineBasis
 from scarid_cli.arrays import Array
+from scarid_cli.stages.design import Prediction
 
 UR10E = str(ROOT / "samples/robots/ur10e.toml")
 ROBOTS = [
@@ -160,6 +165,14 @@ def test_what_no_motion_excites_has_no_say_in_the_condition_number() -> None:
     assert slope[2, 2] == pytest.approx(0.0, abs=1e-12)
 
 
+def test_a_motion_far_beyond_its_limits_has_a_value() -> None:
+    """A trial of the line search, whose smallest eigenvalue is rounding."""
+    M = np.diag([1e20, 1.0, -1.0])
+    value, slope = criteria.condition(M, np.eye(3))
+    assert np.isfinite(value)
+    assert np.isfinite(slope).all()
+
+
 def boxed(robot: str) -> tuple[Samples, Limits]:
     joints = load(robot).joints
     ones = np.ones(len(joints))
@@ -293,6 +306,49 @@ def test_predicted_errors_are_those_of_simulated_estimates() -> None:
     white = np.random.default_rng(1).standard_normal((len(rows), 2000))
     estimates = np.linalg.lstsq(rows, white, rcond=None)[0]
     assert predicted == pytest.approx(estimates.std(axis=1), rel=0.06)
+
+
+def test_predicted_errors_are_those_of_the_rows_that_identify_keeps_and_of_a_delay() -> None:
+    robot = load("scara2")
+    wanted = wish()
+    curve = random_curve(wanted.basis, wanted.home, wanted.limits, np.random.default_rng(0))
+    noise, slow, early = np.array([0.2, 0.01]), 0.3, 1e-5
+    treatment = Treatment(slow=(slow, slow), align=True)
+    nothing = np.zeros((8, 8))
+    found = Prediction.of(curve, robot, 200.0, noise, nothing, treatment)
+    t = np.arange(1001) / 200.0
+    motion = curve.sample(t)
+    W = robot.regressor(*motion)
+    ahead, behind = (
+        robot.regressor(*curve.sample(t[1:-1] + s * early)) @ robot.apriori for s in (1.0, -1.0)
+    )
+    rows = np.concatenate((W[1:-1], ((ahead - behind) / (2.0 * early))[:, :, None]), axis=2)
+    rows *= ((np.abs(motion[1].T) >= slow) / noise)[1:-1, :, None]
+    flat = rows.reshape(-1, 9)
+    by_hand = np.sqrt(np.diag(np.linalg.inv(flat.T @ flat)))[:8]
+    assert found.errors == pytest.approx(by_hand, rel=0.01)
+    plain = Prediction.of(curve, robot, 200.0, noise, nothing, Treatment())
+    assert np.all(plain.errors < found.errors)
+    assert plain.excitation == found.excitation
+
+
+def test_three_planned_experiments_tell_more_than_a_random_one_of_twice_their_time() -> None:
+    """White noise, exact regressor. Coulomb friction gains least: its column is 1 in any motion."""
+    robot = load("scara2")
+    noise = np.array([joint.torque_noise for joint in robot.joints])
+    t = np.arange(0.0, 60.0, 0.005)
+    random = Quintic().trajectory(wish().limits, wish().home, 60.0, np.random.default_rng(0))
+    whole = standard_errors(Moments.of([robot.regressor(*random.sample(t))]).information(noise))
+    known = np.zeros((8, 8))
+    basis = Spline().basis(wish().limits, 10.0)
+    for start in range(3):
+        wanted = replace(wish(), basis=basis, noise=noise, known=known)
+        motion = Problem.of(wanted).optimised(1, start).sample(t[:2000])
+        known = known + Moments.of([robot.regressor(*motion)]).information(noise)
+    ratios = standard_errors(known) / whole
+    assert np.exp(np.log(ratios).mean()) < 0.9
+    assert {name for name, r in zip(robot.names, ratios, strict=True) if r > 1.0} <= {"Fs1", "Fs2"}
+    assert ratios.max() < 1.5
 
 
 def test_a_parameter_that_no_row_depends_on_is_unknown() -> None:

@@ -20,6 +20,7 @@ POWER = 16
 # Directions whose torques are so small beside the largest, wherever the robot is within its limits,
 # have no say in the condition number: no motion can tell what they are.
 NEGLIGIBLE = 1e-3
+ROUNDING = 1e-14  # of the largest eigenvalue
 TINY = 1e-24  # of the largest square of a length: a column that is zero
 
 Valued = tuple[float, Array]
@@ -102,6 +103,7 @@ def condition(M: Array, within: Array) -> Valued:
     """
     values, vectors = np.linalg.eigh(within.T @ M @ within)
     vectors = within @ vectors
+    values = np.maximum(values, ROUNDING * values[-1])  # far beyond the limits it may be negative
     largest, smallest = values[-1], values[0]
     high, low = (values / largest) ** POWER, (smallest / values) ** POWER
     value = 0.5 * np.log(largest / smallest) + 0.5 * np.log(high.sum() * low.sum()) / POWER

@@ -10,6 +10,7 @@ import numpy as np
 
 from scarid_cli.algorithms.choices.registry import EXCITATIONS
 from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.trajectories.joined import Joined, approach
 from scarid_cli.algorithms.trajectories.limits import Limits
@@ -19,6 +20,7 @@ from scarid_cli.arrays import Array
 from scarid_cli.cli.designing import Asked, Found, asked, optimised
 from scarid_cli.cli.job import Job, per_joint, robot_of
 from scarid_cli.cli.pairs import require_known, single_settings
+from scarid_cli.cli.treatment import slow_of, with_slow
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Metadata
 from scarid_cli.stages import trajgen as stage
@@ -35,6 +37,7 @@ def run(
     if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
         raise UsageFault("--rate and --duration must be positive")
     given |= {"seed": seed, "duration": duration, "rate": rate}
+    treatment = _treatment(arm, given)
     side = job.side_table(given["expected"])
     bounds = _limits(arm, given)
     limits = bounds.within(Limits.of(arm.joints))
@@ -52,7 +55,7 @@ def run(
     if not (found or side):
         job.say(f"{about}, {stage.conditioning(trajectory, arm, rate)}")
         return
-    prediction = Prediction.of(trajectory, arm, rate, wish.noise, wish.known)
+    prediction = Prediction.of(trajectory, arm, rate, wish.noise, wish.known, treatment)
     way = f", the best of {found.starts} starts" if found else ""
     job.say(f"{about}{way}: {prediction.excitation}")
     if found:
@@ -62,6 +65,14 @@ def run(
         if wish.noise is None:
             raise UsageFault("--expected needs the torque noise; give --torque-noise")
         job.write(job.recorded(prediction.table(replace(meta, period=None))), side)
+
+
+def _treatment(arm: Robot, given: dict[str, Any]) -> Treatment:
+    """How `identify` will treat the rows, for the errors that are predicted."""
+    for option in ("drop_slow", "align"):
+        if given[option] and not (given["expected"] or given["optimise"]):
+            raise UsageFault(f"--{option.replace('_', '-')} needs --expected or --optimise")
+    return with_slow(arm, Treatment(slow=slow_of(given), align=given["align"]))
 
 
 def _optimised(
