@@ -90,7 +90,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=5)
     seeds = parser.parse_args().seeds
     print(f"| arm | parameters | {' | '.join(f'{name} [s]' for name in STEPS)} | rms | beyond 3 |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("|---" * (len(STEPS) + 4) + "|")
     for name in ARMS:
         found, times = identified(name, seeds)
         known = found[np.isfinite(found)]
