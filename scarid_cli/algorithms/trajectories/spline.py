@@ -10,6 +10,7 @@ import numpy as np
 from scarid_cli.arrays import Array
 
 DEGREE = 5
+MANY = 4 * DEGREE  # intervals, of which those in the middle are far from both ends
 AT_REST = 3  # functions at each end that are left out: position, velocity, acceleration
 
 
@@ -47,23 +48,31 @@ class SplineBasis:
 
     @cached_property
     def _scales(self) -> Array:
-        t = np.linspace(0.0, self.duration, 100 * self.intervals + 1)
-        scales: Array = 1.0 / np.abs(self._derivative(t, 2)[AT_REST:-AT_REST]).max(axis=1)
-        return scales
+        few = SplineBasis(min(self.intervals, MANY) * self.scale, min(self.intervals, MANY))
+        t = np.linspace(0.0, few.duration, 100 * few.intervals + 1)
+        scales = 1.0 / np.abs(few._derivative(t, 2)[AT_REST:-AT_REST]).max(axis=1)
+        half = few.size // 2  # in the middle of many functions, one is like the other
+        alike = np.full(self.intervals - few.intervals, scales[half])
+        return np.concatenate((scales[:half], alike, scales[half:]))
 
     def _derivative(self, t: Array, order: int) -> Array:
-        """Of all B-splines (intervals + DEGREE, samples), by the recursion over the degree."""
+        """Of all B-splines (intervals + DEGREE, samples), by the recursion over the degree.
+
+        At each time only DEGREE + 1 of them are not zero.
+        """
         knots = self._knots
         last = DEGREE + self.intervals - 1
         inside = np.clip(np.searchsorted(knots, t, side="right") - 1, DEGREE, last)
-        values: Array = (np.arange(len(knots) - 1)[:, None] == inside).astype(np.float64)
+        local = np.ones((1, len(t)))  # of the functions from inside - degree to inside
         for degree in range(1, DEGREE + 1):
-            width = knots[degree:] - knots[:-degree]
-            per_width = np.divide(1.0, width, out=np.zeros_like(width), where=width > 0.0)
-            share = values * per_width[:, None]
+            at = inside - degree + np.arange(degree + 1)[:, None]
+            share = np.zeros((degree + 2, len(t)))
+            share[1:-1] = local * (1.0 / (knots[at[1:] + degree] - knots[at[1:]]))
             if degree > DEGREE - order:
-                values = degree * (share[:-1] - share[1:])
+                local = degree * (share[:-1] - share[1:])
             else:
-                rising = (t - knots[: -degree - 1, None]) * share[:-1]
-                values = rising + (knots[degree + 1 :, None] - t) * share[1:]
+                rising = (t - knots[at]) * share[:-1]
+                local = rising + (knots[at + degree + 1] - t) * share[1:]
+        values = np.zeros((self.intervals + DEGREE, len(t)))
+        np.put_along_axis(values, inside - DEGREE + np.arange(DEGREE + 1)[:, None], local, 0)
         return values
