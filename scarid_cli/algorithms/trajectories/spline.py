@@ -10,7 +10,6 @@ import numpy as np
 from scarid_cli.arrays import Array
 
 DEGREE = 5
-MANY = 4 * DEGREE  # intervals, of which those in the middle are far from both ends
 AT_REST = 3  # functions at each end that are left out: position, velocity, acceleration
 
 
@@ -48,12 +47,9 @@ class SplineBasis:
 
     @cached_property
     def _scales(self) -> Array:
-        few = SplineBasis(min(self.intervals, MANY) * self.scale, min(self.intervals, MANY))
-        t = np.linspace(0.0, few.duration, 100 * few.intervals + 1)
-        scales = 1.0 / np.abs(few._derivative(t, 2)[AT_REST:-AT_REST]).max(axis=1)
-        half = few.size // 2  # in the middle of many functions, one is like the other
-        alike = np.full(self.intervals - few.intervals, scales[half])
-        return np.concatenate((scales[:half], alike, scales[half:]))
+        t = np.linspace(0.0, self.duration, 100 * self.intervals + 1)
+        scales: Array = 1.0 / np.abs(self._derivative(t, 2)[AT_REST:-AT_REST]).max(axis=1)
+        return scales
 
     def _derivative(self, t: Array, order: int) -> Array:
         """Of all B-splines (intervals + DEGREE, samples), by the recursion over the degree.
