@@ -18,7 +18,8 @@ from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.reader import open_table
-from scarid_cli.stages.check import check, log_of
+from scarid_cli.stages.check import check
+from scarid_cli.stages.logs import log_of
 
 ROOT = Path(__file__).parent.parent
 UR10 = ROOT.parent / "shared" / "data" / "urdf" / "ur10.urdf"

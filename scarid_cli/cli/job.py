@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -12,6 +13,7 @@ import click
 
 from scarid_cli import __version__
 from scarid_cli.cli.options import Unrecorded
+from scarid_cli.cli.robots import another, misfit
 from scarid_cli.errors import TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
@@ -91,24 +93,49 @@ class Job:
         torques: bool = False,
         reference: bool = False,
         without_derivatives: str | None = None,
+        as_recorded: bool = False,
     ) -> tuple[Table, Robot]:
         """Open a table that has every column of this kind for each of the robot's joints.
 
         The command also reads its `torques`, which must be there, or the `reference`, if it is. If
-        the command can do `without_derivatives`, this is the kind of a table that has none.
+        the command can do `without_derivatives`, this is the kind of a table that has none. Values
+        and clock of a table `as_recorded` are not checked.
         """
         opened = self._opened_table(path)
         if without_derivatives and not schemas.numbered(opened.columns, "dq", "ddq"):
             kind = without_derivatives
         table = conforming(opened, kind)
-        arm = robot_of(robot, table)
+        arm = self.robot(robot, table)
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
         columns = schemas.of_joints(len(arm.joints), *fields)
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
+        if remark := misfit(table, arm, columns):
+            self.say(remark)
+        if as_recorded:
+            return self._reported(table), arm
         if reference:
             columns += [name for name in table.columns if name.endswith("_ref")]
         return self._reported(checked(table, kind, reads=lambda _: columns)), arm
+
+    def robot(self, name: str | None, *tables: Table) -> Robot:
+        """The robot of this name, else as the first table states, else as SCARID_ROBOT does.
+
+        Reports which one is assumed if none is stated, and a table that states another one.
+        """
+        from scarid_cli.algorithms.robots.reading import DEFAULT_ROBOT, load
+
+        stated = next((table.meta.robot for table in tables if table.meta.robot), None)
+        found = name or stated or os.environ.get("SCARID_ROBOT")
+        if not found:
+            self.say(
+                f"no robot is stated, {DEFAULT_ROBOT} is assumed (state it with --robot or "
+                "SCARID_ROBOT)"
+            )
+        robot = load(found or DEFAULT_ROBOT)
+        if remark := another(robot, tables):
+            self.say(remark)
+        return robot
 
     def _opened_table(
         self, path: str, through: Callable[[ByteSource], ByteSource] | None = None
@@ -169,14 +196,6 @@ def job(options: dict[str, Any]) -> Iterator[Job]:
     finally:
         for source in run.sources:
             source.close()
-
-
-def robot_of(name: str | None, *tables: Table) -> Robot:
-    """The robot of this name, else that of the first table that names one, else the default."""
-    from scarid_cli.algorithms.robots import reading
-
-    stated = (table.meta.robot for table in tables if table.meta.robot)
-    return reading.load(name or next(stated, reading.DEFAULT_ROBOT))
 
 
 def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:

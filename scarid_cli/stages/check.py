@@ -15,17 +15,6 @@ from scarid_cli.algorithms.checks.finding import OK, Finding, failed
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.motion import Motion
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.io.schemas import of_joints
-from scarid_cli.io.table import Table, matrix
-
-
-def log_of(table: Table, joints: int) -> Log:
-    """The log of a table in memory, with nan for what is missing."""
-    names = ["t", *of_joints(joints, "q{i}", "tau{i}")]
-    parts = [matrix(batch, names) for batch in table.batches]
-    whole = np.concatenate(parts, axis=1) if parts else np.empty((len(names), 0))
-    whole = np.where(np.isfinite(whole), whole, np.nan)
-    return Log(whole[0], whole[1 : joints + 1], whole[joints + 1 :])
 
 
 def check(log: Log, robot: Robot) -> Iterator[Finding]:

@@ -15,6 +15,7 @@ from scarid_cli.arrays import Array, Numbers
 LOWEST, HIGHEST = 20.0, 200_000.0
 UNITS = ((1e3, "ms"), (1e6, "us"), (1e9, "ns"))  # of a time that is not in seconds
 JITTER = 0.01  # of the period: the limit of `differentiate`, as io.clock has it
+ROUNDING = 1e-6  # of the period: the digits of the time
 LATE = 2.5  # periods of two intervals: 2 with a late row, 3 with a missing one
 GAP = 5.0  # periods, as `resample` has it
 HOLD = 0.1  # s: a longer run of equal rows is a robot at rest, not a slower sensor
@@ -109,9 +110,10 @@ def _lost(steps: Array, period: float) -> Array:
 
 def _jitter(steps: Array, period: float) -> Finding:
     """Intervals that differ from a whole number of periods; missing rows are not counted again."""
-    far = float(
-        np.max(np.abs(steps - period * np.maximum(np.round(steps / period), 1.0)), initial=0.0)
-    )
+    whole = period * np.maximum(np.round(steps / period), 1.0)
+    far = float(np.max(np.abs(steps - whole), initial=0.0))
+    if far <= ROUNDING * period:
+        return ok("jitter", "none")
     figure = f"at most {1e3 * far:.2g} ms, {100.0 * far / period:.2g} % of the period"
     if far <= JITTER * period:
         return ok("jitter", figure)

@@ -18,6 +18,11 @@ class Finding:
     figure: str
     advice: str = ""
 
+    @property
+    def text(self) -> str:
+        """What was found and what to do, in a line."""
+        return f"{self.name}: {self.figure}" + (f"; {self.advice}" if self.advice else "")
+
 
 def worst(findings: Iterable[Finding]) -> str:
     """The worst status of these findings; ok if there are none."""

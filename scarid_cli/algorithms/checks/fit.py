@@ -109,7 +109,7 @@ def _ratios(robot: Robot, W: Array, samples: Samples) -> Array:
 
 
 def _fit(robot: Robot, r2: Array) -> Finding:
-    figure = f"R2 {', '.join(f'{x:.3g}' for x in r2)}"
+    figure = f"R2 {', '.join(f'{x:.4f}' for x in r2)}"
     poor = np.flatnonzero(r2 < POOR)
     if not len(poor):
         return ok("model", figure)

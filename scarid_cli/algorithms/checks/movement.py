@@ -135,9 +135,8 @@ def repetition(motion: Motion) -> Finding:
 def repeated_after(q: Array) -> int:
     """The number of rows after which the positions (joints, rows) repeat; 0 if they do not."""
     rows = q.shape[1]
-    alike = np.mean(
-        [_autocorrelation(x - x.mean()) for x in q if np.ptp(x) > 0.0] or [[1.0]], axis=0
-    )
+    moving = [_autocorrelation(x - x.mean()) for x in q if np.ptp(x) > 0.0]
+    alike = np.mean(moving, axis=0) if moving else np.ones(rows)
     # A motion repeats if at least two whole periods are there, and it is not just slow.
     inner = alike[: rows // 2 + 1]
     left = np.flatnonzero(inner < APART)
