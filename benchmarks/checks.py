@@ -30,6 +30,13 @@ ROBOTS = {
     "pendulum": "planar2-gravity",
     "ur10": str(UR10),
 }
+LOGS = {
+    "scara": "SCARA",
+    "emps": "one axis",
+    "arm": "vertical arm",
+    "pendulum": "pendulum",
+    "ur10": "UR10",
+}
 SPECIAL = {
     "ur10": ["--ddq-max", "5"],
     "pendulum": ["--q-max", "1.5", "--dq-max", "10", "--ddq-max", "60"],
@@ -70,18 +77,16 @@ def named(fault: Spoiled, found: list[Finding]) -> bool:
 
 def line(name: str, fault: Spoiled, found: list[Finding]) -> str:
     """The row of the table for a fault: the finding that names it, and the other ones."""
-    own = [f for f in found if f.name == fault.check]
+    own = [f"{f.status}: {f.figure}" for f in found if f.name == fault.check]
     others = ", ".join(f.name for f in found if f.name != fault.check) or "-"
-    said = f"{own[0].status}: {own[0].figure}" if own else "-"
     mark = "yes" if named(fault, found) else "**no**"
-    return (
-        f"| {name} | {fault.robot or fault.source} | {fault.check} | {said} | {mark} | {others} |"
-    )
+    cells = (name, LOGS[fault.source], fault.check, *own, mark, others)
+    return f"| {' | '.join(cells)} |"
 
 
 def table() -> list[str]:
     """The table of all faults whose robots are here."""
-    rows = ["| fault | robot | check | what it says | named | also |", "|---|---|---|---|---|---|"]
+    rows = ["| fault | log | check | what it says | named | also |", "|---|---|---|---|---|---|"]
     for name, fault in SPOILED.items():
         if fault.source != "ur10" or UR10.exists():
             rows.append(line(name, fault, remarks(fault)))

@@ -31,7 +31,7 @@ class Job:
     """Made by `job()`, which commits its outputs together, or none of them.
 
     `out` is where the command's table goes; `left_out` collects why segments of a record were
-    too short for a method.
+    too short for a method, and `notes` what is to be reported with the result.
     """
 
     out: Output
@@ -43,6 +43,7 @@ class Job:
         self.outputs: list[Output | Document] = []
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
+        self.notes: list[str] = []
 
     def output(self, path: str, wanted: str | None = None) -> Output:
         """The output for a table; opened before anything is read, so that mistakes show at once."""
@@ -111,7 +112,7 @@ class Job:
         columns = schemas.of_joints(len(arm.joints), *fields)
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
         if remark := misfit(table, arm, columns):
-            self.say(remark)
+            self.notes.append(remark)
         if as_recorded:
             return self._reported(table), arm
         if reference:
@@ -128,13 +129,13 @@ class Job:
         stated = next((table.meta.robot for table in tables if table.meta.robot), None)
         found = name or stated or os.environ.get("SCARID_ROBOT")
         if not found:
-            self.say(
+            self.notes.append(
                 f"no robot is stated, {DEFAULT_ROBOT} is assumed (state it with --robot or "
                 "SCARID_ROBOT)"
             )
         robot = load(found or DEFAULT_ROBOT)
         if remark := another(robot, tables):
-            self.say(remark)
+            self.notes.append(remark)
         return robot
 
     def _opened_table(
@@ -167,6 +168,7 @@ class Job:
     def write(self, table: Table, output: Output | None = None) -> None:
         """Send a table to an output, by default the command's, and report omitted segments."""
         write_table(table, output or self.out)
+        self.say_notes()
         if self.left_out:
             count = len(self.left_out)
             self.say(f"{count} segment{'s' if count > 1 else ''} left out: {self.left_out[0]}")
@@ -178,6 +180,11 @@ class Job:
         inputs = {source.name: source.sha256() for source in self.sources}
         entry = {"command": command_line(), "version": __version__, "inputs": inputs}
         return replace(table, meta=replace(table.meta, history=(*table.meta.history, entry)))
+
+    def say_notes(self) -> None:
+        """Report what was noted on the inputs, once no error can be the only line any more."""
+        while self.notes:
+            self.say(self.notes.pop(0))
 
     def say(self, message: str) -> None:
         """Report a line to the user, on standard error."""
@@ -193,6 +200,7 @@ def job(options: dict[str, Any]) -> Iterator[Job]:
     try:
         with all_or_none(run.outputs):
             yield run
+            run.say_notes()
     finally:
         for source in run.sources:
             source.close()

@@ -15,9 +15,11 @@ DEGREE = pi / 180.0
 TURNS = 4.0 * pi  # rad: joints without limits turn twice; arms with cables do not turn further
 FAST = 20.0  # rad/s: no joint of an arm is faster, where the description has no limit
 SPARE = 1.05  # of a limit: a controller overshoots by a few percent
+FAR = 2.0  # times a limit: degrees are 57 times too large, and overshoot is less than half of it
 # Wrong prefixes are factors of a thousand, so anything nearer to a thousand than to one is taken
 # for one of them.
 THOUSAND = 1000.0**0.5
+GEAR = 6.0  # times a limit: less is a limit of the cell or of an older description, more a gear
 
 
 def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
@@ -40,11 +42,10 @@ def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
         figure = f"{names} up to {reach[outside].max():.3g}, far outside the limits in rad"
         advice = "positions seem to be in degrees: `scarid convert --unit 'q*=deg'`"
         return failed("positions", figure, advice), factors
-    if excess := max(_excess(log.q[i], robot, i, speeds[i]) for i in outside):
-        figure = f"{names} at {excess:.3g} times the limits of {robot.short_name}"
-        advice = "is this the robot, and is a position that of the motor (gear_ratio, zero, unit)?"
-        status = failed if excess > THOUSAND**0.5 else warning
-    return status("positions", figure, advice), factors
+    excess = max(_excess(log.q[i], robot, i, speeds[i]) for i in outside)
+    figure = f"{names} at {excess:.3g} times the limits of {robot.short_name}"
+    advice = "is this the robot, and is a position that of the motor (gear_ratio, zero, unit)?"
+    return (failed if excess > GEAR else warning)("positions", figure, advice), factors
 
 
 def _units(robot: Robot) -> str:
@@ -72,7 +73,7 @@ def _in_degrees(q: Array, robot: Robot, i: int, speed: float) -> bool:
     if robot.joints[i].type != "revolute":
         return False
     excess = _excess(q, robot, i, speed)
-    return excess > 2.0 and _excess(DEGREE * q, robot, i, DEGREE * speed) <= SPARE
+    return excess > FAR and _excess(DEGREE * q, robot, i, DEGREE * speed) <= 1.0 + 1.0 / FAR
 
 
 def torques(log: Log, robot: Robot, ratios: Array) -> Finding:

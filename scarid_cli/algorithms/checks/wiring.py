@@ -19,7 +19,7 @@ from scarid_cli.algorithms.checks.model import Fit, Samples, fitted
 from scarid_cli.algorithms.robots.description import Robot
 
 FALL = 0.5  # of the mean square residual: what a wiring must leave at most to be preferred
-EXPLAINED = 0.02  # of the mean square torque of each joint: no other wiring is looked for
+EXPLAINED = 0.02  # of the mean square torque of each joint: exchanged joints leave far more
 STEPS = 3  # reversals or exchanges that are looked for, one after the other
 
 
@@ -39,15 +39,21 @@ def wired(robot: Robot, samples: Samples) -> Wired:
 
     found = tried(Wiring.same(len(robot.joints)))
     for _ in range(STEPS):
-        if found.fit.residuals.max() < EXPLAINED:
-            break
-        others = [tried(wiring) for wiring in found.wiring.neighbours()]
+        others = [tried(wiring) for wiring in _neighbours(found)]
         least = min(other.fit.misfit for other in others)
         if least > found.fit.misfit + np.log(FALL):
             break
         alike = [other for other in others if other.fit.misfit < least - np.log(FALL)]
         found = min(alike, key=lambda other: (len(other.fit.driving), other.fit.misfit))
     return _braking(found, tried)
+
+
+def _neighbours(found: Wired) -> list[Wiring]:
+    """The wirings that are tried next: only reversals if the model explains the torques."""
+    others = list(found.wiring.neighbours())
+    if found.fit.residuals.max() >= EXPLAINED:
+        return others
+    return [other for other in others if other.places == found.wiring.places]
 
 
 def _braking(found: Wired, tried: Callable[[Wiring], Wired]) -> Wired:

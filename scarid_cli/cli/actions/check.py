@@ -20,6 +20,7 @@ def run(job: Job, *, file: str, robot: str | None, strict: bool, as_json: bool) 
     """Print the findings; returns the exit status."""
     table, arm = job.read_for(file, "measurement", robot, torques=True, as_recorded=True)
     findings = list(stage.check(log_of(table, len(arm.joints)), arm))
+    job.say_notes()
     if as_json:
         checks = [asdict(finding) for finding in findings]
         click.echo(json.dumps({"robot": arm.name, "status": worst(findings), "checks": checks}))
