@@ -2,7 +2,9 @@
 
 OK = 0
 BUG = 1
+WARNED = 1  # of `check --strict`
 USAGE = 2
+REQUIRED = 3  # the verdict is worse than `identify --require` asks for
 BAD_DATA = 65
 IO_FAILURE = 74
 INTERRUPTED = 130

@@ -13,6 +13,7 @@ COMMANDS = {
     "trajgen": "Generate an excitation trajectory.",
     "simulate": "Simulate a robot that follows a trajectory in closed loop.",
     "resample": "Resample a log with a jittered clock at a constant rate.",
+    "check": "Check a log before it is identified.",
     "filter": "Low-pass filter columns of a log.",
     "tune": "Find the settings of differentiators from a log.",
     "differentiate": "Estimate velocities and accelerations from positions (the soft sensor).",

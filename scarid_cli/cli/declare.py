@@ -18,7 +18,8 @@ def declare(
     """Make a command of its click options and its help text, which is a function's docstring.
 
     The action is the function `run` of `scarid_cli.cli.actions.NAME`. It is given the job, with
-    the output of `options.table_output` open, and the command's own options.
+    the output of `options.table_output` open, and the command's own options. What it returns, if
+    anything, is the exit status of a run that is complete.
     """
 
     def decorate(declaration: Callable[[], None]) -> click.Command:
@@ -31,7 +32,9 @@ def declare(
             with job(given) as run:
                 if "format" in given:
                     run.out = run.output(given["output"], given["format"])
-                action.run(run, **own)
+                status = action.run(run, **own)
+            if status:
+                raise click.exceptions.Exit(status)
 
         return click.command(name=name, cls=cls)(called)
 

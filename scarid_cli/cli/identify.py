@@ -60,6 +60,13 @@ from scarid_cli.cli.described import describing
     help="Variance of the residual in the column standard_error: estimated with r - c degrees of "
     "freedom (residual), 1 as printed in paper eq. 32-33 (unit), or estimated with r - 1 (sample).",
 )
+@click.option(
+    "--require",
+    cls=options.Unrecorded,
+    type=click.Choice(("good", "not-biased", "identifiable")),
+    help="Exit with status 3 if the verdict is worse; the table is written all the same. A "
+    "doubtful verdict is not-biased unless the soft sensor or a delay changes the estimates.",
+)
 @options.side_output("--trace", help="Write the estimates after every sample (rls, ekf).")
 @options.input_file(
     "--from", "resumed", metavar="STATE", help="Continue the estimation that --save wrote."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -12,6 +13,7 @@ import click
 
 from scarid_cli import __version__
 from scarid_cli.cli.options import Unrecorded
+from scarid_cli.cli.robots import another, misfit
 from scarid_cli.errors import TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
@@ -29,7 +31,7 @@ class Job:
     """Made by `job()`, which commits its outputs together, or none of them.
 
     `out` is where the command's table goes; `left_out` collects why segments of a record were
-    too short for a method.
+    too short for a method, and `notes` what is to be reported with the result.
     """
 
     out: Output
@@ -41,6 +43,7 @@ class Job:
         self.outputs: list[Output | Document] = []
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
+        self.notes: list[str] = []
 
     def output(self, path: str, wanted: str | None = None) -> Output:
         """The output for a table; opened before anything is read, so that mistakes show at once."""
@@ -91,24 +94,49 @@ class Job:
         torques: bool = False,
         reference: bool = False,
         without_derivatives: str | None = None,
+        as_recorded: bool = False,
     ) -> tuple[Table, Robot]:
         """Open a table that has every column of this kind for each of the robot's joints.
 
         The command also reads its `torques`, which must be there, or the `reference`, if it is. If
-        the command can do `without_derivatives`, this is the kind of a table that has none.
+        the command can do `without_derivatives`, this is the kind of a table that has none. Values
+        and clock of a table `as_recorded` are not checked.
         """
         opened = self._opened_table(path)
         if without_derivatives and not schemas.numbered(opened.columns, "dq", "ddq"):
             kind = without_derivatives
         table = conforming(opened, kind)
-        arm = robot_of(robot, table)
+        arm = self.robot(robot, table)
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
         columns = schemas.of_joints(len(arm.joints), *fields)
         require(table, columns, f"this one for robot {arm.name} (another: --robot)")
+        if remark := misfit(table, arm, columns):
+            self.notes.append(remark)
+        if as_recorded:
+            return self._reported(table), arm
         if reference:
             columns += [name for name in table.columns if name.endswith("_ref")]
         return self._reported(checked(table, kind, reads=lambda _: columns)), arm
+
+    def robot(self, name: str | None, *tables: Table) -> Robot:
+        """The robot of this name, else as the first table states, else as SCARID_ROBOT does.
+
+        Reports which one is assumed if none is stated, and a table that states another one.
+        """
+        from scarid_cli.algorithms.robots.reading import DEFAULT_ROBOT, load
+
+        stated = next((table.meta.robot for table in tables if table.meta.robot), None)
+        found = name or stated or os.environ.get("SCARID_ROBOT")
+        if not found:
+            self.notes.append(
+                f"no robot is stated, {DEFAULT_ROBOT} is assumed (state it with --robot or "
+                "SCARID_ROBOT)"
+            )
+        robot = load(found or DEFAULT_ROBOT)
+        if remark := another(robot, tables):
+            self.notes.append(remark)
+        return robot
 
     def _opened_table(
         self, path: str, through: Callable[[ByteSource], ByteSource] | None = None
@@ -140,6 +168,7 @@ class Job:
     def write(self, table: Table, output: Output | None = None) -> None:
         """Send a table to an output, by default the command's, and report omitted segments."""
         write_table(table, output or self.out)
+        self.say_notes()
         if self.left_out:
             count = len(self.left_out)
             self.say(f"{count} segment{'s' if count > 1 else ''} left out: {self.left_out[0]}")
@@ -151,6 +180,11 @@ class Job:
         inputs = {source.name: source.sha256() for source in self.sources}
         entry = {"command": command_line(), "version": __version__, "inputs": inputs}
         return replace(table, meta=replace(table.meta, history=(*table.meta.history, entry)))
+
+    def say_notes(self) -> None:
+        """Report what was noted on the inputs, once no error can be the only line any more."""
+        while self.notes:
+            self.say(self.notes.pop(0))
 
     def say(self, message: str) -> None:
         """Report a line to the user, on standard error."""
@@ -166,17 +200,10 @@ def job(options: dict[str, Any]) -> Iterator[Job]:
     try:
         with all_or_none(run.outputs):
             yield run
+            run.say_notes()
     finally:
         for source in run.sources:
             source.close()
-
-
-def robot_of(name: str | None, *tables: Table) -> Robot:
-    """The robot of this name, else that of the first table that names one, else the default."""
-    from scarid_cli.algorithms.robots import reading
-
-    stated = (table.meta.robot for table in tables if table.meta.robot)
-    return reading.load(name or next(stated, reading.DEFAULT_ROBOT))
 
 
 def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:

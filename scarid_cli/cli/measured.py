@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from dataclasses import replace
 from typing import Any
 
 from scarid_cli.algorithms.robots.description import Robot
@@ -16,8 +17,13 @@ def motion(job: Job, measurement: Table, robot: Robot, added: list[str]) -> Tabl
 
     `added` are the options that identify uses with a measurement and that a pipe must state.
     """
+    from scarid_cli.stages.glance import of_measurement
     from scarid_cli.stages.recommended import motion_of  # needed only here
 
+    batches = list(measurement.batches)
+    for finding in of_measurement(replace(measurement, batches=iter(batches)), robot):
+        job.say(f"warning: {finding.text}")
+    measurement = replace(measurement, batches=iter(batches))
     with steps(quiet=job.quiet) as progress:
         found, bandwidth, smoother = motion_of(measurement, robot, progress, job.left_out)
     job.say(f"a measurement, not a motion: {bandwidth.text}")

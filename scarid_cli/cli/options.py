@@ -128,6 +128,11 @@ def table_output(function: F) -> F:
     )(function)  # fmt: skip
 
 
+def as_json(function: F) -> F:
+    """Print a JSON document in place of text."""
+    return click.option("--json", "as_json", is_flag=True, help="Print a JSON document.")(function)
+
+
 def common(function: F) -> F:
     """What every command takes."""
     return _all(
@@ -142,7 +147,7 @@ def common(function: F) -> F:
 robot: Callable[[F], F] = click.option(
     "--robot", type=ROBOT, metavar="NAME|FILE",
     help="The robot: scara2, emps, planar2-gravity, or a .toml or .urdf file.  "
-    "[default: the robot named in the table's metadata, else scara2]",
+    "[default: the robot named in the table's metadata, else $SCARID_ROBOT, else scara2]",
 )  # fmt: skip
 
 

@@ -128,7 +128,12 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         ),
         ({"errors": np.full(8, 0.5)}, "good", "0 of 8 parameters known within 30 %"),
         ({"blocks": 3.2}, "doubtful", "forgetting leaves only 3.2 independent parts of the log"),
-        ({"estimates": -np.ones(8)}, "doubtful", "the friction parameter Fv1 is negative"),
+        ({"estimates": -np.ones(8)}, "doubtful", "the torques' sign seems reversed"),
+        (
+            {"estimates": np.array([1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])},
+            "doubtful",
+            "the friction parameter Fv1 is negative",
+        ),
         ({"scaled_condition": 1e6}, "not identifiable", "hardly determines Fv1 - Fs1"),
         (
             {"joints": (GOOD, replace(GOOD, torque=0.01))},

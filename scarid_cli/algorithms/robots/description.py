@@ -73,6 +73,11 @@ class Robot:
     imperfections: dict[str, tuple[float, ...]] = field(default_factory=dict)  # see simulate
 
     @property
+    def short_name(self) -> str:
+        """The name, without the folder of a description in a file."""
+        return self.name.rpartition("/")[2]
+
+    @property
     def names(self) -> list[str]:
         return [parameter.name for parameter in self.parameters]
 

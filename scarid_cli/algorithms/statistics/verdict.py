@@ -26,6 +26,9 @@ NOISE = 3.0  # times the torque noise: a joint with a smaller torque counts as n
 BLOCKS = 5.0  # effective blocks, below which errors cannot be stated
 HELD_OUT = 1.5  # times the residual of the fit that the one of held-out parts may reach
 VAGUE = 0.1  # of the torque: half the interval above which it counts as not known
+UNTESTED = "the estimates were not tested for bias"
+DEPENDENT = "the estimates depend on the soft sensor"
+APART = "torque and motion are not those of one instant"
 FEW = 3  # unknown parameters that are named
 
 
@@ -35,6 +38,19 @@ class Verdict:
 
     grade: str
     reasons: tuple[str, ...]
+
+
+# What --require can ask for, from the least to the most.
+IDENTIFIABLE, NOT_BIASED = "identifiable", "not-biased"
+REQUIREMENTS = (GOOD, NOT_BIASED, IDENTIFIABLE)
+
+
+def meets(required: str, grade: str, reasons: Sequence[str]) -> bool:
+    """Whether a verdict is as good as one of REQUIREMENTS."""
+    if required == GOOD:
+        return grade == GOOD
+    biased = any(reason.startswith((UNTESTED, DEPENDENT, APART)) for reason in reasons)
+    return grade != NOT_IDENTIFIABLE and not (required == NOT_BIASED and biased)
 
 
 @dataclass(frozen=True)
@@ -106,19 +122,19 @@ def _biased(evidence: Evidence) -> list[str]:
     found = {effect.name: effect for effect in evidence.diagnostics.effects}
     if PARALLEL not in found:
         return [
-            "the estimates were not tested for bias, because no part of the log without a gap or a "
+            f"{UNTESTED}, because no part of the log without a gap or a "
             "row left out is long enough: use a longer log"
         ]
     reasons = []
     if moved := _moved(evidence, found[PARALLEL]):
         reasons.append(
-            "the estimates depend on the soft sensor: with derivatives and torques behind the same "
+            f"{DEPENDENT}: with derivatives and torques behind the same "
             f"low-pass, {moved} (use scarid differentiate --match, or another method)"
         )
     if SIGNALS in found and (moved := _moved(evidence, found[SIGNALS])):
         advice = "" if evidence.treatment.align else "; --align fits a delay"
         reasons.append(
-            "torque and motion are not those of one instant, or a joint is flexible: with a delay "
+            f"{APART}, or a joint is flexible: with a delay "
             f"and the second derivative of the inertial torque fitted as well, {moved}{advice}"
         )
     return reasons
@@ -172,12 +188,15 @@ def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
     """Friction parameters that are significantly negative, which would drive the robot."""
     friction = {p.name for p in robot.parameters if p.term.NEVER_NEGATIVE}
     errors = evidence.diagnostics.errors
-    rows = zip(evidence.names, evidence.estimates, errors, strict=True)
-    return [
-        f"the friction parameter {name} is negative ({estimate:.3g})"
-        for name, estimate, error in rows
-        if name in friction and estimate < -DEVIATIONS * error
+    rows = [
+        (name, estimate)
+        for name, estimate, error in zip(evidence.names, evidence.estimates, errors, strict=True)
+        if name in friction and abs(estimate) > DEVIATIONS * error
     ]
+    negative = [(name, estimate) for name, estimate in rows if estimate < 0.0]
+    if 1 < len(negative) == len(rows):
+        return ["all friction that is known is negative: the torques' sign seems reversed"]
+    return [f"the friction parameter {name} is negative ({x:.3g})" for name, x in negative]
 
 
 def _unknown(evidence: Evidence) -> list[str]:

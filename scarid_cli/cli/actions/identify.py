@@ -13,15 +13,17 @@ from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
+from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.measured import motion
 from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
-from scarid_cli.errors import UsageFault
+from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages import identify as stage
+from scarid_cli.stages.glance import Reach
 from scarid_cli.stages.parameters import identified
 
 ONLINE, OFFLINE = "rls", "wls"  # what a motion, and a measurement, are identified by
@@ -38,9 +40,10 @@ def run(
     trace: str | None,
     resumed: str | None,
     save: str | None,
+    require: str | None,
     **given: Any,
-) -> None:
-    """Write the parameters, and report the verdict."""
+) -> int:
+    """Write the parameters, and report the verdict; returns the exit status."""
     name = estimator or ONLINE
     method = ESTIMATORS.load(name)
     values = _settings(method, name, given)
@@ -60,6 +63,8 @@ def run(
             treatment = replace(treatment, align=True)
         table = motion(job, table, arm, _options(name, treatment))
     given["all_rows"] |= method.FOLLOWS
+    reach = Reach(len(arm.joints))
+    table = reach.watched(table)
     treatment = for_motion(table.meta, treatment, given)
     solver = method(**values, **_single(given["forgetting"], arm.names))
     start = _initial(job, initial, arm)
@@ -81,11 +86,22 @@ def run(
         from scarid_cli.stages.continuation import saved
 
         place.write(saved(places[0], fixed))
+    for finding in reach.findings(arm, table.period):
+        job.say(f"warning: {finding.text}")
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
     for line in summary_lines(arm.name, name, result.meta.extra):
         job.say(line)
     if treatment.align and job.out.format == "csv":
         job.say("CSV does not keep the delay: write -o FILE.parquet for validate to apply it")
+    return _status(job, require, result.meta.extra)
+
+
+def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
+    """The exit status, which tells whether the verdict is what was required."""
+    if not require or meets(require, extra["verdict"], extra["reasons"]):
+        return OK
+    job.say(f"the verdict is worse than --require {require}")
+    return REQUIRED
 
 
 def _read(job: Job, file: str, robot: str | None, method: Any) -> tuple[Table, Robot]:

@@ -18,7 +18,7 @@ from scarid_cli.algorithms.trajectories.trajectory import Trajectory
 from scarid_cli.algorithms.trajectories.via import through
 from scarid_cli.arrays import Array
 from scarid_cli.cli.designing import Asked, Found, asked, optimised
-from scarid_cli.cli.job import Job, per_joint, robot_of
+from scarid_cli.cli.job import Job, per_joint
 from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.treatment import slow_of, with_slow
 from scarid_cli.errors import UsageFault
@@ -33,7 +33,7 @@ def run(
     job: Job, *, robot: str | None, seed: int, duration: float, rate: float, **given: Any
 ) -> None:
     """Write the trajectory, and report how well it excites the robot."""
-    arm = robot_of(robot)
+    arm = job.robot(robot)
     if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
         raise UsageFault("--rate and --duration must be positive")
     given |= {"seed": seed, "duration": duration, "rate": rate}

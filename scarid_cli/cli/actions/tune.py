@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.job import Job, command_line, robot_of
+from scarid_cli.cli.job import Job, command_line
 from scarid_cli.cli.progress import steps
 from scarid_cli.cli.settings import document
 from scarid_cli.io.reader import require
@@ -30,7 +30,7 @@ def run(
     signals = ("q", "tau") if robot else ("q",)
     log = job.read(file, "measurement", reads=lambda names: numbered(names, *signals))
     table = job.recorded(log)
-    arm = robot_of(robot) if robot else None
+    arm = job.robot(robot, log) if robot else None
     joints = _joints(table, arm)
     names = _names(methods or (FOR_ROBOT if arm else FOR_POSITIONS))
     used = record.until(table, to_time) if to_time else table

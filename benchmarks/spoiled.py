@@ -1,0 +1,217 @@
+"""Logs with one known fault each, made from clean ones, and what `scarid check` must say of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scarid_cli.algorithms.checks.log import Log
+
+
+@dataclass(frozen=True)
+class Spoiled:
+    """A fault: the clean log it is made from, what is done to that, the robot, and what is said.
+
+    `check` is the name of the finding that has to name the fault, and `says` words of it.
+    """
+
+    source: str
+    spoil: Callable[[Log], Log]
+    check: str
+    says: str
+    robot: str | None = None
+
+
+def degrees(log: Log) -> Log:
+    return replace(log, q=np.degrees(log.q))
+
+
+def time_in(factor: float) -> Callable[[Log], Log]:
+    return lambda log: replace(log, t=factor * log.t)
+
+
+def torques_times(*factors: float) -> Callable[[Log], Log]:
+    return lambda log: replace(log, tau=np.array(factors)[:, None] * log.tau)
+
+
+def positions_times(*factors: float) -> Callable[[Log], Log]:
+    return lambda log: replace(log, q=np.array(factors)[:, None] * log.q)
+
+
+def torques_swapped(one: int, two: int) -> Callable[[Log], Log]:
+    return lambda log: replace(log, tau=log.tau[_order(log, one, two)])
+
+
+def joints_swapped(one: int, two: int) -> Callable[[Log], Log]:
+    def spoil(log: Log) -> Log:
+        order = _order(log, one, two)
+        return replace(log, q=log.q[order], tau=log.tau[order])
+
+    return spoil
+
+
+def _order(log: Log, one: int, two: int) -> list[int]:
+    order = list(range(log.joints))
+    order[one - 1], order[two - 1] = order[two - 1], order[one - 1]
+    return order
+
+
+def clipped(part: float) -> Callable[[Log], Log]:
+    """The torque of joint 1 limited to a part of its greatest value."""
+
+    def spoil(log: Log) -> Log:
+        tau = log.tau.copy()
+        limit = part * np.abs(tau[0]).max()
+        tau[0] = np.clip(tau[0], -limit, limit)
+        return replace(log, tau=tau)
+
+    return spoil
+
+
+def held(every: int) -> Callable[[Log], Log]:
+    """A sensor that is read every so many rows."""
+
+    def spoil(log: Log) -> Log:
+        at = np.arange(log.rows) // every * every
+        return replace(log, q=log.q[:, at], tau=log.tau[:, at])
+
+    return spoil
+
+
+def some_held(log: Log) -> Log:
+    """One row in eighteen is that before it."""
+    at = np.arange(log.rows)
+    at[17::18] -= 1
+    return replace(log, q=log.q[:, at], tau=log.tau[:, at])
+
+
+def without_rows(log: Log) -> Log:
+    lost = np.random.default_rng(1).random(log.rows) < 0.01
+    return log.part(~lost)
+
+
+def with_pause(log: Log) -> Log:
+    """Two seconds that are missing."""
+    return log.part((log.t < 5.0) | (log.t > 7.0))
+
+
+def repeated_times(log: Log) -> Log:
+    t = log.t.copy()
+    t[50::100] = t[49::100][: len(t[50::100])]
+    return replace(log, t=t)
+
+
+def time_going_back(log: Log) -> Log:
+    at = np.arange(log.rows)
+    at[1000], at[1001] = at[1001], at[1000]
+    return log.part(at)
+
+
+def jittered(log: Log) -> Log:
+    h = log.t[1] - log.t[0]
+    return replace(log, t=log.t + np.random.default_rng(2).uniform(-0.3, 0.3, log.rows) * h)
+
+
+def with_nan(log: Log) -> Log:
+    tau = log.tau.copy()
+    tau[-1, 300:330] = np.nan
+    return replace(log, tau=tau)
+
+
+def mostly_still(log: Log) -> Log:
+    """The robot waits three times as long as it moves, with the noise of its sensors."""
+    count = 3 * log.rows
+    rng = np.random.default_rng(3)
+    noise = 1e-5 * rng.standard_normal((2 * log.joints, count))
+    still = log.signals[:, -1:] + noise * np.max(np.abs(log.signals), axis=1)[:, None]
+    signals = np.concatenate((log.signals, still), axis=1)
+    h = log.t[1] - log.t[0]
+    return Log(h * np.arange(4 * log.rows), signals[: log.joints], signals[log.joints :])
+
+
+def late(rows: int) -> Callable[[Log], Log]:
+    """The torques of so many rows ago."""
+    return lambda log: Log(log.t[rows:], log.q[:, rows:], log.tau[:, :-rows])
+
+
+def coarse(step: float) -> Callable[[Log], Log]:
+    return lambda log: replace(log, q=step * np.round(log.q / step))
+
+
+def frozen(joint: int) -> Callable[[Log], Log]:
+    """A joint that is braked, with the noise of its encoder and what is left of its torque."""
+
+    def spoil(log: Log) -> Log:
+        q = log.q.copy()
+        rng = np.random.default_rng(4)
+        q[joint - 1] = q[joint - 1, 0] + 1e-5 * rng.standard_normal(log.rows)
+        return replace(log, q=q)
+
+    return spoil
+
+
+def dead(joint: int) -> Callable[[Log], Log]:
+    """A torque that was not logged."""
+
+    def spoil(log: Log) -> Log:
+        tau = log.tau.copy()
+        tau[joint - 1] = 0.0
+        return replace(log, tau=tau)
+
+    return spoil
+
+
+SPOILED = {
+    "degrees": Spoiled("scara", degrees, "positions", "degrees"),
+    "degrees, six joints": Spoiled("ur10", degrees, "positions", "degrees"),
+    "time in ms": Spoiled("scara", time_in(1e3), "rate", "in ms"),
+    "time in us": Spoiled("emps", time_in(1e6), "rate", "in us"),
+    "all torques reversed": Spoiled(
+        "scara", torques_times(-1.0, -1.0), "signs", "the torques' sign seems reversed"
+    ),
+    "all torques reversed, gravity": Spoiled(
+        "arm", torques_times(-1.0, -1.0), "signs", "the torques' sign seems reversed"
+    ),
+    "torque of joint 2 reversed": Spoiled(
+        "scara", torques_times(1.0, -1.0), "signs", "torque of joint 2 seems reversed"
+    ),
+    "torque of joint 3 of 6 reversed": Spoiled(
+        "ur10", torques_times(1, 1, -1, 1, 1, 1), "signs", "torque of joint 3 seems reversed"
+    ),
+    "position of joint 1 reversed": Spoiled(
+        "arm", positions_times(-1.0, 1.0), "signs", "position of joint 1 seems reversed"
+    ),
+    "joints 1 and 2 exchanged": Spoiled(
+        "scara", joints_swapped(1, 2), "order of joints", "joints 1, 2 exchanged"
+    ),
+    "torques 2 and 3 of 6 exchanged": Spoiled(
+        "ur10", torques_swapped(2, 3), "order of joints", "torques of joints 2, 3 exchanged"
+    ),
+    "torque clipped": Spoiled("scara", clipped(0.6), "saturation", "torque of joint 1 stays"),
+    "every fourth row read": Spoiled("scara", held(4), "held samples", "with all values"),
+    "5.6 % of the rows held": Spoiled("emps", some_held, "held samples", "5.5 %"),
+    "1 % of the rows missing": Spoiled(
+        "scara", without_rows, "missing rows", "39 rows in 39 places"
+    ),
+    "two seconds missing": Spoiled("arm", with_pause, "missing rows", "splits the log"),
+    "repeated times": Spoiled("scara", repeated_times, "time order", "40 repeated times"),
+    "time going back": Spoiled("scara", time_going_back, "time order", "goes back in 1 place"),
+    "jitter": Spoiled("emps", jittered, "jitter", "scarid resample"),
+    "cells without a number": Spoiled("scara", with_nan, "missing values", "30 cells"),
+    "another robot, of two joints": Spoiled("arm", lambda log: log, "model", "is this ", "scara"),
+    "another robot, with gravity": Spoiled(
+        "scara", lambda log: log, "model", "is this ", "pendulum"
+    ),
+    "torques in mN m": Spoiled("arm", torques_times(1e3, 1e3), "torques", "in mN m"),
+    "torques in mN m, no limits": Spoiled("scara", torques_times(1e3, 1e3), "torques", "in mN m"),
+    "standstill three quarters of the time": Spoiled(
+        "scara", mostly_still, "standstill", "cut the log"
+    ),
+    "torques 6 rows late": Spoiled("scara", late(6), "delay", "behind"),
+    "torques 10 rows late, six joints": Spoiled("ur10", late(10), "delay", "behind"),
+    "encoder of 9 bits": Spoiled("scara", coarse(2 * np.pi / 512), "resolution", "coarse"),
+    "joint 2 braked": Spoiled("scara", frozen(2), "motion", "joint 2 hardly moves"),
+    "no torque of joint 1": Spoiled("arm", dead(1), "constant torque", "joint 1 never changes"),
+}

@@ -1,0 +1,143 @@
+"""The clock: rate, jitter, gaps, repeated times, and rows that repeat the one before."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scarid_cli.algorithms.checks.finding import Finding, failed, ok, several, warning
+from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.arrays import Array, Numbers
+
+# Hz. Friction and inertia are told apart where the velocity changes within tenths of a second, so
+# that a log of fewer rows per second is of no use, and one of more is no log of joints.
+LOWEST, HIGHEST = 20.0, 200_000.0
+UNITS = ((1e3, "ms"), (1e6, "us"), (1e9, "ns"))  # of a time that is not in seconds
+JITTER = 0.01  # of the period: the limit of `differentiate`, as io.clock has it
+ROUNDING = 1e-6  # of the period: the digits of the time
+LATE = 2.5  # periods of two intervals: 2 with a late row, 3 with a missing one
+GAP = 5.0  # periods, as `resample` has it
+HOLD = 0.1  # s: a longer run of equal rows is a robot at rest, not a slower sensor
+HELD = 0.001  # of the rows: from one in a thousand on, the velocity has visible steps
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The intervals of a log [s] and their median, the period [s]."""
+
+    steps: Array
+    period: float
+
+    @classmethod
+    def of(cls, t: Array) -> Clock:
+        steps = np.diff(t[np.isfinite(t)])
+        forward = steps[steps > 0.0]
+        return cls(steps, float(np.median(forward)) if len(forward) else 0.0)
+
+    @property
+    def rate(self) -> float:
+        """Rows per second."""
+        return 1.0 / self.period if self.period else 0.0
+
+
+def unit(clock: Clock) -> tuple[Finding, float]:
+    """The rate, and the factor that brings the time to seconds (1 if it is in seconds)."""
+    figure = f"{clock.rate:.6g} Hz"
+    if not clock.period:
+        return failed("rate", "the time never increases", "give a log with a clock"), 1.0
+    if clock.rate > HIGHEST:
+        return failed("rate", figure, "the time is not in seconds: convert the unit of t"), 1.0
+    if clock.rate >= LOWEST:
+        return ok("rate", figure), 1.0
+    for factor, name in UNITS:
+        if LOWEST <= factor * clock.rate <= HIGHEST:
+            advice = f"the time seems to be in {name}: `scarid convert --unit t={name}`"
+            return failed("rate", f"{figure} if t is in seconds", advice), 1.0 / factor
+    return failed("rate", figure, "record at 100 Hz or more"), 1.0
+
+
+def clock(found: Clock) -> list[Finding]:
+    """Findings on time that goes back, repeated times, gaps and jitter."""
+    steps, period = found.steps, found.period
+    if not period:
+        return []
+    return [
+        _order(steps),
+        _gaps(steps, period),
+        _jitter(steps[(steps > 0.0) & (steps <= GAP * period)], period),
+    ]
+
+
+def _order(steps: Array) -> Finding:
+    back, repeated = np.count_nonzero(steps < 0.0), np.count_nonzero(steps == 0.0)
+    if back:
+        return failed(
+            "time order", f"time goes back in {several(int(back), 'place')}", "sort the log by time"
+        )
+    if repeated:
+        return warning(
+            "time order",
+            several(int(repeated), "repeated time"),
+            "`scarid resample` drops the rows that repeat a time",
+        )
+    return ok("time order", "time increases from row to row")
+
+
+def _gaps(steps: Array, period: float) -> Finding:
+    """Rows that are missing; long intervals split the log."""
+    lost = _lost(steps, period)
+    count, places = int(lost.sum()), int(np.count_nonzero(lost))
+    if not count:
+        return ok("missing rows", "none")
+    long = int(np.count_nonzero(steps > GAP * period))
+    figure = f"{several(count, 'row')} in {several(places, 'place')}, up to {steps.max():.3g} s"
+    advice = "`scarid resample` interpolates short gaps"
+    advice += f" and splits the log at the {several(long, 'longer one')}" if long else ""
+    return warning("missing rows", figure, advice)
+
+
+def _lost(steps: Array, period: float) -> Array:
+    """The number of rows that are missing in each interval.
+
+    A late row makes a long interval beside a short one, and a missing row a long one only.
+    """
+    padded = np.concatenate(([period], steps, [period]))
+    beside = np.minimum(padded[:-2], padded[2:])
+    late = steps + np.minimum(beside, period) <= LATE * period
+    return np.where(late, 0.0, np.maximum(np.round(steps / period) - 1.0, 0.0))
+
+
+def _jitter(steps: Array, period: float) -> Finding:
+    """Intervals that differ from a whole number of periods; missing rows are not counted again."""
+    whole = period * np.maximum(np.round(steps / period), 1.0)
+    far = float(np.max(np.abs(steps - whole), initial=0.0))
+    if far <= ROUNDING * period:
+        return ok("jitter", "none")
+    figure = f"at most {1e3 * far:.2g} ms, {100.0 * far / period:.2g} % of the period"
+    if far <= JITTER * period:
+        return ok("jitter", figure)
+    rate = float(f"{1.0 / period:.3g}")
+    return warning("jitter", figure, f"`scarid resample --rate {rate:g}` gives a constant rate")
+
+
+def held(log: Log, period: float) -> Finding:
+    """Rows that repeat every value of the row before while the robot moves."""
+    rows = held_rows(log.signals, period)
+    count = int(np.count_nonzero(rows))
+    share = count / max(log.rows, 1)
+    figure = f"{several(count, 'row')}, {100.0 * share:.2g} %, with all values of the row before"
+    if share <= HELD:
+        return ok("held samples", figure if count else "none")
+    advice = "a slower sensor behind a faster logger: `scarid resample` keeps the first of each"
+    return warning("held samples", figure, advice)
+
+
+def held_rows(signals: Array, period: float) -> Numbers:
+    """Whether each row of the signals (signals, rows) repeats the one before, but not at rest."""
+    same = np.zeros(signals.shape[1], dtype=bool)
+    same[1:] = np.all(signals[:, 1:] == signals[:, :-1], axis=0)
+    ends = np.flatnonzero(np.diff(same, prepend=False, append=False)).reshape(-1, 2)
+    for start, end in ends[(ends[:, 1] - ends[:, 0]) * period > HOLD].tolist():
+        same[start:end] = False
+    return same

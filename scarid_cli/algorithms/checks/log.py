@@ -1,0 +1,48 @@
+"""A log as it was recorded: it may have gaps, repeated times and missing values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scarid_cli.arrays import Array, Numbers
+
+
+@dataclass(frozen=True)
+class Log:
+    """Time t (rows) [s], positions q and torques tau (joints, rows) [rad or m, N m or N].
+
+    Values that are missing are nan.
+    """
+
+    t: Array
+    q: Array
+    tau: Array
+
+    @property
+    def rows(self) -> int:
+        return len(self.t)
+
+    @property
+    def joints(self) -> int:
+        return len(self.q)
+
+    @property
+    def signals(self) -> Array:
+        """Positions and torques (2 joints, rows)."""
+        return np.concatenate((self.q, self.tau))
+
+    @property
+    def names(self) -> list[str]:
+        """The columns of the signals."""
+        return [f"{name}{i}" for name in ("q", "tau") for i in range(1, self.joints + 1)]
+
+    def part(self, rows: Numbers) -> Log:
+        """These rows only (indices, or whether each row is kept)."""
+        return Log(self.t[rows], self.q[:, rows], self.tau[:, rows])
+
+    def scaled(self, *, t: float = 1.0, q: Array | float = 1.0) -> Log:
+        """The log with time and positions multiplied by factors (positions by one per joint)."""
+        factors = np.broadcast_to(np.asarray(q, dtype=np.float64), (self.joints,))
+        return replace(self, t=t * self.t, q=factors[:, None] * self.q)

@@ -1,0 +1,175 @@
+"""A first fit of the robot's model to the rows of a log, for the checks that need the model.
+
+To the columns of the robot are added, for each joint, its own viscous and Coulomb friction, an
+offset and the derivative of its torque, so that friction that the description lacks or a delay of
+the torques does not look like anything else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scarid_cli.algorithms.changes.wiring import Wiring
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.tuning.lowpassed import Lowpassed
+from scarid_cli.arrays import Array, Numbers
+
+PER_COLUMN, FEWEST, MOST = 8, 300, 1500  # samples that are fitted, spread over the log
+EXTRA = 4  # columns added for each joint: viscous, Coulomb, offset, derivative of the torque
+FRICTION = 2  # of which the first are friction
+RIDGE = 1e-10  # added to the squares of columns of unit length, so that all is determined
+EXACT = 1e-9  # of the mean square torque, below which a residual is rounding
+DEVIATIONS = 3.0  # standard errors from which on a sign is known
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Position, velocity, acceleration, torque, its derivative (5, joints, samples), and counts.
+
+    `counts` (joints, samples) says which rows count, and `independent` is the share of the samples
+    that are independent of each other behind the low-pass.
+    """
+
+    motion: Array
+    counts: Numbers
+    independent: float
+
+    @classmethod
+    def of(cls, parts: Sequence[Lowpassed], span: float, cutoff: float, samples: int) -> Samples:
+        """So many samples of parts of a record, `span` [s] in all, behind a cut-off [Hz]."""
+        kept = sum(part.counts.shape[1] for part in parts)
+        step = span / kept
+        motion = np.concatenate([_with_derivative(part, step) for part in parts], axis=2)
+        counts = np.concatenate([part.counts for part in parts], axis=1)
+        chosen = np.unique(np.linspace(0, kept - 1, samples).astype(np.int64))
+        independent = min(1.0, 2.0 * cutoff * span / len(chosen))
+        return cls(motion[:, :, chosen], counts[:, chosen], independent)
+
+    def wired(self, wiring: Wiring) -> Samples:
+        """The samples with the signals that each joint has by this wiring."""
+        kinematics, tau = wiring.signals(self.motion[:4])
+        _, slope = wiring.signals(self.motion[[0, 1, 2, 4]])
+        counts = self.counts[list(wiring.places[0])]
+        return replace(self, motion=np.stack((*kinematics, tau, slope)), counts=counts)
+
+
+def _with_derivative(part: Lowpassed, step: float) -> Array:
+    tau = part.motion[3]
+    slope = np.gradient(tau, step, axis=1) if tau.shape[1] > 1 else np.zeros_like(tau)
+    return np.stack((*part.motion, slope))
+
+
+def enough(robot: Robot) -> int:
+    """How many samples of the log are fitted."""
+    count = len(robot.parameters) + EXTRA * len(robot.joints)
+    return min(max(PER_COLUMN * count, FEWEST), MOST)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fit of the columns of the robot and the added ones.
+
+    residuals (joints): the mean square of the residual over that of the torque about its mean.
+    powers (joints): the power of the friction over its standard error; negative if the friction
+    drives the joint.
+    """
+
+    residuals: Array
+    powers: Array
+
+    @property
+    def misfit(self) -> float:
+        """The mean logarithm of the residuals, which weights all joints alike."""
+        return float(np.mean(np.log(np.maximum(self.residuals, EXACT))))
+
+    @property
+    def driving(self) -> list[int]:
+        """The joints (from 0) whose friction is significantly negative."""
+        return np.flatnonzero(self.powers < -DEVIATIONS).tolist()
+
+
+def columns(robot: Robot, motion: Array) -> Array:
+    """The regressor (samples, joints, parameters + EXTRA joints) with the added columns.
+
+    motion: as that of Samples.
+    """
+    q, dq, ddq, _, slope = motion
+    W = robot.regressor(q, dq, ddq)
+    samples, joints, count = W.shape
+    wide = np.zeros((samples, joints, count + EXTRA * joints))
+    wide[:, :, :count] = W
+    for j in range(joints):
+        added = (dq[j], np.sign(dq[j]), np.ones(samples), slope[j])
+        wide[:, j, count + EXTRA * j : count + EXTRA * (j + 1)] = np.transpose(added)
+    return wide
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Weighted least squares: A (rows, parameters) is the weighted regressor.
+
+    `inverse` (parameters, parameters) is the covariance of theta if rows are independent, and
+    `residuals` (joints) are shares of the mean square torque.
+    """
+
+    A: Array
+    theta: Array
+    inverse: Array
+    residuals: Array
+
+
+def solved(W: Array, tau: Array, counts: Numbers) -> Solution:
+    """The fit of tau (joints, samples) by W (samples, joints, parameters).
+
+    Each joint is weighted by the residual of a first fit. What the rows do not determine stays
+    near 0.
+    """
+    scale = _deviations(tau, counts)
+    squares = scale**2
+    for _ in range(2):
+        weights = 1.0 / np.sqrt(np.maximum(squares, EXACT * scale**2))
+        A, y = _weighted(W, tau, counts, weights)
+        size = np.sqrt(np.sum(A**2, axis=0))
+        size = np.where(size > 0.0, size, 1.0)
+        products = (A.T @ A) / np.outer(size, size) + RIDGE * np.eye(len(size))
+        inverse = np.linalg.inv(products) / np.outer(size, size)
+        theta = inverse @ (A.T @ y)
+        rest = np.where(counts, tau - np.einsum("sjp,p->js", W, theta), 0.0)
+        squares = np.sum(rest**2, axis=1) / np.maximum(counts.sum(axis=1), 1)
+    return Solution(A, theta, inverse, squares / scale**2)
+
+
+def fitted(robot: Robot, samples: Samples) -> Fit:
+    """The fit of the robot's columns and the added ones to these samples."""
+    wide = columns(robot, samples.motion)
+    found = solved(wide, samples.motion[3], samples.counts)
+    return Fit(found.residuals, _powers(robot, wide, samples, found))
+
+
+def _deviations(tau: Array, counts: Numbers) -> Array:
+    """The standard deviation of the torque of each joint over the rows that count."""
+    found = [x[k].std() if k.any() else 0.0 for x, k in zip(tau, counts, strict=True)]
+    return np.array([x if x > 0.0 else 1.0 for x in found])
+
+
+def _weighted(wide: Array, tau: Array, counts: Numbers, weights: Array) -> tuple[Array, Array]:
+    factors = counts * weights[:, None]
+    A = np.concatenate([wide[:, j] * factors[j][:, None] for j in range(len(tau))])
+    return A, np.concatenate(list(tau * factors))
+
+
+def _powers(robot: Robot, wide: Array, samples: Samples, found: Solution) -> Array:
+    """The mean power of the friction of each joint, over its standard error."""
+    own = [k for k, p in enumerate(robot.parameters) if p.term.NEVER_NEGATIVE]
+    first, dq = len(robot.parameters), samples.motion[1]
+    powers = []
+    for j in range(len(dq)):
+        kept = [*own, *range(first + EXTRA * j, first + EXTRA * j + FRICTION)]
+        part = np.zeros(len(found.theta))
+        part[kept] = (samples.counts[j] * dq[j]) @ wide[:, j, kept] / len(dq[j])
+        variance = part @ found.inverse @ part / samples.independent
+        powers.append(part @ found.theta / np.sqrt(variance) if variance > 0.0 else 0.0)
+    return np.array(powers)

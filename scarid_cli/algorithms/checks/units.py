@@ -1,0 +1,105 @@
+"""Whether positions, velocities and torques are in the units and within the limits of the robot."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok, warning
+from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.arrays import Array
+
+DEGREE = pi / 180.0
+TURNS = 4.0 * pi  # rad: joints without limits turn twice; arms with cables do not turn further
+FAST = 20.0  # rad/s: no joint of an arm is faster, where the description has no limit
+SPARE = 1.05  # of a limit: a controller overshoots by a few percent
+FAR = 2.0  # times a limit: degrees are 57 times too large, and overshoot is less than half of it
+# Wrong prefixes are factors of a thousand, so anything nearer to a thousand than to one is taken
+# for one of them.
+THOUSAND = 1000.0**0.5
+GEAR = 6.0  # times a limit: less is a limit of the cell or of an older description, more a gear
+
+
+def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
+    """Positions and `speeds` (joints) [per s], the highest that are not noise, against the limits.
+
+    Also the factors (joints) that bring positions that are in degrees to rad.
+    """
+    factors = np.ones(log.joints)
+    reach = np.nanmax(np.abs(log.q), axis=1)
+    outside = [i for i in range(log.joints) if _excess(log.q[i], robot, i, speeds[i]) > SPARE]
+    if not outside:
+        within = ", ".join(f"{x:.3g}" for x in reach)
+        return ok("positions", f"up to {within} {_units(robot)}, within the limits"), factors
+    names = joints_text(i + 1 for i in outside)
+    degrees = [i for i in outside if _in_degrees(log.q[i], robot, i, speeds[i])]
+    if len(degrees) == len(outside):
+        # A log has one unit, and joints that move little are within their limits in any.
+        revolute = [i for i, joint in enumerate(robot.joints) if joint.type == "revolute"]
+        factors[revolute] = DEGREE
+        figure = f"{names} up to {reach[outside].max():.3g}, far outside the limits in rad"
+        advice = "positions seem to be in degrees: `scarid convert --unit 'q*=deg'`"
+        return failed("positions", figure, advice), factors
+    excess = max(_excess(log.q[i], robot, i, speeds[i]) for i in outside)
+    figure = f"{names} at {excess:.3g} times the limits of {robot.short_name}"
+    advice = "is this the robot, and is a position that of the motor (gear_ratio, zero, unit)?"
+    return (failed if excess > GEAR else warning)("positions", figure, advice), factors
+
+
+def _units(robot: Robot) -> str:
+    return " or ".join(dict.fromkeys(joint.unit for joint in robot.joints))
+
+
+def _excess(q: Array, robot: Robot, i: int, speed: float) -> float:
+    """How far joint i goes beyond its limits, of position or velocity, as a ratio to them."""
+    joint = robot.joints[i]
+    low, high = np.nanmin(q), np.nanmax(q)
+    revolute = joint.type == "revolute"
+    limit = joint.velocity_limit
+    if not np.isfinite(limit):
+        limit = FAST if revolute else np.inf
+    upper, lower = joint.upper, joint.lower
+    if not np.isfinite(upper - lower):
+        upper, lower = (TURNS, -TURNS) if revolute else (np.inf, -np.inf)
+    middle, half = (0.0, np.inf) if np.isinf(upper) else ((upper + lower) / 2, (upper - lower) / 2)
+    reach = max(high - middle, middle - low) / half if half else 1.0
+    return float(max(reach, speed / limit))
+
+
+def _in_degrees(q: Array, robot: Robot, i: int, speed: float) -> bool:
+    """Whether joint i is within its limits if its position is in degrees, and far out otherwise."""
+    if robot.joints[i].type != "revolute":
+        return False
+    excess = _excess(q, robot, i, speed)
+    return excess > FAR and _excess(DEGREE * q, robot, i, DEGREE * speed) <= 1.0 + 1.0 / FAR
+
+
+def torques(log: Log, robot: Robot, ratios: Array) -> Finding:
+    """Torques against the limits, and against those of the a priori parameters.
+
+    `ratios` (joints) are the torques over those that the a priori parameters predict, nan where
+    they predict none.
+    """
+    reach = np.nanmax(np.abs(log.tau), axis=1)
+    limits = np.array([joint.torque_limit for joint in robot.joints])
+    excess = float(np.max(np.where(np.isfinite(limits), reach / limits, 0.0)))
+    known = ratios[np.isfinite(ratios)]
+    most, least = float(known.max(initial=0.0)), float(known.min(initial=np.inf))
+    figure = f"up to {', '.join(f'{x:.3g}' for x in reach)} {_torque_units(robot)}"
+    if excess > THOUSAND or THOUSAND < least < np.inf:
+        figure += f", {max(excess, min(least, most)):.2g} times what {robot.short_name} has"
+        advice = "torques seem to be in mN m: `scarid convert --unit 'tau*=mN m'`"
+        return failed("torques", figure, advice)
+    if 0.0 < most < 1.0 / THOUSAND:
+        figure += f", {most:.2g} of what {robot.short_name} needs"
+        return failed("torques", figure, "torques seem to be in kN m: convert them to N m")
+    if excess > SPARE:
+        advice = "are these torques of the joints, in N m, of this robot?"
+        return warning("torques", f"{figure}, {excess:.3g} times the limit", advice)
+    return ok("torques", figure)
+
+
+def _torque_units(robot: Robot) -> str:
+    return " or ".join(dict.fromkeys(joint.torque_unit for joint in robot.joints))

@@ -1,0 +1,69 @@
+"""Values that are missing, and torques that stay at their extreme."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok, several, warning
+from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.arrays import Array
+
+# A signal that turns at its extreme has sqrt(2) - 1 times as many values at the second level of its
+# resolution as at the first. Five times more at the first is no turn.
+PILE = 5.0 / (2.0**0.5 - 1.0)
+BIN = 0.01  # of the range: the levels below the extreme that it is compared with, at least one
+FEWEST = 10  # values at the extreme
+MANY = 0.05  # of the rows: the torque of so many is not known
+
+
+def missing(log: Log) -> Finding:
+    """Cells that are empty, nan or infinite."""
+    counts = {
+        name: int(np.count_nonzero(~np.isfinite(x)))
+        for name, x in zip(["t", *log.names], [log.t, *log.signals], strict=True)
+    }
+    total = sum(counts.values())
+    if not total:
+        return ok("missing values", "none")
+    columns = ", ".join(name for name, count in counts.items() if count)
+    figure = f"{several(total, 'cell')} empty or not finite, in {columns}"
+    return failed("missing values", figure, "remove these rows, then `scarid resample`")
+
+
+def saturation(tau: Array) -> Finding:
+    """Torques (joints, rows) that are flat at their greatest or least value."""
+    counts = {i: clipped(x) for i, x in enumerate(tau, start=1)}
+    flat = {i: count for i, count in counts.items() if count}
+    if not flat:
+        return ok("saturation", "no torque stays at its extreme")
+    share = max(flat.values()) / tau.shape[1]
+    figure = (
+        f"the torque of {joints_text(flat)} stays at its extreme in {100.0 * share:.2g} % of the "
+        "rows"
+    )
+    advice = "clipped: move more slowly, or raise the range of the sensor or the limit of the drive"
+    return (failed if share > MANY else warning)("saturation", figure, advice)
+
+
+def clipped(x: Array) -> int:
+    """How many values (rows) lie at an extreme at which the signal is flat; 0 if it turns there."""
+    x = x[np.isfinite(x)]
+    return sum(_piled(y) for y in (x, -x)) if len(x) and np.ptp(x) > 0.0 else 0
+
+
+def _piled(x: Array) -> int:
+    """How many values are the greatest, if they are far more than those of a level just below."""
+    levels, counts = np.unique(x, return_counts=True)
+    near = int(np.count_nonzero(levels > levels[-1] - BIN * (levels[-1] - levels[0])))
+    below = counts[-max(near, 2) : -1]
+    count = int(counts[-1])
+    return count if count >= FEWEST and count > PILE * below.mean() else 0
+
+
+def constant(tau: Array) -> Finding:
+    """Torques (joints, rows) that never change."""
+    still = [i for i, x in enumerate(tau, start=1) if not np.nanmax(x) > np.nanmin(x)]
+    if not still:
+        return ok("constant torque", "none")
+    figure = f"the torque of {joints_text(still)} never changes"
+    return failed("constant torque", figure, "log the motor's torque or current of every joint")

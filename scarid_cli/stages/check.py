@@ -1,0 +1,76 @@
+"""The checks of a log, in the order in which a colleague would look at it.
+
+What an earlier check explains is put right for the later ones, so that one cause gives one line: a
+log in degrees is checked on in rad, one with exchanged joints in their order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from scarid_cli.algorithms.checks import clock, fit, movement, units, values, wiring
+from scarid_cli.algorithms.checks.finding import OK, Finding, failed
+from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.algorithms.checks.motion import Motion
+from scarid_cli.algorithms.robots.description import Robot
+
+
+def check(log: Log, robot: Robot) -> Iterator[Finding]:
+    """The findings on a log of this robot."""
+    time = clock.Clock.of(log.t)
+    finding, factor = clock.unit(time)
+    yield finding
+    log = log.scaled(t=factor)
+    time = clock.Clock.of(log.t)
+    yield from clock.clock(time)
+    yield values.missing(log)
+    yield clock.held(log, time.period)
+    empty = [name for name, x in zip(log.names, log.signals, strict=True) if np.isnan(x).all()]
+    if empty:
+        yield failed("values", f"no value in {', '.join(empty)}", "log these columns")
+        return
+    constant = values.constant(log.tau)
+    yield constant
+    yield values.saturation(log.tau)
+    motion = Motion.of(log, time.period) if time.period else None
+    if motion is None or not motion.parts():
+        figure = f"{log.rows} rows, too few without a gap for the checks of motion and model"
+        yield failed("length", figure, "give a longer log")
+        return
+    yield from _moving(log, robot, motion, driven=constant.status == OK)
+
+
+def _moving(log: Log, robot: Robot, motion: Motion, *, driven: bool) -> Iterator[Finding]:
+    """The findings on the motion, and on the model if every joint is `driven` by a torque."""
+    parts = motion.parts()
+    speeds = np.max([np.abs(part.motion[1]).max(axis=1) for part in parts], axis=0)
+    finding, factors = units.positions(log, robot, speeds)
+    yield finding
+    motion = motion.scaled(factors)
+    parts = motion.parts()
+    yield movement.standstill(parts)
+    moved = movement.range_of_joints(parts, robot)
+    yield moved
+    yield movement.bandwidths(motion)
+    yield movement.resolution(factors[:, None] * log.q, motion, parts, robot)
+    yield movement.repetition(motion)
+    if driven and moved.status == OK:
+        yield from _explained(log, robot, motion)
+
+
+def _explained(log: Log, robot: Robot, motion: Motion) -> Iterator[Finding]:
+    """The findings that need the robot's model."""
+    samples = fit.samples_of(robot, motion)
+    if samples is None or not samples.counts.any(axis=1).all():
+        figure = "no row of some joint is away from reversals and standstill"
+        yield failed("model", figure, "give a longer log in which every joint moves")
+        return
+    found = wiring.wired(robot, samples)
+    yield from wiring.findings(found)
+    seconds, error, samples = fit.aligned(robot, motion, found.wiring)
+    yield fit.delay(seconds, error, motion)
+    findings, ratios = fit.model(robot, samples)
+    yield units.torques(log, robot, ratios)
+    yield from findings

@@ -1,0 +1,89 @@
+"""What `check` says of logs with known faults, and of clean ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from checks import LOGS, ROBOTS, UR10, clean, named, read, remarks
+from cli.test_real_logs import TX40, ur10_log
+from conftest import ROOT
+from spoiled import SPOILED, Spoiled, torques_times
+
+from scarid_cli.algorithms.checks.finding import FAILED, OK, Finding, worst
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.stages.check import check
+
+SIMULATED = {
+    "scara, seed 2": ("scara", 2),
+    "scara, seed 3 at 500 Hz": ("scara", 3, "--log-rate", "500"),
+    "scara, 13 bits": ("scara", 4, "--encoder-bits", "13"),
+    "emps": ("emps", 1),
+    "emps at 1 kHz": ("emps", 2, "--log-rate", "1000"),
+    "arm": ("arm", 1),
+    "arm, seed 2": ("arm", 2),
+    "pendulum": ("pendulum", 1),
+    "ur10": ("ur10", 1),
+}
+
+
+def bad(found: list[Finding]) -> list[Finding]:
+    return [finding for finding in found if finding.status != OK]
+
+
+def present(robot: str) -> None:
+    if robot == "ur10" and not UR10.exists():
+        pytest.skip("the URDF (../shared/data) is not here")
+
+
+@pytest.mark.parametrize("name", SPOILED)
+def test_a_fault_is_named(name: str) -> None:
+    fault = SPOILED[name]
+    present(fault.source)
+    found = remarks(fault)
+    assert named(fault, found), found
+
+
+def test_the_page_shows_the_faults_that_were_found() -> None:
+    """The table of `make bench-checks` is that of docs/check.md, but for the digits."""
+    page = (ROOT / "docs" / "check.md").read_text("utf-8")
+    shown = [row.split("|")[1:4] for row in page.splitlines() if row.startswith("| ")]
+    for name, fault in SPOILED.items():
+        assert [f" {name} ", f" {LOGS[fault.source]} ", f" {fault.check} "] in shown
+
+
+@pytest.mark.parametrize("joint", [1, 2])
+def test_a_reversed_torque_is_named_where_the_model_still_explains_most(joint: int) -> None:
+    """In this log the inertia of joint 2 hardly shows in the torque of joint 1."""
+    spoil = torques_times(*(-1.0 if i == joint else 1.0 for i in (1, 2)))
+    fault = Spoiled("scara", spoil, "signs", f"torque of joint {joint} seems reversed")
+    found = list(check(spoil(clean("scara", 3)), load(ROBOTS["scara"])))
+    assert named(fault, found), bad(found)
+
+
+@pytest.mark.parametrize("name", SIMULATED)
+def test_a_clean_simulated_log_is_not_called_worse_than_a_warning(name: str) -> None:
+    robot, seed, *more = SIMULATED[name]
+    present(str(robot))
+    found = list(check(clean(str(robot), int(seed), *map(str, more)), load(ROBOTS[str(robot)])))
+    assert worst(found) != FAILED, bad(found)
+
+
+@pytest.mark.parametrize("name", ["emps", "tx40", "ur10"])
+def test_a_real_log_is_not_called_worse_than_a_warning(
+    name: str, real_logs: Path, tmp_path: Path
+) -> None:
+    robot, log = "emps", real_logs / "emps" / "emps_train.csv"
+    if name == "tx40":
+        folder = (real_logs / "staubli_tx40").resolve()
+        description, log = tmp_path / "tx40.toml", folder / "tx40_joint_5kHz.parquet"
+        description.write_text(TX40.format(folder=folder))
+        robot = str(description)
+    if name == "ur10":
+        robot, log = str(UR10), tmp_path / "bag.csv"
+        body = load(robot).body
+        assert body
+        bag = real_logs / "ur10_ros2" / "ur10_exciting_trajectory.db3"
+        ur10_log(bag, body.joint_names, log)
+    found = list(check(read(log, robot), load(robot)))
+    assert worst(found) != FAILED, bad(found)
