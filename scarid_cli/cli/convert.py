@@ -9,7 +9,7 @@ from scarid_cli.cli.declare import declare
 
 
 @declare("convert")
-@options.table_input
+@options.log_input
 @click.option(
     "--map",
     "mappings",
@@ -30,7 +30,29 @@ from scarid_cli.cli.declare import declare
     "--robot",
     type=options.ROBOT,
     metavar="FILE",
-    help="Convert the logs of this robot as its description says (columns, units, motors).",
+    help="The robot of the log: joints in the order of its axes, and what its description says of "
+    "its logs (columns, units, motors).",
+)
+@click.option(
+    "--topic",
+    metavar="NAME",
+    help="The topic of a ROS recording.  [default: the only one with positions of joints]",
+)
+@click.option(
+    "--torque-topic", metavar="NAME", help="Another topic, whose efforts are joined to the rows."
+)
+@click.option(
+    "--join",
+    type=click.Choice(("linear", "hold")),
+    default="linear",
+    show_default=True,
+    help="How these efforts are brought to the times of the rows: interpolated, or the last one.",
+)
+@click.option(
+    "--joints",
+    metavar="NAMES",
+    default="",
+    help="The names of the joints in a ROS recording, in order.  [default: those of --robot]",
 )
 @click.option(
     "--separator", metavar="CHAR", default="", help="The separator of CSV values, such as ;."
@@ -51,10 +73,15 @@ def command() -> None:
       scarid convert --separator ';' --decimal-comma --header t,q1,tau1 export.txt
       scarid convert --rate 500 measured.mat -o log.parquet
       scarid convert --robot mine.toml motors.csv | scarid differentiate
+      scarid convert --robot arm.urdf recording.mcap -o log.parquet
 
     Reads and writes CSV, Parquet, Arrow streams and Arrow files. It also reads NumPy's .npz and
     MATLAB's .mat files (before version 7.3), whose matrices become the columns q1, q2, ... Every
     number is kept exactly. CSV has no metadata: units and history are lost there.
+
+    Recordings of ROS (MCAP, rosbag2 and ROS 1; extra `logs`) are read from topics of the types
+    JointState, JointTrajectoryControllerState and JointTrajectory. Joints are matched by name.
+    Time is that of the messages' stamps, from 0; without stamps, that of their receipt.
 
     With --robot, columns, units and rate are those in [log] of the robot's TOML file, unless they
     are given here as well. Angles, torques or currents of motors become positions and torques of

@@ -23,6 +23,7 @@ class TranslatedCsv(ByteSource):
 
     def __init__(self, source: ByteSource, separator: str, decimal: str, header: str) -> None:
         super().__init__(source.fd, source.name)
+        self._source = source
         self._table = bytes.maketrans(
             (separator + decimal).encode(), (b"," if separator else b"") + b"." * len(decimal)
         )
@@ -30,7 +31,7 @@ class TranslatedCsv(ByteSource):
             self._ahead = header.encode() + b"\n"
 
     def _fetch(self, size: int) -> bytes:
-        return super()._fetch(size).translate(self._table)
+        return self._source.read_some(size).translate(self._table)
 
 
 def read_archive(path: str) -> Table:
