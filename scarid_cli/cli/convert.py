@@ -11,11 +11,25 @@ from scarid_cli.cli.declare import declare
 @declare("convert")
 @options.log_input
 @click.option(
+    "--beside",
+    multiple=True,
+    type=options.INPUT,
+    metavar="FILE",
+    help="Another log with the same rows, whose columns are added; repeatable.",
+)
+@click.option(
+    "--from",
+    "recorder",
+    type=click.Choice(("ur-rtde", "aurt", "libfranka", "plotjuggler", "lerobot", "indexed")),
+    help="Whose column names the log has.  [default: found from them]",
+)
+@click.option(
     "--map",
     "mappings",
     multiple=True,
     metavar="NEW=OLD[,NEW=OLD...]",
-    help="Rename columns to what the commands expect: q1, tau1, t, ...; repeatable.",
+    help="Rename columns to what the commands expect: q1, tau1, t, ...; 'q*=name' renames name1, "
+    "name2, ... to q1, q2, ...; repeatable.",
 )
 @click.option(
     "--unit",
@@ -52,14 +66,18 @@ from scarid_cli.cli.declare import declare
     "--joints",
     metavar="NAMES",
     default="",
-    help="The names of the joints in a ROS recording, in order.  [default: those of --robot]",
+    help="The names of the joints, in order, where the log has names.  [default: those of --robot]",
 )
 @click.option(
-    "--separator", metavar="CHAR", default="", help="The separator of CSV values, such as ;."
+    "--separator",
+    metavar="CHAR",
+    default="",
+    help="The separator of values, such as ; or \\t, or a space for any white space.  [default: "
+    "found from the first lines]",
 )
 @click.option("--decimal-comma", is_flag=True, help="The CSV has decimal commas.")
 @click.option(
-    "--header", metavar="NAMES", default="", help="The column names of a CSV without a header."
+    "--header", metavar="NAMES", default="", help="The column names of a log without a header."
 )
 @options.table_output
 @options.common

@@ -2,30 +2,34 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.pairs import pair, renamings
+from scarid_cli.cli.texts import Columns, columns_of, read_log
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bags import bag_extension
-from scarid_cli.io.bytesource import ByteSource
-from scarid_cli.io.foreign import ARCHIVES, TranslatedCsv, read_archive
+from scarid_cli.io.notation import Notation
 from scarid_cli.io.table import Table
 from scarid_cli.stages.adapt import adapted
+from scarid_cli.stages.side import episodes_joined
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
+
+EPISODE = "episode_index"  # LeRobot's column
 
 
 def run(
     job: Job,
     *,
     file: str,
+    beside: tuple[str, ...],
     mappings: tuple[str, ...],
     units: tuple[str, ...],
     rate: float | None,
     robot: str | None,
+    recorder: str | None,
     topic: str | None,
     torque_topic: str | None,
     join: str,
@@ -36,25 +40,40 @@ def run(
 ) -> None:
     """Write the table with its new names, units and clock."""
     _require_valid(rate, separator, decimal_comma=decimal_comma)
-    names = renamings(mappings)
+    pairs = renamings(mappings)
     given = [pair(text, "--unit") for text in units]
-    arm = _robot(robot)
+    arm, order = _robot(robot), tuple(joints.split(",")) if joints else ()
     source = job.opened(file)
     extension = bag_extension(file, source)
     if extension is None:
-        table = _table(job, file, source, Notation(separator, header, decimal_comma))
+        notation = _notation(separator, header, decimal_comma=decimal_comma)
+        table = read_log(job, file, source, notation, beside, by_name=bool(pairs))
+        columns = columns_of(job, table, pairs, given, recorder, arm, order)
     else:
         from scarid_cli.cli.recordings import Choice, read_recording  # not needed otherwise
 
-        choice = Choice(topic, torque_topic, join, tuple(joints.split(",")) if joints else ())
+        choice = Choice(topic, torque_topic, join, order)
         table = read_recording(job, file, source, extension, choice, arm)
-    if arm:
+        columns = Columns(pairs, given)
+    job.write(job.recorded(_adapted(table, columns, rate, arm)))
+
+
+def _adapted(table: Table, columns: Columns, rate: float | None, robot: Robot | None) -> Table:
+    if robot:
         from scarid_cli.stages.joints import as_described
 
-        table = as_described(table, arm, names, given, rate)
+        table = as_described(table, robot, columns.names, columns.units, rate)
     else:
-        table = adapted(table, names, given, rate)
-    job.write(job.recorded(table))
+        table = adapted(table, columns.names, columns.units, rate)
+    return episodes_joined(table, EPISODE) if columns.recorder == "lerobot" else table
+
+
+def _notation(separator: str, header: str, *, decimal_comma: bool) -> Notation | None:
+    """What the command line says about the notation, if anything."""
+    if not separator and not header:
+        return None
+    mark = "\t" if separator == "\\t" else separator
+    return Notation(mark, decimal_comma, tuple(header.split(",")) if header else ())
 
 
 def _robot(name: str | None) -> Robot | None:
@@ -72,22 +91,3 @@ def _require_valid(rate: float | None, separator: str, *, decimal_comma: bool) -
         raise UsageFault(f"--separator is one character, not {separator!r}")
     if decimal_comma and not separator:
         raise UsageFault("--decimal-comma needs a --separator other than the comma")
-
-
-@dataclass(frozen=True)
-class Notation:
-    """What the command line says about the CSV."""
-
-    separator: str
-    header: str
-    decimal_comma: bool
-
-
-def _table(job: Job, file: str, source: ByteSource, notation: Notation) -> Table:
-    if file.endswith(ARCHIVES):
-        return read_archive(file)
-    if not notation.separator and not notation.header:
-        return job.read_source(source)
-    mark = "\t" if notation.separator == "\\t" else notation.separator
-    comma = "," if notation.decimal_comma else ""
-    return job.read_source(TranslatedCsv(source, mark, comma, notation.header))
