@@ -9,13 +9,27 @@ from scarid_cli.cli.declare import declare
 
 
 @declare("convert")
-@options.table_input
+@options.log_input
+@click.option(
+    "--beside",
+    multiple=True,
+    type=options.INPUT,
+    metavar="FILE",
+    help="Another log with the same rows, whose columns are added; repeatable.",
+)
+@click.option(
+    "--from",
+    "recorder",
+    type=click.Choice(("ur-rtde", "aurt", "libfranka", "plotjuggler", "lerobot", "indexed")),
+    help="Whose column names the log has.  [default: found from them]",
+)
 @click.option(
     "--map",
     "mappings",
     multiple=True,
     metavar="NEW=OLD[,NEW=OLD...]",
-    help="Rename columns to what the commands expect: q1, tau1, t, ...; repeatable.",
+    help="Rename columns to what the commands expect: q1, tau1, t, ...; 'q*=name' renames name1, "
+    "name2, ... to q1, q2, ...; repeatable.",
 )
 @click.option(
     "--unit",
@@ -30,14 +44,40 @@ from scarid_cli.cli.declare import declare
     "--robot",
     type=options.ROBOT,
     metavar="FILE",
-    help="Convert the logs of this robot as its description says (columns, units, motors).",
+    help="The robot of the log: joints in the order of its axes, and what its description says of "
+    "its logs (columns, units, motors).",
 )
 @click.option(
-    "--separator", metavar="CHAR", default="", help="The separator of CSV values, such as ;."
+    "--topic",
+    metavar="NAME",
+    help="The topic of a ROS recording.  [default: the only one with positions of joints]",
+)
+@click.option(
+    "--torque-topic", metavar="NAME", help="Another topic, whose efforts are joined to the rows."
+)
+@click.option(
+    "--join",
+    type=click.Choice(("linear", "hold")),
+    default="linear",
+    show_default=True,
+    help="How these efforts are brought to the times of the rows: interpolated, or the last one.",
+)
+@click.option(
+    "--joints",
+    metavar="NAMES",
+    default="",
+    help="The names of the joints, in order, where the log has names.  [default: those of --robot]",
+)
+@click.option(
+    "--separator",
+    metavar="CHAR",
+    default="",
+    help="The separator of values, such as ; or \\t, or a space for any white space.  [default: "
+    "found from the first lines]",
 )
 @click.option("--decimal-comma", is_flag=True, help="The CSV has decimal commas.")
 @click.option(
-    "--header", metavar="NAMES", default="", help="The column names of a CSV without a header."
+    "--header", metavar="NAMES", default="", help="The column names of a log without a header."
 )
 @options.table_output
 @options.common
@@ -51,10 +91,15 @@ def command() -> None:
       scarid convert --separator ';' --decimal-comma --header t,q1,tau1 export.txt
       scarid convert --rate 500 measured.mat -o log.parquet
       scarid convert --robot mine.toml motors.csv | scarid differentiate
+      scarid convert --robot arm.urdf recording.mcap -o log.parquet
 
     Reads and writes CSV, Parquet, Arrow streams and Arrow files. It also reads NumPy's .npz and
     MATLAB's .mat files (before version 7.3), whose matrices become the columns q1, q2, ... Every
     number is kept exactly. CSV has no metadata: units and history are lost there.
+
+    Recordings of ROS (MCAP, rosbag2 and ROS 1; extra `logs`) are read from topics of the types
+    JointState, JointTrajectoryControllerState and JointTrajectory. Joints are matched by name.
+    Time is that of the messages' stamps, from 0; without stamps, that of their receipt.
 
     With --robot, columns, units and rate are those in [log] of the robot's TOML file, unless they
     are given here as well. Angles, torques or currents of motors become positions and torques of

@@ -7,14 +7,16 @@ from scarid_cli.cli.declare import declare
 
 
 @declare("info")
-@options.table_input
+@options.log_input
 @options.common
 def command() -> None:
     """Describe a table: kind, columns with units, rows, sampling, metadata and history.
 
     \b
       scarid info log.parquet
+      scarid info recording.mcap
       scarid trajgen --format arrow | scarid info
 
-    Reads the whole table, in bounded memory. The kind of a CSV is inferred from its columns.
+    Reads the whole table, in bounded memory. The kind of a CSV is inferred from its columns. Of a
+    ROS recording (MCAP, rosbag2, ROS 1) it lists the topics, with types, counts and rates.
     """

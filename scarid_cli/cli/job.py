@@ -75,14 +75,13 @@ class Job:
         *,
         reads: Reads | None = None,
         regular: bool = True,
-        through: Callable[[ByteSource], ByteSource] | None = None,
     ) -> Table:
         """Open a table and check that it is of this kind; without a kind, take any table.
 
         `reads` names the columns whose values must be there (see io.reader.checked). The clock
-        must be regular unless `regular` is false. `through` translates the bytes.
+        must be regular unless `regular` is false.
         """
-        table = self._opened_table(path, through)
+        table = self._opened_table(path)
         return self._reported(checked(table, kind, reads=reads, regular=regular) if kind else table)
 
     def read_for(
@@ -141,12 +140,12 @@ class Job:
     def _opened_table(
         self, path: str, through: Callable[[ByteSource], ByteSource] | None = None
     ) -> Table:
-        if path == "-" and STDIN in {source.name for source in self.sources}:
-            raise UsageFault(
-                "standard input can be read only once; give a FILE for the other table"
-            )
-        source = self._opened(path)
+        source = self.opened(path)
         return open_table(through(source) if through else source)
+
+    def read_source(self, source: ByteSource) -> Table:
+        """A table of any kind from bytes that are open already."""
+        return self._reported(open_table(source))
 
     def _reported(self, table: Table) -> Table:
         """The table, reported with --verbose and followed by a progress line on a terminal."""
@@ -157,10 +156,15 @@ class Job:
 
     def noted(self, path: str) -> str:
         """The path of an input that is not a table; the history names it as well."""
-        self._opened(path)
+        self.opened(path)
         return path
 
-    def _opened(self, path: str) -> ByteSource:
+    def opened(self, path: str) -> ByteSource:
+        """The bytes of an input, which the history names."""
+        if path == "-" and STDIN in {source.name for source in self.sources}:
+            raise UsageFault(
+                "standard input can be read only once; give a FILE for the other table"
+            )
         source = ByteSource.open(path)
         self.sources.append(source)
         return source

@@ -28,17 +28,20 @@ class InputFile(click.ParamType[str]):
 
     With `endings`, a text without any of them is a name and no file. That the file is there is
     checked before anything is read. It is not opened yet: a named pipe can be opened only once.
+    With `folders`, the folder of a rosbag2 will do as well.
     """
 
     name = "file"
 
-    def __init__(self, *words: str, endings: tuple[str, ...] = ("",)) -> None:
-        self.words, self.endings = ("-", *words), endings
+    def __init__(
+        self, *words: str, endings: tuple[str, ...] = ("",), folders: bool = False
+    ) -> None:
+        self.words, self.endings, self.folders = ("-", *words), endings, folders
 
     def convert(self, value: Any, param: Any, ctx: Any) -> str:  # noqa: ARG002
         path = str(value)
         if path.endswith(self.endings) and path not in self.words:
-            require_readable(path)
+            require_readable(path, folders=self.folders)
         return path
 
 
@@ -56,7 +59,7 @@ class Numbers(click.ParamType[tuple[float, ...]]):
             self.fail(f"{value!r} is not a number, or numbers separated by commas", param, ctx)
 
 
-def require_readable(path: str) -> None:
+def require_readable(path: str, *, folders: bool = False) -> None:
     """Refuse a path that does not exist (exit status 2), or that cannot be read (74)."""
     try:
         mode = os.stat(path).st_mode  # noqa: PTH116 (pathlib takes a while to import)
@@ -64,7 +67,8 @@ def require_readable(path: str) -> None:
         raise UsageFault(f"{path}: no such file") from None
     except OSError as error:
         raise OutputFailure(f"{path}: {error.strerror}") from None
-    if stat.S_ISDIR(mode):
+    recording = folders and os.path.exists(f"{path}/metadata.yaml")  # noqa: PTH110 (likewise)
+    if stat.S_ISDIR(mode) and not recording:
         raise OutputFailure(f"{path}: Is a directory")
     if not os.access(path, os.R_OK):
         raise OutputFailure(f"{path}: Permission denied")
@@ -87,6 +91,12 @@ def _all(*decorators: Callable[[F], F]) -> Callable[[F], F]:
 def table_input(function: F) -> F:
     """The table to read: FILE, or standard input."""
     return click.argument("file", default="-", metavar="[FILE]", type=INPUT)(function)
+
+
+def log_input(function: F) -> F:
+    """The table or the recording to read: FILE, the folder of a rosbag2, or standard input."""
+    kind = InputFile(folders=True)
+    return click.argument("file", default="-", metavar="[FILE]", type=kind)(function)
 
 
 def side_output(*names: str, help: str, metavar: str = "FILE") -> Callable[[F], F]:

@@ -6,10 +6,11 @@ import os
 import stat
 from typing import BinaryIO
 
-from scarid_cli.errors import OutputFailure, UsageFault
+from scarid_cli.errors import BadData, OutputFailure, UsageFault
 
 STDIN = "<stdin>"
 CHUNK = 1 << 20
+GZIP, GZIP_BITS = b"\x1f\x8b", 31  # its first bytes, and the format as zlib knows it
 
 
 class ByteSource:
@@ -50,12 +51,25 @@ class ByteSource:
             self._ahead += data
         return self._ahead[:size]
 
+    def peek_lines(self, count: int) -> bytes:
+        """At least the next lines (fewer only at the end), without consuming them."""
+        while self._ahead.count(b"\n") < count:
+            data = self._fetch(CHUNK)
+            if not data:
+                break
+            self._ahead += data
+        return self._ahead
+
+    def drop_comments(self, marks: bytes) -> None:
+        """Leave out the lines at the start that begin with one of these characters."""
+        while (start := self.peek(1)) and start in marks:
+            self.read(self.peek_lines(1).find(b"\n") + 1 or -1)
+
     def read_some(self, size: int = CHUNK) -> bytes:
         """What has arrived: at least one byte, or none at the end."""
-        if self._ahead:
-            data, self._ahead = self._ahead[:size], self._ahead[size:]
-        else:
-            data = self._fetch(size)
+        if not self._ahead:
+            self._ahead = self._fetch(size)
+        data, self._ahead = self._ahead[:size], self._ahead[size:]
         self.last = (self.last + data[-8:])[-8:]
         return data
 
@@ -117,3 +131,46 @@ class ByteSource:
             return os.read(self.fd, size)
         except OSError as error:
             raise OutputFailure(f"{self.name}: {error.strerror}") from None
+
+
+class Wrapped(ByteSource):
+    """The bytes of another source after a change."""
+
+    def __init__(self, source: ByteSource) -> None:
+        super().__init__(source.fd, source.name)
+        self.source = source
+
+    @property
+    def regular(self) -> bool:
+        """A changed file is read in order, like a pipe."""
+        return False
+
+
+class Unzipped(Wrapped):
+    """The contents of a gzip file."""
+
+    def __init__(self, source: ByteSource) -> None:
+        import zlib
+
+        super().__init__(source)
+        self._zlib = zlib
+        self._member = zlib.decompressobj(GZIP_BITS)
+
+    def _fetch(self, size: int) -> bytes:
+        while True:
+            data = self._member.unused_data or self.source.read_some(size)
+            if not data and not self._member.eof:
+                raise BadData(f"{self.name}: a gzip file that was cut short; copy it again")
+            if self._member.eof and data:  # files that were joined
+                self._member = self._zlib.decompressobj(GZIP_BITS)
+            try:
+                found = self._member.decompress(data)
+            except self._zlib.error as error:
+                raise BadData(f"{self.name}: a broken gzip file ({error}); copy it again") from None
+            if found or not data:
+                return found
+
+
+def unzipped(source: ByteSource) -> ByteSource:
+    """The source, or its contents if it is a gzip file."""
+    return Unzipped(source) if source.peek(2) == GZIP else source

@@ -9,28 +9,46 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.errors import BadData, bad_data
-from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.bytesource import ByteSource, Wrapped
+from scarid_cli.io.notation import SPACE, Notation
 from scarid_cli.io.table import Metadata, Table, doubles
 
 ARCHIVES = (".npz", ".mat")
+COMMENTS = b"#%"  # that begin a line before the header
 
 
-class TranslatedCsv(ByteSource):
-    """CSV with another separator, a decimal comma or no header, translated into plain CSV.
+class TranslatedCsv(Wrapped):
+    """A text log in another notation, translated into plain CSV.
 
-    It is translated byte by byte, so neither character may occur within a text.
+    It is translated byte by byte, so neither separator nor decimal mark may occur within a text.
     """
 
-    def __init__(self, source: ByteSource, separator: str, decimal: str, header: str) -> None:
-        super().__init__(source.fd, source.name)
+    def __init__(self, source: ByteSource, notation: Notation) -> None:
+        super().__init__(source)
+        decimal = "," if notation.decimal_comma else ""
+        separator = "" if notation.separator == SPACE else notation.separator
         self._table = bytes.maketrans(
             (separator + decimal).encode(), (b"," if separator else b"") + b"." * len(decimal)
         )
-        if header:
-            self._ahead = header.encode() + b"\n"
+        self._space = notation.separator == SPACE
+        self._rest = b""
+        source.drop_comments(COMMENTS)
+        if notation.header:
+            self._ahead = ",".join(notation.header).encode() + b"\n"
 
     def _fetch(self, size: int) -> bytes:
-        return super()._fetch(size).translate(self._table)
+        data = self.source.read_some(size)
+        if not self._space:
+            return data.translate(self._table)
+        ended = not data
+        while not ended and b"\n" not in data:
+            more = self.source.read_some(size)
+            data, ended = data + more, not more
+        block = self._rest + data
+        end = len(block) if ended else block.rfind(b"\n") + 1
+        self._rest = block[end:]
+        lines = block[:end].translate(self._table).split(b"\n")
+        return b"\n".join(b",".join(line.split()) for line in lines)
 
 
 def read_archive(path: str) -> Table:

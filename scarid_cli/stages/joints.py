@@ -10,7 +10,7 @@ import pyarrow as pa
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.logs import JOINT, LogFormat
 from scarid_cli.arrays import Array
-from scarid_cli.errors import UsageFault, bad_data
+from scarid_cli.errors import bad_data
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, number, with_columns
 from scarid_cli.stages.adapt import adapted
@@ -25,12 +25,11 @@ def as_described(
     units: list[tuple[str, str]],
     rate: float | None,
 ) -> Table:
-    """The table, converted by the robot's description; the arguments override the description."""
-    log = robot.log
-    if log is None:
-        raise UsageFault(
-            f"{robot.name}: its description has no [log] to describe its logs; add one"
-        )
+    """The table, converted by the robot's description; the arguments override the description.
+
+    The logs of a robot without a [log] hold positions and torques of the joints.
+    """
+    log = robot.log or LogFormat()
     described = {new: old for new, old in log.columns.items() if old not in names.values()}
     clocked = "t" in table.columns or "t" in {**described, **names}
     table = adapted(

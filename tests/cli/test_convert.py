@@ -141,10 +141,18 @@ def test_a_log_of_motors_becomes_one_of_joints(shell: Shell, tmp_path: Path) -> 
     np.testing.assert_allclose(found, [[0.0, 0.01, 0.02], *q, *tau], rtol=1e-12, atol=1e-12)
 
 
+def test_a_robot_whose_logs_are_not_described_is_stated(shell: Shell) -> None:
+    result = shell(
+        "scarid convert --robot scara2 $SAMPLES/scara2.csv -o log.parquet &&"
+        " scarid info log.parquet | grep ^robot && scarid convert log.parquet |"
+        " cmp - $SAMPLES/scara2.csv"
+    )
+    assert (result.status, result.out) == (0, "robot     scara2\n"), result.err
+
+
 @pytest.mark.parametrize(
     ("command", "status", "message"),
     [
-        ("--robot emps log.csv", 2, "its description has no [log]"),
         ("--robot robot.toml log.csv", 2, "no column 'enc2' to rename; it has enc1"),
         ("--robot robot.toml --map q2=other log.csv", 65, "name the columns of all motors"),
     ],

@@ -2,40 +2,86 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.pairs import pair, renamings
+from scarid_cli.cli.texts import Columns, columns_of, read_log
 from scarid_cli.errors import UsageFault
-from scarid_cli.io.bytesource import ByteSource
-from scarid_cli.io.foreign import ARCHIVES, TranslatedCsv, read_archive
+from scarid_cli.io.bags import bag_extension
+from scarid_cli.io.notation import Notation
 from scarid_cli.io.table import Table
 from scarid_cli.stages.adapt import adapted
+from scarid_cli.stages.side import episodes_joined
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.robots.description import Robot
+
+EPISODE = "episode_index"  # LeRobot's column
 
 
 def run(
     job: Job,
     *,
     file: str,
+    beside: tuple[str, ...],
     mappings: tuple[str, ...],
     units: tuple[str, ...],
     rate: float | None,
     robot: str | None,
+    recorder: str | None,
+    topic: str | None,
+    torque_topic: str | None,
+    join: str,
+    joints: str,
     separator: str,
     decimal_comma: bool,
     header: str,
 ) -> None:
     """Write the table with its new names, units and clock."""
     _require_valid(rate, separator, decimal_comma=decimal_comma)
-    names = renamings(mappings)
+    pairs = renamings(mappings)
     given = [pair(text, "--unit") for text in units]
-    table = _opened(job, file, separator, header, decimal_comma=decimal_comma)
-    if robot:  # its reader is not needed otherwise
-        from scarid_cli.algorithms.robots.reading import load
+    arm, order = _robot(robot), tuple(joints.split(",")) if joints else ()
+    source = job.opened(file)
+    extension = bag_extension(file, source)
+    if extension is None:
+        notation = _notation(separator, header, decimal_comma=decimal_comma)
+        table = read_log(job, file, source, notation, beside, by_name=bool(pairs))
+        columns = columns_of(job, table, pairs, given, recorder, arm, order)
+    else:
+        from scarid_cli.cli.recordings import Choice, read_recording  # not needed otherwise
+
+        choice = Choice(topic, torque_topic, join, order)
+        table = read_recording(job, file, source, extension, choice, arm)
+        columns = Columns(pairs, given)
+    job.write(job.recorded(_adapted(table, columns, rate, arm)))
+
+
+def _adapted(table: Table, columns: Columns, rate: float | None, robot: Robot | None) -> Table:
+    if robot:
         from scarid_cli.stages.joints import as_described
 
-        table = as_described(table, load(robot), names, given, rate)
+        table = as_described(table, robot, columns.names, columns.units, rate)
     else:
-        table = adapted(table, names, given, rate)
-    job.write(job.recorded(table))
+        table = adapted(table, columns.names, columns.units, rate)
+    return episodes_joined(table, EPISODE) if columns.recorder == "lerobot" else table
+
+
+def _notation(separator: str, header: str, *, decimal_comma: bool) -> Notation | None:
+    """What the command line says about the notation, if anything."""
+    if not separator and not header:
+        return None
+    mark = "\t" if separator == "\\t" else separator
+    return Notation(mark, decimal_comma, tuple(header.split(",")) if header else ())
+
+
+def _robot(name: str | None) -> Robot | None:
+    if not name:
+        return None
+    from scarid_cli.algorithms.robots.reading import load  # its reader is not needed otherwise
+
+    return load(name)
 
 
 def _require_valid(rate: float | None, separator: str, *, decimal_comma: bool) -> None:
@@ -45,17 +91,3 @@ def _require_valid(rate: float | None, separator: str, *, decimal_comma: bool) -
         raise UsageFault(f"--separator is one character, not {separator!r}")
     if decimal_comma and not separator:
         raise UsageFault("--decimal-comma needs a --separator other than the comma")
-
-
-def _opened(job: Job, file: str, separator: str, header: str, *, decimal_comma: bool) -> Table:
-    if file.endswith(ARCHIVES):
-        return read_archive(job.noted(file))
-    if not separator and not header:
-        return job.read(file, None)
-    mark = "\t" if separator == "\\t" else separator
-    comma = "," if decimal_comma else ""
-
-    def through(source: ByteSource) -> ByteSource:
-        return TranslatedCsv(source, mark, comma, header)
-
-    return job.read(file, None, through=through)

@@ -1,0 +1,102 @@
+"""Logs in files as `convert` takes them: how they are written, who wrote them, what is told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from scarid_cli.cli.job import Job
+from scarid_cli.io.bytesource import ByteSource, unzipped
+from scarid_cli.io.foreign import ARCHIVES, TranslatedCsv, read_archive
+from scarid_cli.io.notation import Notation, notation_of
+from scarid_cli.io.table import Table
+from scarid_cli.stages.recorders import Recognised, expanded, recognised, units_in_names
+from scarid_cli.stages.side import flattened, side_by_side
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.robots.description import Robot
+
+BINARY = (b"PAR1", b"ARRO", b"\xff\xff\xff\xff")
+
+
+@dataclass(frozen=True)
+class Columns:
+    """How the columns of a log are renamed: the old name of each new one, and their units."""
+
+    names: dict[str, str]
+    units: list[tuple[str, str]]
+    recorder: str = ""
+
+
+def read_log(
+    job: Job, file: str, source: ByteSource, given: Notation | None, beside: Sequence[str],
+    *, by_name: bool,
+) -> Table:  # fmt: skip
+    """A log and those that lie beside it; reports how they are written."""
+    table = _read(job, file, source, given, by_name=by_name)
+    for other in beside:
+        more = _read(job, other, job.opened(other), replace(given, header=()) if given else None,
+                     by_name=by_name)  # fmt: skip
+        table = side_by_side(table, more)
+    return table
+
+
+def _read(
+    job: Job, file: str, source: ByteSource, given: Notation | None, *, by_name: bool
+) -> Table:
+    if file.endswith(ARCHIVES):
+        return read_archive(file)
+    source = unzipped(source)
+    if source.peek(4).startswith(BINARY):
+        return flattened(job.read_source(source))
+    notation = notation_of(source, given, by_name=by_name)
+    if notation.plain:
+        return job.read_source(source)
+    if not (given and given.separator):
+        job.say(f"{source.name}: read with {notation.text}")
+    return job.read_source(TranslatedCsv(source, notation))
+
+
+def columns_of(
+    job: Job, table: Table, pairs: dict[str, str], units: list[tuple[str, str]], wanted: str | None,
+    robot: Robot | None, joints: Sequence[str],
+) -> Columns:  # fmt: skip
+    """The columns as the options, the recorder, and the units in names say, in this order."""
+    names = expanded(pairs, table.columns, table.name)
+    order = joints or (robot.body.joint_names if robot and robot.body else ())
+    found = recognised(table.columns, wanted, order, table.name)
+    described = {**robot.log.columns} if robot and robot.log else {}
+    taken = {*names.values(), *described.values()}
+    if found:
+        own = _with_torques(found, robot)
+        _tell(job, found, own)
+        own = {new: old for new, old in own.items() if old not in taken and new not in names}
+        known = [(new, unit) for new, unit in found.units if new in own]
+        return Columns({**own, **names}, [*known, *units], found.name)
+    inside = units_in_names(table.columns)
+    if inside:
+        job.say(
+            "units in the names: "
+            + ", ".join(f"{old} is {new} [{unit}]" for old, (new, unit) in inside.items())
+        )
+    renamed = {new: old for old, (new, _) in inside.items() if old not in taken | {new}}
+    known = [(new, unit) for old, (new, unit) in inside.items() if old not in taken]
+    return Columns({**renamed, **names}, [*known, *units])
+
+
+def _with_torques(found: Recognised, robot: Robot | None) -> dict[str, str]:
+    """The columns; currents of motors are called tau if the robot's description converts them."""
+    if not (robot and robot.log and robot.log.torques == "current"):
+        return found.columns
+    return {new.replace("current", "tau"): old for new, old in found.columns.items()}
+
+
+def _tell(job: Job, found: Recognised, columns: dict[str, str]) -> None:
+    joints = f", joints {', '.join(found.joints)}" if found.joints else ""
+    job.say(f"columns of {found.name}{joints}")
+    if any(new.startswith("current") for new in columns):
+        job.say(
+            "currents stay currents [A]: --robot FILE makes them torques, if its description has "
+            'torques = "current" in [log] and a torque_constant for each joint (docs/robots.md)'
+        )

@@ -1,0 +1,133 @@
+"""How a text log is written, found from its first lines: separator, decimal comma, header."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from scarid_cli.errors import UsageFault
+from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.csvio import NUMERIC
+
+SPACE = " "  # any white space between values
+SEPARATORS = (",", ";", "\t", "|", SPACE)
+NAMES = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", SPACE: "white space"}
+ROWS = 3  # lines that are looked at: a header, if there is one, and rows
+DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*\Z")
+
+
+@dataclass(frozen=True)
+class Notation:
+    """The separator (SPACE for any white space), the decimal mark, and the names of the columns.
+
+    The names are empty if the file has a header, and `comment` says that it is a comment.
+    """
+
+    separator: str = ","
+    decimal_comma: bool = False
+    header: tuple[str, ...] = ()
+    comment: bool = False
+
+    @property
+    def plain(self) -> bool:
+        """Whether this is CSV as every command reads it."""
+        return self == Notation()
+
+    @property
+    def text(self) -> str:
+        """In words, for a report."""
+        parts = [f"values separated by {NAMES[self.separator]}"]
+        parts += ["decimal commas"] if self.decimal_comma else []
+        if self.header:
+            names = ",".join(self.header)
+            parts.append(f"names from a comment: {names}" if self.comment else f"columns {names}")
+        return ", ".join(parts)
+
+
+def notation_of(source: ByteSource, given: Notation | None, *, by_name: bool) -> Notation:
+    """The notation of a text log; what is `given` on the command line is not looked for.
+
+    The columns of a log without names are called after the file if they are to be renamed
+    `by_name`; else a log without names is refused.
+    """
+    comments, lines = _first_lines(source)
+    given = given or Notation(separator="")
+    found = given if given.separator else _looked_at(lines, source.name)
+    separator, comma = found.separator, found.decimal_comma
+    if given.header or not lines:
+        return Notation(separator, comma, given.header)
+    fields = split(lines[0], separator)
+    if not all(is_number(field, comma=comma) for field in fields):
+        return Notation(separator, comma)
+    names = split(comments[-1].lstrip("#% "), separator) if comments else []
+    if len(names) == len(fields) and not any(is_number(n, comma=comma) for n in names):
+        return Notation(separator, comma, tuple(name.strip() for name in names), comment=True)
+    stem = Path(source.name).stem.partition(".")[0].strip("<>")
+    if by_name:
+        return Notation(separator, comma, tuple(f"{stem}{i + 1}" for i in range(len(fields))))
+    raise UsageFault(
+        f"{source.name}: no header: the first line is a row of {len(fields)} numbers; name them: "
+        f"--header {_example(len(fields))}, or call them {stem}1, {stem}2, ... and rename them: "
+        f"--map 'q*={stem}'"
+    )
+
+
+def split(line: str, separator: str) -> list[str]:
+    """The values of a line."""
+    if separator == SPACE:
+        return line.split()
+    return next(csv.reader([line], delimiter=separator), [])
+
+
+def is_number(text: str, *, comma: bool) -> bool:
+    return bool(NUMERIC.match(text.replace(",", ".") if comma else text))
+
+
+def _first_lines(source: ByteSource) -> tuple[list[str], list[str]]:
+    """The comments at the start, and the first lines after them."""
+    count = ROWS
+    while True:
+        block = source.peek_lines(count)
+        text = block.decode("utf-8-sig", errors="replace").splitlines()[:count]
+        comments = [line for line in text if line.startswith(("#", "%"))]
+        lines = [line for line in text if line.strip() and line not in comments]
+        if len(lines) >= ROWS or len(text) < count:
+            return comments, lines
+        count += ROWS - len(lines)
+
+
+def _looked_at(lines: Sequence[str], name: str) -> Notation:
+    """The separator with which most values of the rows are numbers, and the decimal mark."""
+    rows = lines[1:] or lines
+    best, most, comma = ",", -1.0, False
+    for separator in SEPARATORS:
+        counts = [len(split(line, separator)) for line in lines]
+        if not counts or counts[0] < 2 or any(a != b for a, b in pairwise(counts)):
+            continue
+        fields = _fields(rows, separator)
+        commas = separator != "," and any(DECIMAL_COMMA.match(field) for field in fields)
+        share = sum(is_number(field, comma=commas) for field in fields) / len(fields)
+        if share > most:
+            best, most, comma = separator, share, commas
+    if comma and any("." in f and NUMERIC.match(f) for f in _fields(rows, best)):
+        raise UsageFault(
+            f"{name}: decimal commas and decimal points in the same rows; say which marks the "
+            f"decimals: --separator '{best}', and --decimal-comma for the comma"
+        )
+    return Notation(best, comma)
+
+
+def _fields(rows: Sequence[str], separator: str) -> list[str]:
+    return [field for line in rows for field in split(line, separator)]
+
+
+def _example(columns: int) -> str:
+    """A header for as many columns, of a log of positions and torques if the number suits."""
+    joints, rest = divmod(columns - 1, 2)
+    if rest or not joints:
+        return f"t,q1,... ({columns} names)"
+    return ",".join(["t", *(f"{s}{i + 1}" for s in ("q", "tau") for i in range(joints))])
