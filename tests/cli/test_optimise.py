@@ -158,7 +158,8 @@ def test_periods_are_repeated_after_a_slow_approach(scarid: Run, tmp_path: Path)
 
 def test_expected_errors_of_a_random_motion(scarid: Run, tmp_path: Path) -> None:
     out = tmp_path / "errors.csv"
-    plain, result = scarid("trajgen"), scarid("trajgen", "--expected", out)
+    words = ("trajgen", "--robot", "scara2")
+    plain, result = scarid(*words), scarid(*words, "--expected", out)
     assert result.out == plain.out
     assert result.err.splitlines()[0].startswith(plain.err.split("condition")[0].rstrip(", "))
     assert list(errors_in(out)) == load("scara2").names
