@@ -11,6 +11,8 @@ import click
 
 from scarid_cli.cli.options import SHARED
 
+READABLE = ("identify", "validate", "tune")  # whose tables a person reads on a terminal
+
 
 def declare(
     name: str, cls: type[click.Command] = click.Command
@@ -31,7 +33,8 @@ def declare(
             own = {option: value for option, value in given.items() if option not in SHARED}
             with job(given) as run:
                 if "format" in given:
-                    run.out = run.output(given["output"], given["format"])
+                    small = name in READABLE
+                    run.out = run.output(given["output"], given["format"], readable=small)
                 status = action.run(run, **own)
             if status:
                 raise click.exceptions.Exit(status)

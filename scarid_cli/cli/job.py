@@ -14,6 +14,7 @@ import click
 from scarid_cli import __version__
 from scarid_cli.cli.options import Unrecorded
 from scarid_cli.cli.robots import another, misfit
+from scarid_cli.cli.terminal import is_terminal, styled
 from scarid_cli.errors import TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
@@ -45,8 +46,16 @@ class Job:
         self.left_out: list[TooShort] = []
         self.notes: list[str] = []
 
-    def output(self, path: str, wanted: str | None = None) -> Output:
-        """The output for a table; opened before anything is read, so that mistakes show at once."""
+    def output(self, path: str, wanted: str | None = None, *, readable: bool = False) -> Output:
+        """The output for a table; opened before anything is read, so that mistakes show at once.
+
+        On a terminal, a table that is `readable` is printed for a person.
+        """
+        asked = wanted or os.environ.get("SCARID_FORMAT")
+        if readable and path == "-" and not asked and is_terminal():
+            from scarid_cli.cli.readable import Readable
+
+            return self._new(path, lambda: Readable(path))
         return self._new(path, lambda: Output(path, wanted))
 
     def text(self, path: str) -> Document:
@@ -190,11 +199,15 @@ class Job:
         while self.notes:
             self.say(self.notes.pop(0))
 
-    def say(self, message: str) -> None:
-        """Report a line to the user, on standard error."""
+    def say(self, message: str, verdict: str = "") -> None:
+        """Report a line to the user, on standard error.
+
+        On a terminal it begins in the colour of the `verdict`, if it begins with one.
+        """
         if not self.quiet:
             name = click.get_current_context().command_path
-            print(f"{name}: {message}", file=sys.stderr)  # noqa: T201
+            start = styled(verdict, verdict, 2) if verdict else ""
+            print(f"{name}: {start}{message.removeprefix(verdict)}", file=sys.stderr)  # noqa: T201
 
 
 @contextlib.contextmanager

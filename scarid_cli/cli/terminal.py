@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
-import sys
-import textwrap
 
 COLOURS = {
     "ok": "32", "good": "32", "unchanged": "32",
@@ -15,26 +12,39 @@ COLOURS = {
 NARROWEST = 40  # characters
 
 
-def is_terminal() -> bool:
-    """Whether standard output is a terminal."""
-    return os.isatty(1) and sys.stdout.isatty()
+def is_terminal(descriptor: int = 1) -> bool:
+    """Whether standard output (1) or standard error (2) is a terminal."""
+    return os.isatty(descriptor)
 
 
-def coloured() -> bool:
-    """Whether standard output shows colours: see https://no-color.org."""
-    return is_terminal() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+def coloured(descriptor: int = 1) -> bool:
+    """Whether the same shows colours: see https://no-color.org."""
+    plain = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return is_terminal(descriptor) and not plain
 
 
-def styled(text: str, verdict: str) -> str:
-    """The text in the colour of a verdict, where standard output shows colours."""
+def styled(text: str, verdict: str, descriptor: int = 1) -> str:
+    """The text in the colour of a verdict, where the output shows colours."""
     code = COLOURS.get(verdict)
-    return f"\033[{code}m{text}\033[0m" if code and coloured() else text
+    return f"\033[{code}m{text}\033[0m" if code and coloured(descriptor) else text
 
 
-def wrapped(start: str, text: str, indent: int) -> str:
-    """`start` of `indent` characters, and the text, wrapped to the window if there is one."""
+def wrapped(start: str, text: str, indent: int, *, hanging: int = 0) -> str:
+    """`start` of `indent` characters, and the text, wrapped to the window if there is one.
+
+    The lines after the first one are indented by `hanging` more.
+    """
     if not is_terminal():
         return f"{start}{text}"
+    import shutil
+    import textwrap
+
     width = max(shutil.get_terminal_size().columns, NARROWEST + indent)
-    lines = textwrap.wrap(text, width - indent) or [""]
-    return start + f"\n{' ' * indent}".join(lines)
+    begin = indent + len(text) - len(text.lstrip())
+    lines = textwrap.wrap(
+        text.lstrip(),
+        width,
+        initial_indent=" " * begin,
+        subsequent_indent=" " * (indent + hanging),
+    )
+    return start + "\n".join(lines)[indent:]

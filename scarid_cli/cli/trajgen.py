@@ -140,7 +140,7 @@ def command() -> None:
 
     \b
       scarid trajgen --seed 1 -o reference.parquet
-      scarid trajgen --robot emps --duration 30 --segment 1 4 | scarid simulate
+      scarid trajgen --robot emps --duration 30 --segment 1 4 | scarid simulate --robot emps
       scarid trajgen --via points.csv --rate 500
       scarid trajgen --robot arm.urdf --ddq-max 5 --home 0,-0.5 -o reference.csv
       scarid trajgen --robot arm.toml --optimise --expected errors.csv -o reference.parquet

@@ -135,6 +135,9 @@ class Output:
         assert self._writer is not None
         self._writer.write(batch)
 
+    def whole(self) -> None:
+        """All rows are written, but the run may still fail."""
+
     def finish(self) -> None:
         """The table is complete: write the end mark."""
         if self._writer:
@@ -200,3 +203,4 @@ def write_table(table: Table, output: Output) -> None:
     output.start(table.arrow_schema())
     for batch in table.batches:
         output.write(batch)
+    output.whole()

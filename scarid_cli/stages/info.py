@@ -1,45 +1,143 @@
-"""Describe a table in lines of text."""
+"""Describe a table: in lines of text, or as a JSON document."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.arrays import Array
 from scarid_cli.io import schemas
 from scarid_cli.io.clock import nominal_period
-from scarid_cli.io.table import SEGMENT, Instant, Table, steps_of
+from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
 
 
-def described(table: Table) -> Iterator[str]:
-    """The lines that describe a table: kind, robot, rows, sampling, metadata, columns, history."""
-    meta = table.meta
-    schema = schemas.load(meta.kind) if meta.kind else schemas.detect(table.columns)
-    origin = f"version {meta.version}" if meta.kind else "inferred from its columns"
-    yield f"table     {table.name}"
-    yield f"kind      {f'{schema.kind} ({origin})' if schema else 'unknown'}"
-    yield f"robot     {meta.robot or 'not stated'}"
-    rows, clock = _read(table)
-    yield f"rows      {rows:,}"
-    if clock:
-        yield f"time      {clock.description(rows)}"
-    for key, value in sorted(meta.extra.items()):
-        yield from _metadata(key, value)
-    yield "columns"
-    width = max((len(name) for name in table.columns), default=0)
-    for field in table.schema:
-        known = schema.field_of(field.name) if schema else None
-        unit = table.unit(field.name) or "-"
-        about = known.about(field.name) if known else ""
-        yield f"  {field.name:<{width}}  {field.type!s:<7} {unit:<10} {about}".rstrip()
-    yield "history" if meta.history else "history   none"
-    for entry in meta.history:
-        yield f"  {entry['command']}  (scarid {entry['version']})"
-        for name, digest in entry["inputs"].items():
-            yield f"    {name}: {f'sha256 {digest}' if digest else 'a pipe'}"
+@dataclass
+class Extent:
+    """The least and greatest finite value of a column of numbers, and its cells without one."""
+
+    least: float = inf
+    greatest: float = -inf
+    missing: int = 0
+
+    def add(self, values: Array) -> None:
+        known = values[np.isfinite(values)]
+        self.missing += len(values) - len(known)
+        self.least = min(self.least, float(known.min(initial=inf)))
+        self.greatest = max(self.greatest, float(known.max(initial=-inf)))
+
+    @property
+    def text(self) -> str:
+        parts = [f"{self.least:.3g} to {self.greatest:.3g}"] if self.least <= self.greatest else []
+        parts += [f"{self.missing:,} missing"] if self.missing else []
+        return ", ".join(parts)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table; `extent` is None if it does not hold numbers."""
+
+    name: str
+    type: str
+    unit: str | None
+    about: str
+    extent: Extent | None
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The column as JSON holds it; without finite values, the extremes are None."""
+        found: dict[str, Any] = {key: getattr(self, key) for key in ("name", "type", "unit")}
+        if self.extent:
+            known = self.extent.least <= self.extent.greatest
+            found["minimum"] = self.extent.least if known else None
+            found["maximum"] = self.extent.greatest if known else None
+            found["missing"] = self.extent.missing
+        return found
+
+
+@dataclass(frozen=True)
+class Description:
+    """What a table holds; `kind` is that of its metadata, or one that its columns fit."""
+
+    table: Table
+    schema: schemas.TableSchema | None
+    rows: int
+    sampling: Sampling | None
+    columns: tuple[Column, ...]
+
+    @property
+    def lines(self) -> Iterator[str]:
+        """Kind, robot, rows, sampling, metadata, columns and history, for a person."""
+        meta, schema = self.table.meta, self.schema
+        origin = f"version {meta.version}" if meta.kind else "inferred from its columns"
+        yield f"table     {self.table.name}"
+        yield f"kind      {f'{schema.kind} ({origin})' if schema else 'unknown'}"
+        yield f"robot     {meta.robot or 'not stated'}"
+        yield f"rows      {self.rows:,}"
+        if self.sampling:
+            yield f"time      {self.sampling.description(self.rows)}"
+        for key, value in sorted(meta.extra.items()):
+            yield from _metadata(key, value)
+        yield "columns"
+        yield from _columns(self.columns)
+        yield "history" if meta.history else "history   none"
+        for entry in meta.history:
+            yield f"  {entry['command']}  (scarid {entry['version']})"
+            for name, digest in entry["inputs"].items():
+                yield f"    {name}: {f'sha256 {digest}' if digest else 'a pipe'}"
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The same as JSON holds it."""
+        meta = self.table.meta
+        return {
+            "table": self.table.name,
+            "kind": self.schema.kind if self.schema else None,
+            "version": meta.version if meta.kind else None,
+            "robot": meta.robot,
+            "rows": self.rows,
+            "time": self.sampling.document(self.rows) if self.sampling else None,
+            "metadata": meta.extra,
+            "columns": [column.document for column in self.columns],
+            "history": list(meta.history),
+        }
+
+
+def described(table: Table) -> Description:
+    """The description of a table, all of whose rows are read."""
+    kind = table.meta.kind
+    schema = schemas.load(kind) if kind else schemas.detect(table.columns)
+    extents = {f.name: Extent() for f in table.schema if _numeric(f.type)}
+    rows, sampling = _read(table, extents)
+    columns = tuple(_column(table, schema, field, extents) for field in table.schema)
+    return Description(table, schema, rows, sampling, columns)
+
+
+def _numeric(kind: pa.DataType) -> bool:
+    return bool(pa.types.is_floating(kind) or pa.types.is_integer(kind))
+
+
+def _column(
+    table: Table, schema: schemas.TableSchema | None, field: pa.Field, extents: dict[str, Extent]
+) -> Column:
+    known = schema.field_of(field.name) if schema else None
+    about = known.about(field.name) if known else ""
+    unit = table.unit(field.name)
+    return Column(field.name, str(field.type), unit, about, extents.get(field.name))
+
+
+def _columns(columns: tuple[Column, ...]) -> Iterator[str]:
+    """A line for each column: name, type, unit, extremes, and what it is."""
+    ranges = [column.extent.text if column.extent else "" for column in columns]
+    width = max((len(column.name) for column in columns), default=0)
+    wide = max(map(len, ranges), default=0)
+    for column, text in zip(columns, ranges, strict=True):
+        start = f"  {column.name:<{width}}  {column.type:<7} {column.unit or '-':<10}"
+        yield f"{start} {text:<{wide}}  {column.about}".rstrip()
 
 
 def _metadata(key: str, value: Any) -> Iterator[str]:
@@ -74,6 +172,20 @@ class Sampling:
     gaps: int = 0
     missing: float = 0.0
 
+    def document(self, rows: int) -> dict[str, Any]:
+        """The sampling as JSON holds it; the period [s] is None if time does not increase."""
+        between = rows - 1 - self.gaps
+        mean = (self.end - self.start - self.missing) / between if between > 0 else 0.0
+        period = nominal_period(self.interval) if self.interval else None
+        return {
+            "start": self.start,
+            "end": self.end,
+            "period": period if period and period > 0.0 else None,
+            "mean_period": mean if mean > 0.0 else None,
+            "gaps": self.gaps,
+            "missing_time": self.missing,
+        }
+
     def description(self, rows: int) -> str:
         text = f"{self.start:.9g} s to {self.end:.9g} s"
         between = rows - 1 - self.gaps
@@ -88,8 +200,11 @@ class Sampling:
         return f"{text}, nominal {1.0 / period:.6g} Hz, mean {1.0 / mean:.6g} Hz{gaps}"
 
 
-def _read(table: Table) -> tuple[int, Sampling | None]:
-    """The number of rows, and their sampling if the table has a time column."""
+def _read(table: Table, extents: dict[str, Extent]) -> tuple[int, Sampling | None]:
+    """The number of rows, and their sampling if the table has a time column.
+
+    The columns of numbers are added to their `extents`.
+    """
     types = {field.name: field.type for field in table.schema}
     timed = pa.types.is_floating(types.get("t", pa.null()))
     # In a table of another kind the column may be something else.
@@ -99,6 +214,8 @@ def _read(table: Table) -> tuple[int, Sampling | None]:
     last: Instant | None = None
     for batch in table.batches:
         rows += batch.num_rows
+        for name, extent in extents.items():
+            extent.add(matrix(batch, [name])[0])
         if not timed or not batch.num_rows:
             continue
         first = last is None

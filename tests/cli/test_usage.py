@@ -13,7 +13,7 @@ Run = Callable[..., Result]
 USAGE = {
     "no such file": (["filter", "nowhere.csv"], "nowhere.csv: no such file"),
     "no such option": (["filter", "--frob"], "No such option '--frob'"),
-    "no such command": (["frobnicate"], "No such command 'frobnicate'"),
+    "no such command": (["frobnicate"], "no such command 'frobnicate'"),
     "one output twice": (["identify", "--trace", "-"], "standard output: two outputs cannot share"),
     "no such robot": (
         ["trajgen", "--robot", "r2d2"],

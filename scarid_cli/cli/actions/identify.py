@@ -89,8 +89,9 @@ def run(
     for finding in reach.findings(arm, table.period):
         job.say(f"warning: {finding.text}")
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
-    for line in summary_lines(arm.name, name, result.meta.extra):
-        job.say(line)
+    facts, verdict = summary_lines(arm.name, name, result.meta.extra)
+    job.say(facts)
+    job.say(verdict, result.meta.extra["verdict"])
     if treatment.align and job.out.format == "csv":
         job.say("CSV does not keep the delay: write -o FILE.parquet for validate to apply it")
     return _status(job, require, result.meta.extra)

@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
+import json
+
 import click
 
 from scarid_cli.cli.job import Job
+from scarid_cli.cli.terminal import wrapped
+from scarid_cli.errors import UsageFault
 from scarid_cli.io.bags import bag_extension
 from scarid_cli.stages.info import described
 
 
-def run(job: Job, *, file: str) -> None:
+def run(job: Job, *, file: str, as_json: bool) -> None:
     """Print what the table or the recording holds."""
     source = job.opened(file)
     extension = bag_extension(file, source)
     if extension is None:
-        lines = described(job.read_source(source))
+        found = described(job.read_source(source))
+        if as_json:
+            click.echo(json.dumps(found.document))
+            return
+        lines = found.lines
     else:
         from scarid_cli.cli.recordings import topic_lines  # not needed otherwise
 
+        if as_json:
+            raise UsageFault(f"{file}: --json describes tables, not recordings; leave it out")
         lines = topic_lines(file, source, extension)
     for line in lines:
-        click.echo(line)
+        click.echo(wrapped("", line, 0, hanging=10))

@@ -51,6 +51,6 @@ def run(
         job.say(f"applied the delay that identify fitted: torques lead by {delay:.3g} ms")
     if before.testable:
         change = result.meta.extra["change"]
-        job.say(f"{change['verdict']}: {change['reason']}")
+        job.say(f"{change['verdict']}: {change['reason']}", change["verdict"])
     if before.remark:
         job.say(before.remark)
