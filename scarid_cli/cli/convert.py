@@ -89,6 +89,7 @@ def command() -> None:
       scarid convert log.parquet | head
       scarid convert --map 'q1=joint_1_pos,tau1=effort_1' --unit 'q*=deg' robot.csv -o log.parquet
       scarid convert --separator ';' --decimal-comma --header t,q1,tau1 export.txt
+      scarid convert positions.txt --beside torques.txt --map 'q*=positions,tau*=torques' --rate 500
       scarid convert --rate 500 measured.mat -o log.parquet
       scarid convert --robot mine.toml motors.csv | scarid differentiate
       scarid convert --robot arm.urdf recording.mcap -o log.parquet
@@ -96,6 +97,10 @@ def command() -> None:
     Reads and writes CSV, Parquet, Arrow streams and Arrow files. It also reads NumPy's .npz and
     MATLAB's .mat files (before version 7.3), whose matrices become the columns q1, q2, ... Every
     number is kept exactly. CSV has no metadata: units and history are lost there.
+
+    The separator of a text log, decimal commas, names in a comment, and units in names (q1 [deg],
+    t_ms) are found from its first lines and reported, and known recorders are recognised by their
+    columns (--from). What is ambiguous is refused.
 
     Recordings of ROS (MCAP, rosbag2 and ROS 1; extra `logs`) are read from topics of the types
     JointState, JointTrajectoryControllerState and JointTrajectory. Joints are matched by name.

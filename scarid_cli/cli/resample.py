@@ -30,9 +30,10 @@ def command() -> None:
     Columns of numbers are interpolated linearly. If the new rate is lower than that of the log,
     they also pass a low-pass without delay: a sinc in a Kaiser window, which attenuates by 60 dB
     above half the new rate and looks eight new periods ahead. Other columns keep the value of the
-    previous row. Rows that repeat the time of the previous row are dropped. The mean rate, the
-    jitter, the longest interval, repeated rows and gaps are reported on standard error. Rows stream
-    through in bounded memory.
+    previous row. Rows that repeat the time of the previous row are dropped, and so are held
+    samples: rows with which a fast logger repeats all measured values of a slower sensor. The mean
+    rate, the jitter, the longest interval, dropped rows and gaps are reported on standard error.
+    Rows stream through in bounded memory.
 
     Gaps are never interpolated. After each gap the column `segment` increases by one: filter and
     differentiate restart there, and identify leaves out the settling rows.

@@ -29,8 +29,10 @@ from scarid_cli.io.table import (
     steps_of,
     with_columns,
 )
+from scarid_cli.stages.holding import Holding, measured, repeating
 
 SLOWER = 0.05  # fraction of the log's period by which the new period must be longer to low-pass
+SLOWEST = 25.0  # periods of the log per value of a slower sensor, whose samples it holds
 FIRST = 32  # intervals, whose median is taken as the period of the log
 MAX_GAP = 5.0  # periods of the log; a longer interval is a gap, unless the new period is as long
 
@@ -45,27 +47,27 @@ def resample(
 
     Numbers are interpolated linearly, and low-passed if the new period is longer than that of the
     log; other columns keep the value of the previous row. An interval longer than `max_gap` [s]
-    (by default MAX_GAP periods) is a gap, after which the column `segment` is one higher.
+    (by default MAX_GAP periods) is a gap, after which the column `segment` is one higher. Held
+    samples of a slower sensor are left out first (stages/holding.py).
     """
     fields = [field for field in table.schema if field.name != SEGMENT]
     schema = pa.schema([*fields, pa.field(SEGMENT, pa.int64())])
     meta = replace(table.meta, period=1.0 / rate)
+    table = replace(table, batches=_ordered(table))
     batches = _rows(table, schema, 1.0 / rate, max_gap, report)
     return replace(table, schema=schema, meta=meta, batches=batches)
 
 
 def _with_period(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
-    """The median of the first intervals [s], and all batches."""
+    """The median of the first intervals between new values [s], and all batches."""
     held: list[pa.RecordBatch] = []
-    steps = np.empty(0)
+    every, new, columns = np.empty(0), np.empty(0), measured(table)
     for batch in table.batches:
         held.append(batch)
-        t = np.concatenate([matrix(part, ["t"])[0] for part in held])
-        steps = np.diff(t)
-        steps = steps[steps > 0.0]
-        if len(steps) >= FIRST:
+        every, new = _intervals(held, columns)
+        if len(new) >= FIRST:
             break
-    if not len(steps):
+    if not len(every):
         raise bad_data(
             table.name,
             "a time that never increases",
@@ -73,7 +75,47 @@ def _with_period(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
             remedy="give a log with a clock",
             column="t",
         )
-    return float(np.median(steps[:FIRST])), chain(held, table.batches)
+    period = float(np.median(every[:FIRST]))
+    if len(new):
+        slower = float(np.median(new[:FIRST]))
+        period = slower if slower <= SLOWEST * period else period
+    return period, chain(held, table.batches)
+
+
+def _intervals(batches: list[pa.RecordBatch], columns: list[str]) -> tuple[Array, Array]:
+    """The positive intervals [s] between all rows, and between those with new values."""
+    parts = [matrix(batch, ["t", *columns]) for batch in batches]
+    t, *values = np.concatenate(parts, axis=1)
+    every = new = np.diff(t)
+    if columns and len(t):
+        segments = np.concatenate([segments_of(batch) for batch in batches])
+        new = np.diff(t[~repeating(t, np.array(values), segments)])
+    return every[every > 0.0], new[new > 0.0]
+
+
+def _ordered(table: Table) -> Iterator[pa.RecordBatch]:
+    """The batches; time that goes back is an error."""
+    row = 0
+    last: Instant | None = None
+    for batch in table.batches:
+        if batch.num_rows:
+            steps, _, last = steps_of(batch, last)
+            _check(steps, table.name, row)
+        row += batch.num_rows
+        yield batch
+
+
+def _check(steps: Array, name: str, row: int) -> None:
+    if np.any(steps < 0.0):
+        at = int(np.argmax(steps < 0.0))
+        raise bad_data(
+            name,
+            f"time that goes back by {-steps[at]:.6g} s",
+            expected="time to increase from row to row",
+            remedy="sort the log",
+            row=row + at + 1,
+            column="t",
+        )
 
 
 def _rows(
@@ -84,12 +126,13 @@ def _rows(
     report: Callable[[Clock], None],
 ) -> Iterator[pa.RecordBatch]:
     own, batches = _with_period(table)
-    splitting = Splitting(table.name, max_gap or max(MAX_GAP * own, period))
+    limit = max_gap or max(MAX_GAP * own, period)
+    splitting, holding = Splitting(limit), Holding(measured(table), limit)
     factor = max(1, int(np.ceil(period / own - SLOWER)))
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]
     interpolation = Interpolation(Resampler(period / factor), schema, numbers)
     decimation = Decimation(Decimator(factor), schema, numbers, period) if factor > 1 else None
-    for batch in batches:
+    for batch in holding.rows(batches):
         for begins, piece in splitting.pieces(batch):
             if begins and decimation:
                 yield from decimation.finish()
@@ -100,16 +143,14 @@ def _rows(
                 yield found
     if decimation:
         yield from decimation.finish()
-    report(splitting.clock)
+    report(replace(splitting.clock, held=holding.count))
 
 
 class Splitting:
     """Splits batches at gaps longer than `limit` [s], and drops repeated rows."""
 
-    def __init__(self, name: str, limit: float) -> None:
-        self._name = name
+    def __init__(self, limit: float) -> None:
         self._limit = limit
-        self._row = 0
         self._last: Instant | None = None
         self.segment = -1
         self.clock = Clock()
@@ -117,7 +158,6 @@ class Splitting:
     def pieces(self, batch: pa.RecordBatch) -> Iterator[tuple[bool, pa.RecordBatch]]:
         """The pieces of a batch, and for each of them whether it begins a new segment."""
         steps, jumps, last = steps_of(batch, self._last)
-        self._check(steps)
         begins = (steps > self._limit) | (jumps != 0)
         begins[0] |= self._last is None
         for start, end in pairwise(sorted({0, *np.flatnonzero(begins).tolist(), len(steps)})):
@@ -130,25 +170,12 @@ class Splitting:
                 yield first, batch.slice(start, end - start)
             elif len(kept):
                 yield first, batch.take(pa.array(kept))  # imports pyarrow.compute, 40 ms
-        self._row += len(steps)
         self._last = last
 
     def _begin(self, gap: float) -> None:
         self.segment += 1
         if self.segment:
             self.clock = self.clock.after_gap(gap)
-
-    def _check(self, steps: Array) -> None:
-        if np.any(steps < 0.0):
-            at = int(np.argmax(steps < 0.0))
-            raise bad_data(
-                self._name,
-                f"time that goes back by {-steps[at]:.6g} s",
-                expected="time to increase from row to row",
-                remedy="sort the log",
-                row=self._row + at + 1,
-                column="t",
-            )
 
 
 @dataclass

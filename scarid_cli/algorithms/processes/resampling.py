@@ -22,8 +22,9 @@ ROUNDING = 1e-12
 class Clock:
     """Statistics of a log's clock: the number of intervals, their sums and the longest [s].
 
-    `repeated` counts the rows left out because their time repeats. `gaps` counts the intervals that
-    split the record and `missing` is their sum [s]; the other numbers are without them.
+    `held` counts the rows left out because they repeat all measured values, `repeated` those whose
+    time repeats. `gaps` counts the intervals that split the record and `missing` is their sum [s];
+    the other numbers are without them.
     """
 
     intervals: int = 0
@@ -33,6 +34,7 @@ class Clock:
     repeated: int = 0
     gaps: int = 0
     missing: float = 0.0
+    held: int = 0
 
     def after(self, steps: Array) -> Clock:
         """The statistics after more intervals [s]; an interval of 0 s repeats a row."""

@@ -22,7 +22,10 @@ def summary_line(clock: Clock) -> str:
     gaps = "no gap"
     if clock.gaps:
         gaps = f"{clock.gaps} gap{'s' if clock.gaps > 1 else ''} of {clock.missing:.3g} s in all"
-    return (
+    line = (
         f"{1.0 / clock.mean:.6g} Hz on average, jitter {1e3 * clock.jitter:.3g} ms, "
         f"longest interval {1e3 * clock.longest:.3g} ms, {clock.repeated} repeated rows, {gaps}"
     )
+    if clock.held:
+        line += f"; left out {clock.held:,} held samples (rows that repeat all measured values)"
+    return line
