@@ -18,18 +18,20 @@ from matched import SettledMotion, identified, motion
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.robots import reading
-from scarid_cli.stages.tune import Record, chosen, tune
+from scarid_cli.arrays import Array
+from scarid_cli.stages.bandwidth import bandwidth, tune_for
+from scarid_cli.stages.record import Record
+from scarid_cli.stages.tune import chosen
 
 ROBOT, PUBLISHED, H = reading.load("emps"), 95.1089, 1e-3
 TABLE1 = ("p2smd", "ed-fir", "2smd", "astd")
 
 
-def unmatched(method: Any, record: Record) -> SettledMotion:
+def unmatched(method: Any, q: Array, tau: Array) -> SettledMotion:
     """Derivatives beside the positions and the torques as they were logged."""
-    assert record.tau is not None
-    dq, ddq = over(method, record.q[0], H)
-    signals = (record.q, dq[None, :], ddq[None, :], record.tau)
-    return SettledMotion(signals, np.ones(record.q.shape[1], dtype=bool))
+    dq, ddq = over(method, q[0], H)
+    signals = (q, dq[None, :], ddq[None, :], tau)
+    return SettledMotion(signals, np.ones(q.shape[1], dtype=bool))
 
 
 def quality(seen: SettledMotion) -> tuple[float, float]:
@@ -47,20 +49,21 @@ def shown(mass: float, error: float) -> str:
     return f"{mass:.2f} ({100.0 * (mass / PUBLISHED - 1.0):+.1f} %) | {error:.2f}"
 
 
-def rows(record: Record) -> list[tuple[float, str]]:
+def rows(q: Array, tau: Array) -> list[tuple[float, str]]:
     """The line of each method in the table, after its error when tuned, which sorts the lines."""
-    assert record.tau is not None
-    lines = []
+    record, lines = Record((np.vstack((q, tau)),), 1, H), []
+    found = bandwidth(record, ROBOT)
     for name in DIFFERENTIATORS.names:
         method = DIFFERENTIATORS.load(name)
         start = method(**method.PRESETS["table1"]) if name in TABLE1 else method()
-        fitted = start.fitted(record.q[0], H)
+        fitted = start.fitted(q[0], H)
         tuned = fitted
         if method.TUNED or method.HAS_LIKELIHOOD:
-            _, settings = chosen(tune(record, [name], ROBOT, 0, lambda: None), 1)
-            tuned = method(**{key: values[0] for key, values in settings[name].items()})
-        motions = [unmatched(start, record)]
-        motions += [motion([m], record.q, record.tau, H) for m in (fitted, tuned)]
+            trials = list(tune_for(record, found, [name], 0, lambda: None))
+            settings = chosen(trials, 1)[name]
+            tuned = method(**{key: values[0] for key, values in settings.items()})
+        motions = [unmatched(start, q, tau)]
+        motions += [motion([m], q, tau, H) for m in (fitted, tuned)]
         results = [quality(seen) for seen in motions]
         cells = [shown(*result) for result in results]
         label = f"`{name}`" + (" (Table 1)" if name in TABLE1 else "")
@@ -76,7 +79,7 @@ def main() -> None:
     print("| method | class | mass, unmatched [kg] | error [%] | mass, matched [kg] | error [%] "
           "| mass, matched and tuned [kg] | error [%] |")  # fmt: skip
     print("|---|---|---|---|---|---|---|---|")
-    for _, line in sorted(rows(Record(q, tau, H))):
+    for _, line in sorted(rows(q, tau)):
         print(line)
 
 

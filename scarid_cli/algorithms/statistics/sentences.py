@@ -24,8 +24,8 @@ ADVICE = {
     "viscous-backward to the robot)",
     STRIBECK: "friction decreases with speed (add Stribeck friction with --estimator separable)",
     LOAD: "friction grows with the torque that a joint transmits, for which there is no term",
-    REVERSALS: "friction near reversals differs from the model (leave slow rows out with "
-    "--drop-slow)",
+    REVERSALS: "friction near reversals differs from the model (--drop-slow leaves more of the "
+    "slow rows out)",
 }
 
 

@@ -129,7 +129,7 @@ def _biased(evidence: Evidence) -> list[str]:
     if moved := _moved(evidence, found[PARALLEL]):
         reasons.append(
             f"{DEPENDENT}: with derivatives and torques behind the same "
-            f"low-pass, {moved} (use scarid differentiate --match, or another method)"
+            f"low-pass, {moved} (unless the motion is matched, use scarid differentiate --match)"
         )
     if SIGNALS in found and (moved := _moved(evidence, found[SIGNALS])):
         advice = "" if evidence.treatment.align else "; --align fits a delay"
