@@ -2,7 +2,7 @@
 
 Only the first row of a run has values of its time; the others are old by up to a period of the
 sensor, which interpolation between the first rows mends. A robot at rest repeats values as well.
-A run is of held samples if the interval that is left without it is no gap, and if more than half of
+A run is of held samples if the interval that is left without it is no gap, and if at least half of
 the values change together in the row that ends it: encoders of a joint that moves off one after
 another do not.
 """
@@ -90,5 +90,5 @@ def held_rows(t: Array, values: Array, segments: Numbers, limit: float) -> tuple
             waiting = before if t[last] - t[before] <= limit else last
         elif t[last + 1] - t[before] <= limit and segments[last] == segments[last + 1]:
             changed = np.mean(values[:, last + 1] != values[:, last])
-            held[before + 1 : last + 1] = changed > TOGETHER
+            held[before + 1 : last + 1] = changed >= TOGETHER
     return held, waiting
