@@ -74,15 +74,11 @@ def columns_of(
         own = {new: old for new, old in own.items() if old not in taken and new not in names}
         known = [(new, unit) for new, unit in found.units if new in own]
         return Columns({**own, **names}, [*known, *units], found.name)
-    inside = units_in_names(table.columns)
-    if inside:
-        job.say(
-            "units in the names: "
-            + ", ".join(f"{old} is {new} [{unit}]" for old, (new, unit) in inside.items())
-        )
-    renamed = {new: old for old, (new, _) in inside.items() if old not in taken | {new}}
-    known = [(new, unit) for old, (new, unit) in inside.items() if old not in taken]
-    return Columns({**renamed, **names}, [*known, *units])
+    inside = units_in_names([c for c in table.columns if c not in described.values()], names)
+    for old, (new, unit) in inside.items():
+        job.say(f"column {old!r} becomes {new}, from {unit} as its name says")
+    return Columns({**{new: old for old, (new, _) in inside.items()}, **names},
+                   [*inside.values(), *units])  # fmt: skip
 
 
 def _with_torques(found: Recognised, robot: Robot | None) -> dict[str, str]:

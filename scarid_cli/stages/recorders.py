@@ -185,18 +185,29 @@ SUFFIX = re.compile(r"(?P<name>.+)_(?P<unit>[^_]+)")
 TIMES = ("time", "timestamp")  # names of the clock, if a unit follows
 
 
-def units_in_names(names: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """From a column such as `q1 [deg]` or `t_ms` to our name and its unit."""
+def unit_in_name(column: str) -> tuple[str, str] | None:
+    """From a name such as `q1 [deg]` or `time_ms` the name without the unit, and the unit."""
+    for form in (BRACKETS, SUFFIX):
+        match = form.fullmatch(column)
+        unit = KNOWN.get(match["unit"].strip()) if match else None
+        if match and unit:
+            return "t" if match["name"].lower() in TIMES else match["name"], unit
+    return None
+
+
+def units_in_names(names: Sequence[str], renamed: dict[str, str]) -> dict[str, tuple[str, str]]:
+    """The columns with a unit in their name: from the old name to ours, and the unit.
+
+    Our name is the one to which a column is `renamed`, else the one before the unit, if we know it.
+    """
+    new_names = {old: new for new, old in renamed.items()}
     found: dict[str, tuple[str, str]] = {}
     for column in names:
-        for form in (BRACKETS, SUFFIX):
-            match = form.fullmatch(column)
-            unit = KNOWN.get(match["unit"].strip()) if match else None
-            if match and unit:
-                name = "t" if match["name"].lower() in TIMES else match["name"]
-                if column_type(name) is not None and name not in names:
-                    found[column] = (name, unit)
-                break
+        name, unit = unit_in_name(column) or ("", "")
+        if column in new_names and unit:
+            found[column] = (new_names[column], unit)
+        elif unit and column_type(name) is not None and name not in {*names, *renamed}:
+            found[column] = (name, unit)
     return found
 
 

@@ -43,9 +43,20 @@ def test_the_notation_is_found_and_told(kind: str, name: str, scarid: Run, tmp_p
     assert header == "t,q1,tau1"
     values = [[float(x) for x in row.split(",")] for row in rows]
     np.testing.assert_allclose(values, [[0.0, 0.5, 2.0], [0.01, 1.5, -30.0]], atol=1e-12)
-    assert ("read with" in result.err or "units in" in result.err) != (
+    assert ("read with" in result.err or "as its name says" in result.err) != (
         kind == "spaces after commas"
     )
+
+
+def test_the_unit_in_a_renamed_column_counts_unless_another_is_given(
+    scarid: Run, tmp_path: Path
+) -> None:
+    (tmp_path / "log.csv").write_text("time [ms],shoulder (deg),e_m,x_y\n0,180,1,2\n10,90,2,3\n")
+    words = ("convert", tmp_path / "log.csv", "--map", "q1=shoulder (deg),q2=e_m,q3=x_y")
+    result = scarid(*words)
+    assert result.out == "t,q1,q2,q3\n0,3.141592653589793,1,2\n0.01,1.5707963267948966,2,3\n"
+    assert "column 'shoulder (deg)' becomes q1, from deg as its name says" in result.err
+    assert scarid(*words, "--unit", "q1=rad").out.startswith("t,q1,q2,q3\n0,180,1,2\n")
 
 
 def test_slow_bytes_of_white_space_make_the_same_table(shell: Run) -> None:

@@ -27,5 +27,6 @@ def summary_line(clock: Clock) -> str:
         f"longest interval {1e3 * clock.longest:.3g} ms, {clock.repeated} repeated rows, {gaps}"
     )
     if clock.held:
-        line += f"; left out {clock.held:,} held samples (rows that repeat all measured values)"
+        held = "1 held sample" if clock.held == 1 else f"{clock.held:,} held samples"
+        line += f"; left out {held} (rows that repeat all measured values)"
     return line
