@@ -76,7 +76,7 @@ def kernels() -> str:
 
 @click.group(
     cls=LazyGroup,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120},
     epilog="`scarid COMMAND --help` explains a command, with examples.",
 )
 @click.option(
