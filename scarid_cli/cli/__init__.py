@@ -22,6 +22,7 @@ COMMANDS = {
     "compare": "Tell which parameters of two identifications differ, and how they drift.",
     "report": "Print tables and draw figures of parameters, traces, metrics and predictions.",
     "urdf": "Write identified parameters into a URDF as physically consistent links.",
+    "methods": "List the methods that commands offer, or describe one.",
     "robot": "Check a robot description.",
     "convert": "Convert between table formats, or turn a recorded log into a table.",
     "info": "Describe a table: kind, columns, units, sampling, history.",
