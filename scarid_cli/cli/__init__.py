@@ -22,6 +22,7 @@ COMMANDS = {
     "compare": "Tell which parameters of two identifications differ, and how they drift.",
     "report": "Print tables and draw figures of parameters, traces, metrics and predictions.",
     "urdf": "Write identified parameters into a URDF as physically consistent links.",
+    "methods": "List the methods that commands offer, or describe one.",
     "robot": "Check a robot description.",
     "convert": "Convert between table formats, or turn a recorded log into a table.",
     "info": "Describe a table: kind, columns, units, sampling, history.",
@@ -76,7 +77,7 @@ def kernels() -> str:
 
 @click.group(
     cls=LazyGroup,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120},
     epilog="`scarid COMMAND --help` explains a command, with examples.",
 )
 @click.option(

@@ -10,7 +10,7 @@ from scarid_cli.cli.declare import declare
 from scarid_cli.cli.described import describing
 
 
-@declare("differentiate", describing(DIFFERENTIATORS, "Methods and their settings"))
+@declare("differentiate", describing(DIFFERENTIATORS, "Methods", brief=True))
 @options.table_input
 @click.option(
     "--method",

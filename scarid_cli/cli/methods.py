@@ -1,51 +1,64 @@
-"""From `--settings FILE`, `--preset` and `--set NAME=VALUE[,VALUE...]` to one method per joint."""
+"""scarid methods"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from difflib import get_close_matches
 from typing import Any
 
-from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
-from scarid_cli.algorithms.choices.settings import names_of
-from scarid_cli.cli import pairs
-from scarid_cli.cli.job import per_joint
-from scarid_cli.cli.settings import PerJoint, read
+import click
+
+from scarid_cli.algorithms.choices.registry import (
+    DIFFERENTIATORS,
+    ESTIMATORS,
+    EXCITATIONS,
+)
+from scarid_cli.cli import options
 from scarid_cli.errors import UsageFault
 
+REGISTRIES = {
+    "differentiate --method": DIFFERENTIATORS,
+    "identify --estimator": ESTIMATORS,
+    "trajgen --excitation": EXCITATIONS,
+}
 
-def configured(
-    joints: int,
-    *,
-    method: str | None,
-    given: tuple[str, ...],
-    preset: str | None,
-    settings: str | None,
-) -> list[Any]:
-    """One instance of the method for each joint: by default the best of the saved settings.
 
-    The preset is overridden by the saved settings, and these by the settings given with --set.
+@click.command(name="methods")
+@click.argument("name", required=False)
+@options.common
+def command(name: str | None, **_rest: Any) -> None:
+    """List the methods that commands offer, or describe one: source, delay, rule and settings.
+
+    \b
+      scarid methods
+      scarid methods kalman-lag
     """
-    saved = read(settings) if settings else None
-    name = method or (saved.best if saved else "kalman")
-    if name not in DIFFERENTIATORS.names:
-        choice = ", ".join(DIFFERENTIATORS.names)
-        raise UsageFault(f"--settings: no method {name!r}; there are {choice}")
-    chosen = DIFFERENTIATORS.load(name)
-    known = names_of(chosen)
-    values: PerJoint = {key: [x] * joints for key, x in _preset(chosen, name, preset).items()}
-    if saved:
-        for key in saved.names(name):
-            pairs.require_known(known, key, name, f"--settings: {key}: ")
-            values[key] = saved.values(name, key, joints)
-    for key, row in pairs.settings(given, known, name):
-        values[key] = per_joint(row, joints, f"--set {key}")
-    return [chosen(**{key: row[joint] for key, row in values.items()}) for joint in range(joints)]
+    for line in _described(name) if name else _listed():
+        click.echo(line)
 
 
-def _preset(method: Any, name: str, preset: str | None) -> dict[str, float]:
-    if preset is None:
-        return {}
-    if preset not in method.PRESETS:
-        choice = ", ".join(method.PRESETS) or "none"
-        raise UsageFault(f"--preset: {name} has no preset {preset!r}; it has {choice}")
-    settings: dict[str, float] = method.PRESETS[preset]
-    return settings
+def _listed() -> Iterator[str]:
+    """All methods, each with the first line of its description."""
+    width = max(len(name) for registry in REGISTRIES.values() for name in registry.names)
+    for number, (option, registry) in enumerate(REGISTRIES.items()):
+        yield from [""] * bool(number)
+        yield option
+        for name in registry.names:
+            yield f"  {name:<{width}}  {registry.describe(name).splitlines()[0]}"
+
+
+def _described(name: str) -> Iterator[str]:
+    """The descriptions of the methods of this name, which may be offered by two commands."""
+    found = {option: registry for option, registry in REGISTRIES.items() if name in registry.names}
+    if not found:
+        raise UsageFault(f"no method {name!r}{_hint(name)}; `scarid methods` lists all")
+    for number, (option, registry) in enumerate(found.items()):
+        yield from [""] * bool(number)
+        yield f"{option} {name}"
+        yield from (f"  {line}".rstrip() for line in registry.describe(name).splitlines())
+
+
+def _hint(name: str) -> str:
+    names = {known for registry in REGISTRIES.values() for known in registry.names}
+    near = get_close_matches(name, sorted(names), 1)
+    return f" (did you mean {near[0]}?)" if near else ""

@@ -10,6 +10,9 @@ from scarid_cli.cli.declare import declare
 
 @declare("report")
 @click.argument("files", nargs=-1, metavar="[FILE]...", type=options.INPUT)
+@options.side_output(
+    "-o", "--output", "place", help="Write the printed tables to FILE.  [default: standard output]"
+)
 @options.side_output("--html", help="Write one self-contained page with tables and figures.")
 @options.side_output("--markdown", help="Write the tables as Markdown.")
 @options.input_file("--published", help="A table of published values to print beside the results.")

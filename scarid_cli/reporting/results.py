@@ -20,15 +20,19 @@ from scarid_cli.reporting.records import measurement, motion, prediction, trace
 from scarid_cli.reporting.source import Source
 
 
+class NotReported(UsageFault):
+    """A table of a kind that has no place in a report."""
+
+
 def reportable(table: Table) -> Table:
-    """The checked table, with its kind in the metadata; not every kind is a result."""
+    """The checked table, with its kind in the metadata; NotReported if its kind is no result."""
     stated = table.meta.kind
     detected = None if stated else schemas.detect(table.columns)
     kind = detected.kind if detected else stated
     if kind in READERS:
         return checked(table, kind)
     if kind in (*schemas.KINDS, "via"):
-        raise UsageFault(
+        raise NotReported(
             f"{table.name} is a {kind} table; report takes parameters, trace, metrics, prediction, "
             "motion and measurement tables"
         )

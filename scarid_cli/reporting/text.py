@@ -18,9 +18,13 @@ TEXT_WIDTH = 100  # characters of running text where there is no terminal
 RULE = Box("\n".join(["    "] * 2 + [" ── "] + ["    "] * 5) + "\n")
 
 
-def terminal(sections: Sequence[Section]) -> str:
-    """Tables for standard output; on a terminal, those that are too wide are shown in parts."""
-    console = Console(markup=False, emoji=False, highlight=False)
+def terminal(sections: Sequence[Section], *, plain: bool = False) -> str:
+    """Tables for standard output; on a terminal, those that are too wide are shown in parts.
+
+    `plain` tables are for a file.
+    """
+    at_window = False if plain else None  # None: if standard output is one
+    console = Console(markup=False, emoji=False, highlight=False, force_terminal=at_window)
     width = console.width if console.is_terminal else TEXT_WIDTH
     with console.capture() as capture:
         for section in _with_rows(sections):

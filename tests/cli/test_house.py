@@ -165,3 +165,14 @@ def test_nothing_reveals_where_it_was_made() -> None:
         and pattern.search((ROOT / name).read_text("utf-8", errors="ignore"))
     ]  # fmt: skip
     assert found == []
+
+
+@pytest.mark.parametrize("registry", [DIFFERENTIATORS, ESTIMATORS, EXCITATIONS])
+def test_methods_lists_every_choice_and_describes_each(registry: Registry, scarid: Run) -> None:
+    listed = scarid("methods").out
+    for name in registry.names:
+        assert f"  {name} " in listed
+        described = scarid("methods", name).out
+        for line in registry.describe(name).splitlines():
+            assert line.strip() in described
+    assert "did you mean kalman?" in scarid("methods", "kalma").err

@@ -163,3 +163,17 @@ def test_a_long_record_makes_a_small_page(tmp_path: Path, scarid: Run) -> None:
     html = tmp_path / "r.html"
     assert scarid("report", path, "--html", html).status == 0
     assert html.stat().st_size < 150_000
+
+
+def test_tables_that_have_no_place_in_a_report_are_skipped_with_a_note(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    """And the printed tables go to a file."""
+    reference, place = tmp_path / "reference.parquet", tmp_path / "report.txt"
+    assert scarid("trajgen", "-q", "--robot", "scara2", "-o", reference).status == 0
+    parameters = samples / "scara2.parameters.csv"
+    alone = scarid("report", parameters)
+    both = scarid("report", parameters, reference, "-o", place)
+    assert (both.status, both.out) == (0, "")
+    assert place.read_text("utf-8") == alone.out
+    assert f"skipped: {reference} is a trajectory table" in both.err

@@ -57,7 +57,7 @@ def _excess(q: Array, robot: Robot, i: int, speed: float) -> float:
     joint = robot.joints[i]
     low, high = np.nanmin(q), np.nanmax(q)
     revolute = joint.type == "revolute"
-    limit = joint.velocity_limit
+    limit = joint.velocity_limit or np.inf  # many a URDF has 0 for what is not known
     if not np.isfinite(limit):
         limit = FAST if revolute else np.inf
     upper, lower = joint.upper, joint.lower
@@ -83,7 +83,7 @@ def torques(log: Log, robot: Robot, ratios: Array) -> Finding:
     they predict none.
     """
     reach = np.nanmax(np.abs(log.tau), axis=1)
-    limits = np.array([joint.torque_limit for joint in robot.joints])
+    limits = np.array([joint.torque_limit or np.inf for joint in robot.joints])
     excess = float(np.max(np.where(np.isfinite(limits), reach / limits, 0.0)))
     known = ratios[np.isfinite(ratios)]
     most, least = float(known.max(initial=0.0)), float(known.min(initial=np.inf))

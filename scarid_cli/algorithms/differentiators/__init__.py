@@ -11,7 +11,7 @@ Bases for the usual families leave little to write:
 - `processes.records.RecordMethod`: a smoother of the whole record;
 - `processes.linearised.LinearisedMethod`: any method that is nearly linear.
 
-The docstring of the module is what `scarid differentiate --help` prints. It says what the method
+The docstring of the module is what `scarid methods NAME` prints. It says what the method
 does, its source, its class (causal, fixed lag or whole record), its delay, how it is matched and
 how to choose its settings, and describes each setting in a line `name = default [unit]: ...`.
 """

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.cli.configured import configured
 from scarid_cli.cli.job import Job
-from scarid_cli.cli.methods import configured
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.schemas import joints_of, numbered
 from scarid_cli.stages import differentiate as stage

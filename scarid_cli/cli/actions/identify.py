@@ -23,8 +23,8 @@ from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages import identify as stage
-from scarid_cli.stages.glance import Reach
 from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.reach import Reach
 
 ONLINE, OFFLINE = "rls", "wls"  # what a motion, and a measurement, are identified by
 
@@ -86,8 +86,8 @@ def run(
         from scarid_cli.stages.continuation import saved
 
         place.write(saved(places[0], fixed))
-    for finding in reach.findings(arm, table.period):
-        job.say(f"warning: {finding.text}")
+    for remark in reach.remarks(arm, table.period):
+        job.say(f"warning: {remark}")
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
     facts, verdict = summary_lines(arm.name, name, result.meta.extra)
     job.say(facts)

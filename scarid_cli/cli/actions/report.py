@@ -8,8 +8,9 @@ from pathlib import Path
 
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
+from scarid_cli.io.table import Table
 from scarid_cli.reporting import naming, results, text
-from scarid_cli.reporting import published as printed
+from scarid_cli.reporting import published as values_of
 from scarid_cli.reporting import repeated as repetitions
 from scarid_cli.reporting.content import sections
 
@@ -24,13 +25,14 @@ def run(
     repeated: bool,
     figures: str | None,
     title: str,
+    place: str | None,
 ) -> None:
     """Print the tables, and write the documents."""
     paths = files or ("-",)
     _require_distinct(paths, html, markdown)
-    page, plain = job.side_text(html), job.side_text(markdown)
-    tables = [results.reportable(job.read(path, None)) for path in paths]
-    values = printed.read(job.read(published, "published")) if published else None
+    page, plain, printed = (job.side_text(path) for path in (html, markdown, place))
+    tables = _reportable(job, paths)
+    values = values_of.read(job.read(published, "published")) if published else None
     collected = results.collect(tables, repeated=repeated)
     found = (repetitions.sections if repeated else sections)(collected, values)
     if page or figures:
@@ -43,11 +45,27 @@ def run(
             page.write(rendering.html(title, found, drawn, tables))
     if plain:
         plain.write(text.markdown(title, found))
-    if "-" not in (html, markdown):
+    if printed:
+        printed.write(text.terminal(found, plain=True))
+    elif "-" not in (html, markdown):
         sys.stdout.write(text.terminal(found))
         sys.stdout.flush()
     if not html and any(not section.rows for section in found):
         job.say("some tables have figures only; draw them with --html FILE")
+
+
+def _reportable(job: Job, paths: Sequence[str]) -> list[Table]:
+    """The tables; of several, those that have no place in a report are skipped with a note."""
+    tables, skipped = [], []
+    for path in paths:
+        try:
+            tables.append(results.reportable(job.read(path, None)))
+        except results.NotReported as reason:
+            skipped.append(reason)
+    if not tables:
+        raise skipped[0]
+    job.notes += [f"skipped: {reason}" for reason in skipped]
+    return tables
 
 
 def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | None) -> None:

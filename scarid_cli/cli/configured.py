@@ -1,0 +1,51 @@
+"""From `--settings FILE`, `--preset` and `--set NAME=VALUE[,VALUE...]` to one method per joint."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.cli import pairs
+from scarid_cli.cli.job import per_joint
+from scarid_cli.cli.settings import PerJoint, read
+from scarid_cli.errors import UsageFault
+
+
+def configured(
+    joints: int,
+    *,
+    method: str | None,
+    given: tuple[str, ...],
+    preset: str | None,
+    settings: str | None,
+) -> list[Any]:
+    """One instance of the method for each joint: by default the best of the saved settings.
+
+    The preset is overridden by the saved settings, and these by the settings given with --set.
+    """
+    saved = read(settings) if settings else None
+    name = method or (saved.best if saved else "kalman")
+    if name not in DIFFERENTIATORS.names:
+        choice = ", ".join(DIFFERENTIATORS.names)
+        raise UsageFault(f"--settings: no method {name!r}; there are {choice}")
+    chosen = DIFFERENTIATORS.load(name)
+    known = names_of(chosen)
+    values: PerJoint = {key: [x] * joints for key, x in _preset(chosen, name, preset).items()}
+    if saved:
+        for key in saved.names(name):
+            pairs.require_known(known, key, name, f"--settings: {key}: ")
+            values[key] = saved.values(name, key, joints)
+    for key, row in pairs.settings(given, known, name):
+        values[key] = per_joint(row, joints, f"--set {key}")
+    return [chosen(**{key: row[joint] for key, row in values.items()}) for joint in range(joints)]
+
+
+def _preset(method: Any, name: str, preset: str | None) -> dict[str, float]:
+    if preset is None:
+        return {}
+    if preset not in method.PRESETS:
+        choice = ", ".join(method.PRESETS) or "none"
+        raise UsageFault(f"--preset: {name} has no preset {preset!r}; it has {choice}")
+    settings: dict[str, float] = method.PRESETS[preset]
+    return settings

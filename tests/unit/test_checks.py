@@ -1,0 +1,102 @@
+"""The checks of a log on logs that no robot has made."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scarid_cli.algorithms.checks import clock, values
+from scarid_cli.algorithms.checks.finding import FAILED, STATUSES, worst
+from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.algorithms.checks.motion import bandwidth
+from scarid_cli.algorithms.checks.movement import repeated_after, smallest_step
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.stages.check import check
+
+SCARA = load("scara2")
+
+
+def log_of(kind: str, rows: int, seed: int) -> Log:
+    """Positions and torques that are constant, noise, sums of sines, or a mixture with nan."""
+    rng = np.random.default_rng(seed)
+    t = 0.01 * np.arange(rows)
+    shape = (4, rows)
+    signals = {
+        "constant": np.full(shape, rng.standard_normal()),
+        "noise": rng.standard_normal(shape),
+        "steps": np.round(rng.standard_normal(shape)),
+        "sines": np.sin(rng.uniform(0.5, 20.0, (4, 1)) * t),
+        "holes": np.where(rng.random(shape) < 0.3, np.nan, np.sin(t)),
+        "empty": np.full(shape, np.nan),
+    }[kind]
+    return Log(t, signals[:2], signals[2:])
+
+
+@settings(max_examples=60)
+@given(
+    kind=st.sampled_from(["constant", "noise", "steps", "sines", "holes", "empty"]),
+    rows=st.integers(0, 700),
+    seed=st.integers(0, 1000),
+    time=st.sampled_from([1.0, 0.0, -1.0, 1e3, 1e-6]),
+)
+def test_any_log_has_findings_with_advice_where_something_is_wrong(
+    kind: str, rows: int, seed: int, time: float
+) -> None:
+    """No warning of numpy, which would be an error here, and no exception."""
+    log = log_of(kind, rows, seed)
+    found = list(check(replace(log, t=time * log.t), SCARA))
+    assert worst(found) == FAILED  # none of these is a robot
+    assert all(f.status in STATUSES and bool(f.advice) == (f.status != "ok") for f in found)
+    assert all("nan" not in f.figure for f in found)
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_limits_of_zero_are_unknown_ones(scale: float) -> None:
+    joints = tuple(replace(j, velocity_limit=0.0, torque_limit=0.0) for j in SCARA.joints)
+    log = log_of("sines", 600, 1)
+    found = {f.name: f for f in check(log.scaled(q=scale), replace(SCARA, joints=joints))}
+    assert "positions" in found
+
+
+@given(frequency=st.floats(0.5, 8.0), rows=st.integers(2000, 6000))
+def test_the_bandwidth_of_a_sine_is_its_frequency(frequency: float, rows: int) -> None:
+    x = np.sin(2.0 * np.pi * frequency * 0.005 * np.arange(rows))
+    resolution = 1.0 / (0.005 * rows)
+    assert bandwidth(x, 0.005, 1) == pytest.approx(frequency, abs=3.0 * resolution)
+
+
+@pytest.mark.parametrize("period", [150, 400])
+def test_a_motion_that_repeats_has_its_period(period: int) -> None:
+    rng = np.random.default_rng(5)
+    one = np.cumsum(rng.standard_normal((2, period)), axis=1)
+    one -= np.linspace(one[:, 0], one[:, -1], period).T
+    assert repeated_after(np.tile(one, 4)) == period
+    assert repeated_after(np.cumsum(rng.standard_normal((2, 4 * period)), axis=1)) == 0
+
+
+@pytest.mark.parametrize("step", [1e-4, 0.01])
+def test_the_resolution_is_that_of_the_grid(step: float) -> None:
+    q = np.sin(0.003 * np.arange(5000))
+    assert smallest_step(step * np.round(q / step)) == pytest.approx(step)
+    assert smallest_step(q) == 0.0
+
+
+def test_a_sine_and_noise_are_not_clipped_and_a_limited_one_is() -> None:
+    rng = np.random.default_rng(6)
+    x = np.sin(0.01 * np.arange(5000))
+    for clean in (x, np.round(200 * x), x + 0.01 * rng.standard_normal(5000)):
+        assert values.clipped(clean) == 0
+    limited = np.clip(x, -0.9, np.inf)
+    assert values.clipped(limited) == np.count_nonzero(x <= -0.9)
+
+
+def test_held_rows_are_those_that_repeat_for_less_than_a_standstill() -> None:
+    x = np.sin(0.05 * np.arange(1000.0))
+    x[100:104] = x[100]
+    x[500:600] = x[500]  # a second at rest
+    held = clock.held_rows(x[None, :], 0.01)
+    assert np.flatnonzero(held).tolist() == [101, 102, 103]
