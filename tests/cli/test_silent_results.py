@@ -120,3 +120,71 @@ def test_a_parquet_file_with_fewer_rows_than_it_states_is_refused(
     )
     result = scarid("convert", file, "-o", tmp_path / "out.csv")
     refused(result, 65, "log.parquet: found 65536 rows, expected 70000")
+
+
+ABSURD = [
+    *(f"simulate {gain} {value}" for gain in ("--kp", "--kd", "--ki") for value in ("nan", "inf")),
+    *(f"simulate --{noise}-noise {x}" for noise in ("position", "torque") for x in ("nan", "inf")),
+    *(f"simulate --{rate}-rate {x}" for rate in ("log", "control") for x in ("nan", "inf", "0")),
+    *(f"simulate --bandwidth {x}" for x in ("nan", "inf", "0")),
+    "simulate --kp -1",
+    "simulate --control-rate 1e12",
+    "simulate --substeps 2147483648",
+    *(f"trajgen --{x} 1e12" for x in ("duration", "rate")),
+    *(f"trajgen --{x} nan" for x in ("duration", "rate", "approach", "home", "q-max", "dq-max")),
+    "trajgen --segment nan nan",
+    "trajgen --segment 1e-9 1e-9",
+    "trajgen --repeat 1000000000000",
+    "trajgen --rate 1e6 --duration 1e5",
+    "trajgen --expected e.csv --torque-noise inf",
+    "trajgen --optimise --starts 1000000000",
+    "trajgen --optimise --budget inf",
+    *(f"filter --cutoff {x}" for x in ("nan", "inf", "0", "-1")),
+    "filter --natural-frequency nan",
+    *(f"resample --rate {x}" for x in ("nan", "inf", "0", "1e15")),
+    *(f"resample --rate 100 --max-gap {x}" for x in ("nan", "inf")),
+    *(f"identify --{x} nan" for x in ("p0", "bandwidth", "smooth-sign", "skip", "decimate")),
+    *(f"identify --{x} inf" for x in ("p0", "bandwidth", "smooth-sign", "skip", "drop-slow")),
+    *(f"tune --to-time {x}" for x in ("nan", "inf")),
+    "differentiate --method algebraic --set window=1e6",
+    "differentiate --method savgol --set window=1000001",
+    "differentiate --method savgol-end --set window=1e6",
+]
+
+
+@pytest.mark.parametrize("command", ABSURD)
+def test_a_number_that_no_command_can_mean_is_refused_in_one_line(
+    command: str, scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    """Before anything is written; those for which the command would run for hours as well."""
+    name, *words = command.split()
+    if name != "trajgen":
+        words.append(
+            str(tmp_path / "reference.csv" if name == "simulate" else samples / "scara2.csv")
+        )
+    if name == "simulate":
+        assert scarid("trajgen", "--duration", 3, "-o", words[-1]).status == 0
+    result = scarid(name, *words, "-o", tmp_path / "out.csv")
+    refused(result, 2)
+    assert not (tmp_path / "out.csv").exists()
+
+
+EMPTY = [
+    "identify --from=",
+    "identify --save=",
+    "identify --robot=",
+    "identify --initial=",
+    "filter -o=",
+    "filter --columns=",
+    "convert --map=",
+    "convert --separator=",
+    "differentiate --settings=",
+    "differentiate --set=",
+]
+
+
+@pytest.mark.parametrize("command", EMPTY)
+def test_an_empty_option_value_is_refused(command: str, scarid: Run, samples: Path) -> None:
+    """It is that of a shell variable that is not set: --from "$STATE" would start afresh."""
+    name, option = command.removesuffix("=").split()
+    refused(scarid(name, samples / "scara2.csv", option, ""), 2)
