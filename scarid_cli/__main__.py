@@ -15,6 +15,7 @@ import click
 
 from scarid_cli.cli import scarid
 from scarid_cli.errors import (
+    BAD_DATA,
     BROKEN_PIPE,
     BUG,
     INTERRUPTED,
@@ -67,6 +68,10 @@ def _failed(where: str, error: Exception) -> int:
     if isinstance(error, OSError):
         place = error.filename or "<stdout>"
         return _reported(where, f"{place}: {error.strerror or error}", IO_FAILURE)
+    if isinstance(error, MemoryError):
+        reason = str(error) or "no more can be had"
+        text = f"not enough memory ({reason}); check the options, and the numbers in the input"
+        return _reported(where, text, BAD_DATA)
     kind = type(error).__name__
     return _reported(where, f"a bug in scarid ({kind}: {error}); --debug shows where", BUG)
 

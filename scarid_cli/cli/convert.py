@@ -39,7 +39,7 @@ from scarid_cli.cli.declare import declare
     help="The unit of columns in the log (deg, rpm, mN m, ms, ...), which are converted to rad, "
     "N m, s; * and ? match any name; repeatable.",
 )
-@click.option("--rate", type=float, help="Add a time column t at this rate [Hz].")
+@click.option("--rate", type=options.RATE, help="Add a time column t at this rate [Hz].")
 @click.option(
     "--robot",
     type=options.ROBOT,

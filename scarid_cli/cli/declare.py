@@ -8,10 +8,23 @@ from collections.abc import Callable
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from scarid_cli.cli.options import SHARED
 
 READABLE = ("identify", "validate", "tune")  # whose tables a person reads on a terminal
+
+
+def _require_values() -> None:
+    """Refuse an empty value, which is most likely that of a variable of the shell that is unset."""
+    context = click.get_current_context()
+    for parameter in context.command.params:
+        name = parameter.name or ""
+        given = context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+        value = context.params.get(name)
+        if given and "" in (value if isinstance(value, tuple) else (value,)):
+            text = "the value is empty; give one, or leave the option out"
+            raise click.BadParameter(text, param=parameter)
 
 
 def declare(
@@ -29,6 +42,7 @@ def declare(
         def called(**given: Any) -> None:
             from scarid_cli.cli.job import job
 
+            _require_values()
             action = importlib.import_module(f"scarid_cli.cli.actions.{name}")
             own = {option: value for option, value in given.items() if option not in SHARED}
             with job(given) as run:

@@ -17,10 +17,10 @@ from scarid_cli.cli.declare import declare
     help="The columns to filter, separated by commas; * and ? match any name.  [default: all "
     "q1, q2, ... and tau1, tau2, ...]",
 )
-@click.option("--cutoff", type=float, help="The frequency where the gain is -3 dB [Hz].")
+@click.option("--cutoff", type=options.NUMBER, help="The frequency where the gain is -3 dB [Hz].")
 @click.option(
     "--natural-frequency",
-    type=float,
+    type=options.NUMBER,
     metavar="HZ",
     help="The natural frequency of the robot; the cut-off is ten times as high, by the paper's "
     "rule.  [default: 2]",

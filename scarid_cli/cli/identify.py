@@ -25,7 +25,9 @@ from scarid_cli.cli.described import describing
     help="Forgetting factor of rls per sample, followed by other factors for single parameters.  "
     "[default: 1]",
 )
-@click.option("--p0", type=float, help="Initial covariance of rls, P0 = p0 I.  [default: 100]")
+@click.option(
+    "--p0", type=options.NUMBER, help="Initial covariance of rls, P0 = p0 I.  [default: 100]"
+)
 @click.option(
     "--initial",
     type=options.InputFile("apriori"),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf, isfinite
 from typing import Any, TypeVar
 
 import click
@@ -45,18 +47,69 @@ class InputFile(click.ParamType[str]):
         return path
 
 
+@dataclass(frozen=True)
+class Range:
+    """The numbers that an option takes: finite, and from `low` (or above it, if open) to `high`."""
+
+    low: float = -inf
+    high: float = inf
+    open: bool = False
+
+    def text(self) -> str:
+        """What is asked for, in words."""
+        if self.low == -inf:
+            return "a finite number"
+        start = f"above {self.low:g}" if self.open else f"of at least {self.low:g}"
+        end = "" if self.high == inf else f", at most {self.high:g}"
+        return f"a finite number {start}{end}"
+
+    def __contains__(self, value: float) -> bool:
+        above = value > self.low if self.open else value >= self.low
+        return isfinite(value) and above and value <= self.high
+
+
+FINITE = Range()
+NOT_NEGATIVE = Range(0.0)
+POSITIVE = Range(0.0, open=True)
+
+
+class Number(click.ParamType[float]):
+    """One number within a range; nan and inf are in none."""
+
+    name = "float"
+
+    def __init__(self, within: Range) -> None:
+        self.within = within
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> float:
+        try:
+            number = float(value)
+        except ValueError:
+            self.fail(f"{value!r} is not a number", param, ctx)
+        if number not in self.within:
+            self.fail(f"give {self.within.text()}, not {number:g}", param, ctx)
+        return number
+
+
 class Numbers(click.ParamType[tuple[float, ...]]):
-    """One number for all joints, or one per joint separated by commas."""
+    """One number for all joints, or one per joint separated by commas, all within a range."""
 
     name = "number[,number...]"
+
+    def __init__(self, within: Range = FINITE) -> None:
+        self.within = within
 
     def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, ...]:
         if isinstance(value, tuple):
             return value
         try:
-            return tuple(float(part) for part in value.split(","))
+            numbers = tuple(float(part) for part in value.split(","))
         except ValueError:
             self.fail(f"{value!r} is not a number, or numbers separated by commas", param, ctx)
+        for number in numbers:
+            if number not in self.within:
+                self.fail(f"give {self.within.text()}, not {number:g}", param, ctx)
+        return numbers
 
 
 def require_readable(path: str, *, folders: bool = False) -> None:
@@ -77,6 +130,10 @@ def require_readable(path: str, *, folders: bool = False) -> None:
 INPUT = InputFile()
 ROBOT = InputFile(endings=(".toml", ".urdf"))  # or the name of a robot
 NUMBERS = Numbers()
+NUMBER = Number(POSITIVE)
+# Beyond these a command would run for hours, or need more memory than there is.
+RATE = Number(Range(0.0, 1e7, open=True))  # Hz
+DURATION = Number(Range(0.0, 1e6, open=True))  # s
 
 
 def _all(*decorators: Callable[[F], F]) -> Callable[[F], F]:
@@ -185,12 +242,12 @@ def treatment(function: F) -> F:
             "is slower than 2 % of its root-mean-square velocity so far or than its noise.",
         ),
         click.option(
-            "--bandwidth", type=click.FloatRange(min=0.0, min_open=True), metavar="HZ",
+            "--bandwidth", type=NUMBER, metavar="HZ",
             help="Bandwidth of the motion.  [default: that in the metadata, which "
             "differentiate --match writes and CSV cannot hold]",
         ),
         click.option(
-            "--smooth-sign", type=float, metavar="V",
+            "--smooth-sign", type=NUMBER, metavar="V",
             help="Model Coulomb friction by tanh(dq / V) instead of sign(dq) [rad/s or m/s].",
         ),
     )(function)  # fmt: skip

@@ -10,10 +10,10 @@ from scarid_cli.cli.declare import declare
 
 @declare("resample")
 @options.table_input
-@click.option("--rate", type=float, required=True, help="The new rate [Hz].")
+@click.option("--rate", type=options.RATE, required=True, help="The new rate [Hz].")
 @click.option(
     "--max-gap",
-    type=float,
+    type=options.NUMBER,
     metavar="S",
     help="The longest interval to interpolate [s]; a longer one is a gap.  [default: 5 periods of "
     "the log, or one period of the new rate if that is longer]",

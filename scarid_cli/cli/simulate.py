@@ -9,6 +9,8 @@ from scarid_cli.cli.declare import declare
 from scarid_cli.cli.imperfections import WithImperfections
 from scarid_cli.cli.options import NUMBERS
 
+GAINS = options.Numbers(options.Range(0.0, 1e12))
+
 
 @declare("simulate", WithImperfections)
 @options.table_input
@@ -20,25 +22,29 @@ from scarid_cli.cli.options import NUMBERS
 )
 @click.option(
     "--bandwidth",
-    type=float,
+    type=options.RATE,
     help="Bandwidth from which the gains are found [Hz].  [default: the robot's gains, or 5]",
 )
-@click.option("--kp", type=NUMBERS, help="Proportional gains.  [default: see --bandwidth]")
-@click.option("--kd", type=NUMBERS, help="Derivative gains.  [default: see --bandwidth]")
-@click.option("--ki", type=NUMBERS, help="Integral gains.  [default: see --bandwidth]")
+@click.option("--kp", type=GAINS, help="Proportional gains.  [default: see --bandwidth]")
+@click.option("--kd", type=GAINS, help="Derivative gains.  [default: see --bandwidth]")
+@click.option("--ki", type=GAINS, help="Integral gains.  [default: see --bandwidth]")
 @click.option(
-    "--control-rate", type=float, default=1000.0, show_default=True, help="Control rate [Hz]."
+    "--control-rate",
+    type=options.RATE,
+    default=1000.0,
+    show_default=True,
+    help="Control rate [Hz].",
 )
 @click.option(
     "--log-rate",
-    type=float,
+    type=options.RATE,
     default=200.0,
     show_default=True,
     help="Rows of the log per second [Hz].",
 )
 @click.option(
     "--substeps",
-    type=click.IntRange(min=1),
+    type=click.IntRange(1, 1000),
     default=2,
     show_default=True,
     help="Runge-Kutta steps per period of the controller.",

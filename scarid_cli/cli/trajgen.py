@@ -27,11 +27,15 @@ from scarid_cli.cli.options import NUMBERS
     help="Seed of the random motion, or of the random starts of --optimise.",
 )
 @click.option(
-    "--duration", type=float, default=20.0, show_default=True, help="Length of the motion [s]."
+    "--duration",
+    type=options.DURATION,
+    default=20.0,
+    show_default=True,
+    help="Length of the motion [s].",
 )
 @click.option(
     "--segment",
-    type=float,
+    type=options.Number(options.Range(1e-3, 1e6)),
     nargs=2,
     metavar="SHORTEST LONGEST",
     help="Shortest and longest time between via points [s]; short for --set shortest=SHORTEST "
@@ -87,12 +91,12 @@ from scarid_cli.cli.options import NUMBERS
     help="Box that the tool must not leave, in the frame of the base [m].",
 )
 @click.option(
-    "--budget", type=click.FloatRange(min=0.0, min_open=True), metavar="SECONDS",
+    "--budget", type=options.DURATION, metavar="SECONDS",
     help="Time for random starts of --optimise.  [default: 10]",
 )  # fmt: skip
 @click.option(
     "--starts",
-    type=click.IntRange(min=1),
+    type=click.IntRange(1, 100_000),
     help="Number of random starts instead of a time; gives the same motion each time.",
 )
 @options.side_output(
@@ -111,7 +115,7 @@ from scarid_cli.cli.options import NUMBERS
 )
 @click.option(
     "--repeat",
-    type=click.IntRange(min=1),
+    type=click.IntRange(1, 100_000),
     default=1,
     show_default=True,
     help="How often the motion is repeated.",
@@ -121,7 +125,9 @@ from scarid_cli.cli.options import NUMBERS
     type=NUMBERS,
     help="Begin with a slow motion from this posture to the home position [rad or m].",
 )
-@click.option("--rate", type=float, default=200.0, show_default=True, help="Rows per second [Hz].")
+@click.option(
+    "--rate", type=options.RATE, default=200.0, show_default=True, help="Rows per second [Hz]."
+)
 @click.option(
     "--q-max",
     type=NUMBERS,

@@ -28,7 +28,7 @@ from scarid_cli.cli.declare import declare
 )
 @click.option(
     "--to-time",
-    type=click.FloatRange(min=0.0, min_open=True),
+    type=options.NUMBER,
     metavar="SECONDS",
     help="Use only the first seconds of the log, as for settings of an online identification.",
 )

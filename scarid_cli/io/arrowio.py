@@ -8,8 +8,9 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.ipc as ipc
 
-from scarid_cli.errors import BadData, cut_short
-from scarid_cli.io.bytesource import CHUNK, ByteSource
+from scarid_cli.errors import BadData, OutputFailure, cut_short
+from scarid_cli.io.bytesource import CHUNK, ByteSource, require_moderate
+from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
 
 END_OF_STREAM = b"\xff\xff\xff\xff\x00\x00\x00\x00"
@@ -23,13 +24,13 @@ def read_stream(source: ByteSource) -> Table:
     """A table from an Arrow IPC stream."""
     try:
         reader = ipc.open_stream(pa.PythonFile(source, mode="r"))
-    except (pa.ArrowInvalid, OSError) as error:
+    except (pa.ArrowException, OSError) as error:
         raise _unreadable(source.name, error) from None
 
     def batches() -> Iterator[pa.RecordBatch]:
         try:
             yield from reader
-        except (pa.ArrowInvalid, OSError):
+        except (pa.ArrowException, OSError):
             raise cut_short(source.name) from None
         # pyarrow takes an end of file between two batches for the end of the table.
         if source.last != END_OF_STREAM:
@@ -42,7 +43,7 @@ def read_file(source: ByteSource) -> Table:
     """A table from an Arrow IPC file."""
     try:
         reader = ipc.open_file(pa.PythonFile(source.seekable(), mode="r"))
-    except (pa.ArrowInvalid, OSError) as error:
+    except (pa.ArrowException, OSError) as error:
         raise _unreadable(source.name, error) from None
     batches = (reader.get_batch(i) for i in range(reader.num_record_batches))
     return _table(source.name, reader.schema, _small(batches))
@@ -54,11 +55,37 @@ def read_parquet(source: ByteSource) -> Table:
 
     try:
         # Buffered, or a row group of another writer (a million rows) would be read whole.
-        file = pq.ParquetFile(source.seekable(), pre_buffer=False, buffer_size=CHUNK)
-    except (pa.ArrowInvalid, OSError) as error:
+        file = pq.ParquetFile(
+            source.seekable(),
+            pre_buffer=False,
+            buffer_size=CHUNK,
+            page_checksum_verification=True,
+        )
+    except (pa.ArrowException, OSError) as error:
         raise _unreadable(source.name, error) from None
+    require_moderate(source.name, _largest_chunk(file.metadata))
     batches = file.iter_batches(batch_size=READ_ROWS, use_threads=False)
-    return _table(source.name, file.schema_arrow, batches)
+    return _table(source.name, file.schema_arrow, _counted(batches, source.name, file.metadata))
+
+
+def _largest_chunk(footer: Any) -> int:
+    """The bytes of the largest column of a row group: what a page of it may unfold to."""
+    groups = (footer.row_group(i) for i in range(footer.num_row_groups))
+    sizes = (g.column(i).total_uncompressed_size for g in groups for i in range(g.num_columns))
+    return max(sizes, default=0)
+
+
+def _counted(batches: Iterator[pa.RecordBatch], name: str, footer: Any) -> Iterator[pa.RecordBatch]:
+    """The batches. A damaged page header can end a row group early, and pyarrow does not notice."""
+    rows = 0
+    for batch in batches:
+        rows += batch.num_rows
+        yield batch
+    if rows != footer.num_rows:
+        raise BadData(
+            f"{name}: found {rows} rows, expected {footer.num_rows} as the end of the file states; "
+            "the file is damaged, write it again"
+        )
 
 
 def _small(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
@@ -82,19 +109,40 @@ def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> T
         ) from None
     fields = [_plain(field) for field in schema]
     plain = pa.schema(fields)
-    return Table(name, plain, meta, (cast(batch, plain) for batch in batches))
+    return Table(name, plain, meta, (cast(batch, plain, name) for batch in _sound(name, batches)))
+
+
+def _sound(name: str, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+    """The batches, each with buffers that can be read; damage found on the way is BadData."""
+    while True:
+        try:
+            batch = next(batches, None)
+            if batch is None:
+                return
+            # The offsets of texts point into memory; numbers have none, and cost no time here.
+            batch.validate(full=not all(pa.types.is_primitive(f.type) for f in batch.schema))
+        except OSError as error:
+            if error.errno:  # the device, and not the content
+                raise OutputFailure(f"{name}: {error.strerror}") from None
+            raise _unreadable(name, error) from None
+        except pa.ArrowException as error:
+            raise _unreadable(name, error) from None
+        yield batch
 
 
 def _plain(field: pa.Field) -> pa.Field:
-    """The field with doubles, 64-bit integers or text, and no metadata but the unit."""
+    """The field with doubles, 64-bit integers or text, and no metadata but the unit.
+
+    Whole numbers in a column whose role asks for doubles are doubles, as they are from CSV.
+    """
     kind = field.type
     if pa.types.is_dictionary(kind):
         kind = kind.value_type
     if pa.types.is_floating(kind) or pa.types.is_decimal(kind):
         kind = pa.float64()
     elif pa.types.is_integer(kind):
-        kind = pa.int64()
-    elif pa.types.is_large_string(kind):
+        kind = pa.float64() if column_type(field.name) == pa.float64() else pa.int64()
+    elif pa.types.is_large_string(kind) or pa.types.is_string_view(kind):
         kind = pa.string()
     unit = (field.metadata or {}).get(UNIT_KEY)
     return pa.field(field.name, kind, metadata={UNIT_KEY: unit} if unit else None)
@@ -212,6 +260,7 @@ class ParquetWriter(_GroupWriter):
             self._file,
             self._schema,
             use_dictionary=False,
+            write_page_checksum=True,
             use_byte_stream_split=floats,
             compression="zstd",
             compression_level=1,

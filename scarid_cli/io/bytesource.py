@@ -11,6 +11,27 @@ from scarid_cli.errors import BadData, OutputFailure, UsageFault
 STDIN = "<stdin>"
 CHUNK = 1 << 20
 GZIP, GZIP_BITS = b"\x1f\x8b", 31  # its first bytes, and the format as zlib knows it
+MAX_BATCH = 1 << 29  # bytes
+
+
+def max_batch() -> int:
+    """How many bytes a part of the input may unfold to, from SCARID_MAX_BATCH [MB] if it is set."""
+    text = os.environ.get("SCARID_MAX_BATCH")
+    if not text:
+        return MAX_BATCH
+    if not text.isdecimal() or not 0 < int(text) < 1 << 40:
+        raise UsageFault(f"SCARID_MAX_BATCH={text}: give a whole number of megabytes")
+    return int(text) * 1_000_000
+
+
+def require_moderate(name: str, size: int) -> None:
+    """Refuse an input of which a part would take so many bytes of memory."""
+    if size > max_batch():
+        raise BadData(
+            f"{name}: a part of it takes {size / 1e6:.0f} MB of memory, more than "
+            f"{max_batch() / 1e6:.0f} MB; write it in smaller groups of rows, or set "
+            "SCARID_MAX_BATCH to more megabytes"
+        )
 
 
 class ByteSource:

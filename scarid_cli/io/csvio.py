@@ -193,6 +193,15 @@ class CsvWriter:
     """Writes the header at once, and each batch as it arrives."""
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
+        for field in schema:
+            if not _writable(field.type):
+                raise bad_data(
+                    "the table",
+                    f"type {field.type}",
+                    expected="numbers, text or dates, which CSV can hold",
+                    remedy="write Parquet or Arrow, or leave the column out",
+                    column=field.name,
+                )
         self._write = write
         self._schema = schema
         self._numeric = not any(pa.types.is_string(field.type) for field in schema)
@@ -218,6 +227,14 @@ class CsvWriter:
         columns |= {name: batch.column(name).to_pylist() for name in texts}
         ordered = [columns[name] for name in batch.schema.names]
         return _csv_text(list(zip(*ordered, strict=True)))
+
+
+def _writable(kind: pa.DataType) -> bool:
+    return bool(
+        (pa.types.is_primitive(kind) and not pa.types.is_interval(kind))
+        or pa.types.is_string(kind)
+        or pa.types.is_null(kind)
+    )
 
 
 def _numbers(batch: pa.RecordBatch) -> bytes:

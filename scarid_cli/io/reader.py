@@ -65,7 +65,8 @@ def conforming(table: Table, kind: str, reads: Reads | None = None) -> Table:
     typed = pa.schema([f.with_type(types.get(f.name, f.type)) for f in table.schema])
     if typed.equals(table.schema):
         return table
-    return replace(table, schema=typed, batches=(cast(batch, typed) for batch in table.batches))
+    batches = (cast(batch, typed, table.name) for batch in table.batches)
+    return replace(table, schema=typed, batches=batches)
 
 
 def _columns_to_check(table: Table, schema: schemas.TableSchema, reads: Reads | None) -> list[str]:

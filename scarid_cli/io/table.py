@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.arrays import Array, Numbers
+from scarid_cli.errors import bad_data
 
 METADATA_KEY = b"scarid"
 UNIT_KEY = b"unit"
@@ -125,13 +126,30 @@ def table_of(
     return Table(name, schema, meta, iter([pa.RecordBatch.from_arrays([*columns], schema=schema)]))
 
 
-def cast(batch: pa.RecordBatch, schema: pa.Schema) -> pa.RecordBatch:
-    """The batch with the types of a schema that has the same columns."""
+def cast(batch: pa.RecordBatch, schema: pa.Schema, name: str) -> pa.RecordBatch:
+    """The batch, of the table of this name, with the types of a schema that has the same columns.
+
+    A value that the new type cannot hold exactly is BadData: a whole number beyond 2^53 in a column
+    of doubles, or one beyond 2^63.
+    """
     columns = [
-        column if column.type == field.type else column.cast(field.type)
+        column if column.type == field.type else _cast(column, field, name)
         for column, field in zip(batch.columns, schema, strict=True)
     ]
     return pa.RecordBatch.from_arrays(columns, schema=schema)
+
+
+def _cast(column: pa.Array, field: pa.Field, name: str) -> pa.Array:
+    try:
+        return column.cast(field.type)
+    except (pa.ArrowInvalid, pa.ArrowNotImplementedError) as error:
+        raise bad_data(
+            name,
+            f"a value of type {column.type} that does not fit ({str(error).partition(chr(10))[0]})",
+            expected=str(field.type),
+            remedy="convert the column where the table is made",
+            column=field.name,
+        ) from None
 
 
 def without(table: Table, column: str) -> Table:

@@ -23,6 +23,7 @@ import numpy as np
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.settings import require_above, require_between, require_positive
 from scarid_cli.algorithms.filters.convolution import FirMethod
+from scarid_cli.algorithms.filters.polynomials import require_moderate
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
@@ -47,6 +48,7 @@ class Differentiator(FirMethod):
         return np.convolve(lowpass, first), np.convolve(lowpass, second)
 
     def lowpass(self, h: float) -> Array:
+        require_moderate(self.window / h)
         samples = round(self.window / h)
         if samples < 3:
             raise UsageFault(f"window must be 3 samples or more, not {self.window / h:.3g}")

@@ -13,6 +13,14 @@ import numpy as np
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
+LONGEST_WINDOW = 20_000  # samples; a longer one would take hours
+
+
+def require_moderate(samples: float) -> None:
+    """Refuse a window [samples] over which a fit would take hours."""
+    if samples > LONGEST_WINDOW:
+        raise UsageFault(f"window must be {LONGEST_WINDOW} samples or less, not {samples:.6g}")
+
 
 def require_window(settings: Any) -> None:
     """`window` and `degree` must make a polynomial fit that has a second derivative."""
@@ -22,6 +30,7 @@ def require_window(settings: Any) -> None:
         raise UsageFault(
             f"window must be longer than the degree, {settings.degree:g}, not {settings.window:g}"
         )
+    require_moderate(settings.window)
 
 
 def derivative_taps(window: int, degree: int, order: int, age: int, h: float) -> Array:

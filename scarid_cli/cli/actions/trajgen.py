@@ -27,6 +27,7 @@ from scarid_cli.stages import trajgen as stage
 from scarid_cli.stages.design import Prediction
 
 LARGEST_LIMIT = 1e9  # a limit of this size is none
+MOST_ROWS = 1e9
 
 
 def run(
@@ -36,6 +37,11 @@ def run(
     arm = job.robot(robot)
     if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
         raise UsageFault("--rate and --duration must be positive")
+    if rate * duration * given["repeat"] > MOST_ROWS:
+        raise UsageFault(
+            f"--rate {rate:g} over --duration {duration:g} gives more than {MOST_ROWS:g} rows; "
+            "lower one of them, or --repeat"
+        )
     given |= {"seed": seed, "duration": duration, "rate": rate}
     treatment = _treatment(arm, given)
     side = job.side_table(given["expected"])
