@@ -57,17 +57,18 @@ def _neighbours(found: Wired) -> list[Wiring]:
 
 
 def _braking(found: Wired, tried: Callable[[Wiring], Wired]) -> Wired:
-    """The wiring with torques reversed such that friction brakes, if that explains as much."""
-    driving = found.fit.driving
-    for joints in (range(len(found.fit.powers)), driving) if driving else ():
-        wiring = found.wiring
-        for joint in joints:
-            wiring = wiring.reversed(1, joint)
-        other = tried(wiring)
-        alike = other.fit.misfit < found.fit.misfit - np.log(FALL)
-        if alike and len(other.fit.driving) < len(driving):
-            return other
-    return found
+    """The wiring with all torques reversed, if friction brakes more joints then.
+
+    Single joints are not reversed for their friction alone: the friction of a joint that hardly has
+    a torque may be negative for other reasons.
+    """
+    if not found.fit.driving:
+        return found
+    wiring = found.wiring
+    for joint in range(len(found.fit.powers)):
+        wiring = wiring.reversed(1, joint)
+    other = tried(wiring)
+    return other if len(other.fit.driving) < len(found.fit.driving) else found
 
 
 def findings(found: Wired) -> list[Finding]:
