@@ -202,7 +202,7 @@ def test_every_kind_of_recording_gives_the_same(kind: str, shell: Run, tmp_path:
 
 
 def test_a_minute_of_seven_joints_is_read_in_time(scarid: Run, tmp_path: Path) -> None:
-    """60,000 messages in at most 4 s of the processor; the writer's own decoder finds the same in the last."""
+    """60,000 messages in 4 s of the processor; another decoder finds the same in the last."""
     from time import process_time
 
     from mcap.writer import Writer
