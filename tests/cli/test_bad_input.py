@@ -266,7 +266,7 @@ def test_a_loop_that_blows_up_is_an_error_and_not_a_table(scarid: Run, tmp_path:
     reference = tmp_path / "ref.csv"
     assert scarid("trajgen", "--duration", 2, "-o", reference).status == 0
     output = tmp_path / "log.csv"
-    result = scarid("simulate", "--kp", "-800,-25", "--kd", "-100,-2.5", reference, "-o", output)
+    result = scarid("simulate", "--kp", "800,25", "--kd", "1e5,1e5", reference, "-o", output)
     assert result.status == 65
     assert "became unstable at t = " in result.err
     assert not output.exists()
