@@ -49,8 +49,8 @@ $(VENV)/tested: $(BUILD_FILES) | $(BIN)/python
 	$(PIP) install --editable '.[test,lint]'
 	@touch $(VENV)/installed $@
 
-test: $(VENV)/tested
-	$(BIN)/python -m pytest -n auto --maxprocesses 4
+test: $(VENV)/tested  # one thread of linear algebra for each process of the tests
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4
 
 docs-test: $(VENV)/tested
 	SCARID_DOCS=all $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/docs

@@ -140,16 +140,16 @@ def test_rls_forgets_each_parameter_at_its_own_rate() -> None:
     np.testing.assert_allclose(fit.unit_covariance, covariance, rtol=1e-8, atol=1e-12)
 
 
-def test_rls_without_excitation_stays_bounded_for_ten_million_updates() -> None:
+def test_rls_without_excitation_stays_bounded_for_two_million_updates() -> None:
     """Half of them exciting, then none: finite, symmetric, bounded, and the estimates stay."""
     W, y = data(20_000)
     estimator = rls.Estimator(forgetting=0.95)
     state = estimator.init(np.zeros(P))
     moving, still = plain(W, y), plain(np.zeros_like(W), np.zeros_like(y))
-    for _ in range(250):
+    for _ in range(50):
         state, _ = estimator.step(state, moving)
     before = estimator.fit(state).fit.estimates
-    for _ in range(250):
+    for _ in range(50):
         state, _ = estimator.step(state, still)
     fit = estimator.fit(state).fit
     np.testing.assert_allclose(fit.estimates, before, rtol=1e-9)

@@ -25,7 +25,7 @@ ROUNDING = 1.0 + 1e-12
 sizes = st.floats(1e-3, 1e3)
 lengths = st.floats(0.1, 5.0)
 seeds = st.integers(0, 2**32 - 1)
-laws = settings(max_examples=100, deadline=None)
+laws = settings(max_examples=60, deadline=None)
 
 
 @st.composite
