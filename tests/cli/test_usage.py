@@ -52,7 +52,7 @@ USAGE = {
     "skip of three": (["identify", "--skip", "1,2,3"], "at the start and at the end"),
     "decimation by a half": (["identify", "--decimate", "0.5"], "whole numbers of at least 2"),
     "negative slow": (["identify", "--drop-slow", "-1"], "cannot be negative"),
-    "sign over no velocity": (["identify", "--smooth-sign", "0"], "must be positive"),
+    "sign over no velocity": (["identify", "--smooth-sign", "0"], "give a finite number above 0"),
     "state of aligned rows": (["identify", "--align", "--save", "s.npz"], "work row by row"),
     "state of held rows": (
         ["identify", "--estimator", "irls", "--save", "s.npz"],
