@@ -7,6 +7,7 @@ import errno
 import os
 import stat
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -28,6 +29,7 @@ EXTENSIONS = {
     ".feather": "arrow-file",
 }
 STDOUT = "<stdout>"
+YOUNG = 60.0  # s
 
 
 class Writer(Protocol):
@@ -45,7 +47,7 @@ class Target:
     def __init__(self, path: str) -> None:
         self.name = STDOUT if path == "-" else path
         self._part: Path | None = None
-        self._place = Path(os.path.realpath(path))  # noqa: PTH (a loop of links is no error here)
+        self._place = Path(os.path.realpath(path))
         if path == "-":
             self._fd = 1
         elif _is_stdout(path):
@@ -59,17 +61,12 @@ class Target:
 
     def _remove_abandoned(self) -> None:
         """Remove what runs to the same output have left that were killed, and tell it."""
-        start, end = f".{self._place.name}.", ".part"
         with contextlib.suppress(OSError):
             for name in os.listdir(self._place.parent):  # noqa: PTH208 (no paths are needed)
-                number = name.removeprefix(start).removesuffix(end)
-                if (
-                    name == f"{start}{number}{end}"
-                    and number.isdecimal()
-                    and not _runs(int(number))
-                ):
+                if _abandoned(self._place.with_name(name), f".{self._place.name}."):
                     self._place.with_name(name).unlink()
-                    print(f"scarid: removed {name}, left by a run that was killed", file=sys.stderr)  # noqa: T201
+                    text = f"scarid: removed {name}, left by a run that was killed"
+                    print(text, file=sys.stderr)  # noqa: T201
 
     def _open(self, path: Path, flags: int = 0) -> int:
         try:
@@ -115,7 +112,8 @@ class Target:
     def _failure(self, error: OSError) -> OutputFailure:
         closed = self._fd == 1 and error.errno == errno.EBADF
         reason = "standard output is closed" if closed else error.strerror
-        return OutputFailure(f"{self.name}: {reason}; nothing was written")
+        left = "nothing was written" if self._part or closed else "the output is incomplete"
+        return OutputFailure(f"{self.name}: {reason}; {left}")
 
 
 def same_place(one: str, other: str) -> bool:
@@ -135,6 +133,18 @@ def _place_of(path: str) -> object:
 
 def _is_stdout(path: str) -> bool:
     return path in ("/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
+
+
+def _abandoned(part: Path, start: str) -> bool:
+    """Whether this is a part of an output of a run that is gone.
+
+    A young part may be that of a run on another machine, whose processes are not known here.
+    """
+    name = part.name
+    number = name.removeprefix(start).removesuffix(".part")
+    if name != f"{start}{number}.part" or not number.isdecimal() or _runs(int(number)):
+        return False
+    return time.time() - part.stat().st_mtime > YOUNG
 
 
 def _runs(process: int) -> bool:

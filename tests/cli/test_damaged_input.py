@@ -144,3 +144,71 @@ def test_a_column_of_an_unusual_type_passes_or_is_refused_in_one_line(
         assert result.status in (0, 65)
         assert result.err.count("\n") == bool(result.status)
         assert not result.status or "other" in result.err
+
+
+@pytest.mark.parametrize("start", [b'0.06,"1,2\n', b'"', b"7"])
+def test_csv_with_a_stray_quote_or_a_long_line_is_read_in_linear_time(
+    start: bytes, tmp_path: Path
+) -> None:
+    """As many bytes are looked at as there are, whether they come in small pieces or large ones."""
+    from scarid_cli.io import csvio
+
+    class Bytes(bytes):
+        looked = 0
+
+        def count(self, *given: object) -> int:  # type: ignore[override]
+            _, first, last = (*given, *(0, len(self))[len(given) - 1 :])
+            Bytes.looked += int(last) - int(first)  # type: ignore[call-overload]
+            return super().count(*given)  # type: ignore[arg-type]
+
+        def __getitem__(self, key: object) -> Bytes:  # type: ignore[override]
+            return Bytes(super().__getitem__(key))  # type: ignore[call-overload]
+
+    tail = b"8" * 300_000 if start == b"7" else b"0.1,2,3\n" * 40_000
+    content = start + tail
+
+    class Pieces:
+        def __init__(self) -> None:
+            self.left = [Bytes(content[i : i + 4096]) for i in range(0, len(content), 4096)]
+
+        def read_some(self) -> bytes:
+            return self.left.pop(0) if self.left else b""
+
+    found = list(csvio._complete_lines(Pieces()))  # type: ignore[arg-type]
+    assert b"".join(found).rstrip(b"\n") == content.rstrip(b"\n")
+    assert Bytes.looked <= 3 * len(content)
+
+
+def test_a_quote_that_nothing_closes_is_reported(scarid: Run, tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    rows = [f"{k / 100},{k},{k * 0.5}\n" for k in range(60_000)]
+    rows[30_000] = '300.0,"30000,1\n'
+    log.write_text("t,q1,tau1\n" + "".join(rows))
+    result = scarid("filter", log, "-o", tmp_path / "out.csv")
+    refused(result, 65, str(log))
+
+
+def test_a_clock_of_the_smallest_steps_is_no_bug(scarid: Run, tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    log.write_text("t,q1\n" + "".join(f"{k}e-320,{k}\n" for k in range(20)))
+    assert scarid("differentiate", log, "-o", tmp_path / "out.csv").status in (2, 65)
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        b"[",
+        b"[]",
+        b"{}",
+        b"[" * 100_000,
+        b'{"history":[1]}',
+        b'{"history":[],"kind":"../x"}',
+        b'{"history":[],"period":"x"}',
+        b'{"history":[],"robot":5}',
+        b"\xff",
+    ],
+)
+def test_malformed_metadata_is_bad_data(document: bytes, scarid: Run, tmp_path: Path) -> None:
+    table = pa.table({"t": T, "q1": T}).replace_schema_metadata({b"scarid": document})
+    pq.write_table(table, tmp_path / "log.parquet")
+    refused(scarid("info", tmp_path / "log.parquet"), 65, "metadata")

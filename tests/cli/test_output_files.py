@@ -54,13 +54,16 @@ def test_the_rest_of_a_killed_run_is_told_and_removed(shell: Run, tmp_path: Path
     mine = tmp_path / f".a.csv.{os.getpid()}.part"
     others = [mine, tmp_path / ".a.csv.x.part", tmp_path / ".b.csv.999999999.part"]
     abandoned = tmp_path / ".a.csv.999999999.part"
+    young = tmp_path / ".a.csv.999999998.part"
     for path in (abandoned, *others):
         path.write_text("a part")
+        os.utime(path, (0.0, 0.0))
+    young.write_text("perhaps of a run on another machine")
     result = shell("scarid trajgen --duration 3 -q -o a.csv")
     assert result.status == 0
     assert ".a.csv.999999999.part" in result.err
     assert not abandoned.exists()
-    assert all(path.exists() for path in others)
+    assert all(path.exists() for path in (*others, young))
 
 
 def test_an_output_to_closed_standard_output_by_its_path_is_a_failure(shell: Run) -> None:
