@@ -20,7 +20,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
 from scarid_cli.io.table import Table
-from scarid_cli.io.writer import Document, Output, all_or_none, write_table
+from scarid_cli.io.writer import Document, Output, all_or_none, same_place, write_table
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -71,7 +71,7 @@ class Job:
         return self.text(path) if path else None
 
     def _new(self, path: str, opened: Callable[[], D]) -> D:
-        if path in {output.path for output in self.outputs}:
+        if any(same_place(path, output.path) for output in self.outputs):
             place = "standard output" if path == "-" else path
             raise UsageFault(f"{place}: two outputs cannot share it; give one of them another FILE")
         self.outputs.append(output := opened())

@@ -9,7 +9,7 @@ from scarid_cli.cli.declare import declare
 from scarid_cli.cli.imperfections import WithImperfections
 from scarid_cli.cli.options import NUMBERS
 
-GAINS = options.Numbers(options.Range(0.0, 1e12))
+GAINS = options.Numbers(options.Range(-1e12, 1e12))
 
 
 @declare("simulate", WithImperfections)

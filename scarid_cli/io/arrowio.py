@@ -103,7 +103,7 @@ def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> T
     document = (schema.metadata or {}).get(METADATA_KEY)
     try:
         meta = Metadata.from_json(document) if document else Metadata()
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, RecursionError):
         raise BadData(
             f"{name}: the scarid metadata of the table cannot be read; write it again"
         ) from None

@@ -9,13 +9,14 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.arrays import Array, Numbers
-from scarid_cli.errors import BadData, bad_data
+from scarid_cli.errors import BadData, bad_data, bad_row
 from scarid_cli.io.table import SEGMENT, Instant, segments_of, steps_of
 
 # An interval may differ from the period by this fraction, and the mean interval by that one: a
 # derivative would be wrong by as much.
 JITTER = 0.01
 DRIFT = 0.001
+SHORTEST = 1e-12  # s; squares of the rate of such a clock leave the range of doubles
 
 
 def clocked(
@@ -38,13 +39,15 @@ def clocked(
     start, end = first.column("t")[at].as_py(), first.column("t")[at + 1].as_py()
     if not end > start:
         raise _not_increasing(name, end, start, at + 2)
+    if end - start < SHORTEST:
+        raise bad_row(name, f"an interval of {end - start:g} s", "a clock in seconds", at + 2, "t")
     period = nominal_period(end - start)
     return _regular(batches, name, period), period
 
 
 def nominal_period(interval: float) -> float:
     """The period [s] of a clock with this first interval; of a whole rate in Hz if it is close."""
-    if not interval > 0.0:
+    if not interval > 1e-300:  # the rate would be infinite
         return interval
     rate = round(1.0 / interval)
     if rate and abs(1.0 / interval / rate - 1.0) < 1e-4:

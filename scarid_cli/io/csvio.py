@@ -58,23 +58,32 @@ def _table(source: ByteSource) -> Table:
 
 
 def _complete_lines(source: ByteSource) -> Iterator[bytes]:
-    """What has arrived, in blocks that end at the end of a row."""
-    rest = b""
+    """What has arrived, in blocks that end at the end of a row.
+
+    Each byte is looked at once, however long a row is: `held` has no end of a row, and `inside`
+    tells whether it ends within quotes.
+    """
+    held: list[bytes] = []
+    inside = False
     while data := source.read_some():
-        block = rest + data
-        end = _last_row_end(block)
+        end = _last_row_end(data, inside=inside)
         if end:
-            yield block[:end]
-        rest = block[end:]
-    if rest:
+            yield b"".join([*held, data[:end]])
+            held, inside, data = [], False, data[end:]
+        held.append(data)
+        inside ^= bool(data.count(b'"') % 2)
+    if rest := b"".join(held):
         yield rest + b"\n"
 
 
-def _last_row_end(block: bytes) -> int:
-    end = block.rfind(b"\n") + 1
-    # A line break inside quotes does not end a row.
-    while end and block.count(b'"', 0, end) % 2:
-        end = block.rfind(b"\n", 0, end - 1) + 1
+def _last_row_end(data: bytes, *, inside: bool) -> int:
+    """Where the last row ends; a line break inside quotes ends none."""
+    end = data.rfind(b"\n") + 1
+    odd = inside ^ bool(data.count(b'"', 0, end) % 2)
+    while end and odd:
+        before = data.rfind(b"\n", 0, end - 1) + 1
+        odd ^= bool(data.count(b'"', before, end) % 2)
+        end = before
     return end
 
 
@@ -124,9 +133,13 @@ def _types(names: list[str], body: bytes) -> list[pa.DataType]:
 
 
 def _first_row_end(body: bytes) -> int:
-    end = body.find(b"\n") + 1
-    while end and end < len(body) and (body.count(b'"', 0, end) % 2 or not body[:end].strip()):
-        end = body.find(b"\n", end) + 1 or len(body)
+    start, end = 0, body.find(b"\n") + 1
+    odd = bool(body.count(b'"', 0, end) % 2)
+    blank = not body[:end].strip()
+    while end and end < len(body) and (odd or blank):
+        start, end = end, body.find(b"\n", end) + 1 or len(body)
+        odd ^= bool(body.count(b'"', start, end) % 2)
+        blank = blank and not body[start:end].strip()
     return end
 
 
@@ -160,9 +173,18 @@ def _parse(block: bytes, schema: pa.Schema, name: str, row: int) -> list[pa.Reco
             ),
         )
     except pa.ArrowInvalid as error:
-        raise _located(block, schema, name, row) or BadData(f"{name}: {error}") from None
+        raise _fault(block, schema, name, row) or BadData(f"{name}: {error}") from None
     batches: list[pa.RecordBatch] = table.combine_chunks().to_batches()
     return batches
+
+
+def _fault(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | None:
+    try:
+        return _located(block, schema, name, row)
+    except csv.Error:  # such as a value beyond all bounds, after a quote that nothing closes
+        return BadData(
+            f"{name}: one of the rows from row {row + 1} on is not CSV; is a quote left open?"
+        )
 
 
 def _located(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | None:

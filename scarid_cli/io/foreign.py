@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.errors import BadData, bad_data
-from scarid_cli.io.bytesource import ByteSource, Wrapped
+from scarid_cli.errors import BadData, OutputFailure, UsageFault, bad_data
+from scarid_cli.io.bytesource import ByteSource, Wrapped, require_moderate
 from scarid_cli.io.notation import SPACE, Notation
 from scarid_cli.io.table import Metadata, Table, doubles
 
@@ -52,17 +52,14 @@ class TranslatedCsv(Wrapped):
 
 
 def read_archive(path: str) -> Table:
-    """The arrays of an .npz or .mat file as columns; a matrix `q` becomes q1, q2, ..."""
-    try:
-        arrays = _arrays(path)
-    except (OSError, ValueError, TypeError, NotImplementedError) as error:
-        reason = " ".join(str(error).split())
-        raise BadData(
-            f"{path}: not a readable {Path(path).suffix} file ({reason}); save it again"
-        ) from None
+    """The arrays of an .npz or .mat file as columns; a matrix `q` becomes q1, q2, ...
+
+    Single numbers are left out. Any other array that is not of real numbers, or whose numbers a
+    double cannot hold exactly, is BadData, as is a file that cannot be read.
+    """
     columns: dict[str, Any] = {}
-    for name, array in arrays.items():
-        columns |= _columns(name, np.asarray(array))
+    for name, array in _read(path).items():
+        columns |= _columns(path, name, np.asarray(array))
     lengths = {len(column) for column in columns.values()}
     if not columns or len(lengths) > 1:
         found = ", ".join(f"{name} ({len(x)})" for name, x in columns.items()) or "no numbers"
@@ -73,25 +70,64 @@ def read_archive(path: str) -> Table:
     return Table(path, batch.schema, Metadata(), iter([batch]))
 
 
-def _arrays(path: str) -> dict[str, Any]:
-    if path.endswith(".npz"):
-        with np.load(path, allow_pickle=False) as archive:
-            return {name: archive[name] for name in archive.files}
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
-
+def _read(path: str) -> dict[str, Any]:
     try:
-        found = loadmat(path)
-    except MatReadError as error:
-        raise ValueError(str(error)) from None
-    return {name: array for name, array in found.items() if not name.startswith("__")}
+        return _npz(path) if path.endswith(".npz") else _mat(path)
+    except (MemoryError, UsageFault, OutputFailure):
+        raise
+    except Exception as error:  # damage shows in whatever a reader does with it
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise BadData(
+            f"{path}: not a readable {Path(path).suffix} file ({reason}); save it again"
+        ) from None
 
 
-def _columns(name: str, array: Any) -> dict[str, Any]:
+def _npz(path: str) -> dict[str, Any]:
+    import zipfile
+
+    with zipfile.ZipFile(path) as archive:
+        for entry in archive.infolist():
+            require_moderate(path, entry.file_size)
+    with np.load(path, allow_pickle=False) as arrays:
+        return {name: arrays[name] for name in arrays.files}
+
+
+def _mat(path: str) -> dict[str, Any]:
+    """The arrays of a .mat file, read by another process: damaged ones crash scipy's reader."""
+    import io
+    import subprocess
+    import sys
+
+    program = [sys.executable, "-m", "scarid_cli.io.matfile", path]
+    done = subprocess.run(program, capture_output=True, check=False)
+    if done.returncode:
+        lines = done.stderr.decode(errors="replace").splitlines()
+        raise ValueError(lines[-1] if lines else "its reader crashed")
+    with np.load(io.BytesIO(done.stdout), allow_pickle=False) as arrays:
+        return {name: arrays[name] for name in arrays.files}
+
+
+def _columns(path: str, name: str, array: Any) -> dict[str, Any]:
     """One column for a vector; for a matrix one per column, or one per row if rows are longer."""
-    if array.dtype.kind not in "fiub" or array.ndim > 2 or array.size < 2:
+    if array.size < 2:
         return {}
-    flat = array.reshape(len(array), -1) if array.ndim else array.reshape(1, 1)
+    if array.dtype.kind not in "fiub" or array.ndim > 2:
+        raise bad_data(
+            path,
+            f"{array.ndim} dimensions" if array.ndim > 2 else f"values of type {array.dtype}",
+            expected="vectors or matrices of real numbers",
+            remedy="save only the arrays of the log",
+            column=name,
+        )
+    flat = array.reshape(len(array), -1)
+    if array.dtype.kind in "iu" and np.any(flat.astype(np.float64).astype(array.dtype) != flat):
+        raise bad_data(
+            path,
+            "whole numbers beyond 2^53",
+            expected="numbers that a double can hold",
+            remedy="subtract an offset before saving them",
+            column=name,
+        )
     if flat.shape[0] < flat.shape[1]:
         flat = flat.T
     if flat.shape[1] == 1:

@@ -41,7 +41,13 @@ class Metadata:
     @classmethod
     def from_json(cls, document: bytes) -> Metadata:
         fields = json.loads(document)
-        return cls(**{**fields, "history": tuple(fields["history"])})
+        meta = cls(**{**fields, "history": tuple(fields["history"])})
+        texts = all(isinstance(x, str | None) for x in (meta.kind, meta.robot))
+        numeric = isinstance(meta.period, int | float | None)
+        entries = all(isinstance(x, dict) for x in meta.history) and isinstance(meta.extra, dict)
+        if not (texts and numeric and entries and (meta.kind or "a").isalpha()):
+            raise ValueError("a part of the metadata has another type than it should")
+        return meta
 
 
 @dataclass(frozen=True)
@@ -72,7 +78,7 @@ class Table:
     def unit(self, column: str) -> str | None:
         """The unit of a column, where the table states one."""
         unit = (self.schema.field(column).metadata or {}).get(UNIT_KEY)
-        return unit.decode() if unit else None
+        return unit.decode(errors="replace") if unit else None
 
 
 def number(name: str, unit: str | None = None) -> pa.Field:

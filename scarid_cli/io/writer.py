@@ -6,6 +6,8 @@ import contextlib
 import errno
 import os
 import stat
+import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -27,6 +29,7 @@ EXTENSIONS = {
     ".feather": "arrow-file",
 }
 STDOUT = "<stdout>"
+YOUNG = 60.0  # s
 
 
 class Writer(Protocol):
@@ -36,19 +39,34 @@ class Writer(Protocol):
 
 
 class Target:
-    """Where bytes go. A regular file is written under another name and renamed at the end."""
+    """Where bytes go. A regular file is written under another name and renamed at the end.
+
+    The file that a symbolic link leads to is replaced, not the link, and keeps its mode.
+    """
 
     def __init__(self, path: str) -> None:
         self.name = STDOUT if path == "-" else path
         self._part: Path | None = None
-        self._place = Path(path)
+        self._place = Path(os.path.realpath(path))
         if path == "-":
             self._fd = 1
+        elif _is_stdout(path):
+            self._fd = os.dup(1)
         elif _regular(self._place):
+            self._remove_abandoned()
             self._part = self._place.with_name(f".{self._place.name}.{os.getpid()}.part")
             self._fd = self._open(self._part, os.O_CREAT | os.O_TRUNC)
         else:
             self._fd = self._open(self._place)
+
+    def _remove_abandoned(self) -> None:
+        """Remove what runs to the same output have left that were killed, and tell it."""
+        with contextlib.suppress(OSError):
+            for name in os.listdir(self._place.parent):  # noqa: PTH208 (no paths are needed)
+                if _abandoned(self._place.with_name(name), f".{self._place.name}."):
+                    self._place.with_name(name).unlink()
+                    text = f"scarid: removed {name}, left by a run that was killed"
+                    print(text, file=sys.stderr)  # noqa: T201
 
     def _open(self, path: Path, flags: int = 0) -> int:
         try:
@@ -71,6 +89,8 @@ class Target:
         try:
             self._close()
             if self._part:
+                with contextlib.suppress(FileNotFoundError):
+                    self._part.chmod(stat.S_IMODE(self._place.stat().st_mode))
                 self._part.replace(self._place)
         except OSError as error:
             self.discard()
@@ -92,7 +112,50 @@ class Target:
     def _failure(self, error: OSError) -> OutputFailure:
         closed = self._fd == 1 and error.errno == errno.EBADF
         reason = "standard output is closed" if closed else error.strerror
-        return OutputFailure(f"{self.name}: {reason}; nothing was written")
+        left = "nothing was written" if self._part or closed else "the output is incomplete"
+        return OutputFailure(f"{self.name}: {reason}; {left}")
+
+
+def same_place(one: str, other: str) -> bool:
+    """Whether two paths, or - for standard output, are spellings of one place."""
+    return _place_of(one) == _place_of(other)
+
+
+def _place_of(path: str) -> object:
+    """What tells places apart: the file itself if there is one (not its name), else its path."""
+    real = os.path.realpath(path)
+    with contextlib.suppress(OSError):
+        found = os.fstat(1) if path == "-" or _is_stdout(path) else os.stat(real)  # noqa: PTH116
+        if not stat.S_ISCHR(found.st_mode) or path == "-":  # /dev/null takes any number of them
+            return found.st_dev, found.st_ino
+    return object() if Path(real).is_char_device() else real
+
+
+def _is_stdout(path: str) -> bool:
+    return path in ("/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
+
+
+def _abandoned(part: Path, start: str) -> bool:
+    """Whether this is a part of an output of a run that is gone.
+
+    A young part may be that of a run on another machine, whose processes are not known here.
+    """
+    name = part.name
+    number = name.removeprefix(start).removesuffix(".part")
+    if name != f"{start}{number}.part" or not number.isdecimal() or _runs(int(number)):
+        return False
+    return time.time() - part.stat().st_mtime > YOUNG
+
+
+def _runs(process: int) -> bool:
+    """Whether there is a process with this number."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        pass
+    return True
 
 
 def _regular(path: Path) -> bool:

@@ -127,7 +127,6 @@ ABSURD = [
     *(f"simulate --{noise}-noise {x}" for noise in ("position", "torque") for x in ("nan", "inf")),
     *(f"simulate --{rate}-rate {x}" for rate in ("log", "control") for x in ("nan", "inf", "0")),
     *(f"simulate --bandwidth {x}" for x in ("nan", "inf", "0")),
-    "simulate --kp -1",
     "simulate --control-rate 1e12",
     "simulate --substeps 2147483648",
     *(f"trajgen --{x} 1e12" for x in ("duration", "rate")),

@@ -1,0 +1,77 @@
+"""Outputs are not mixed, not lost, and left as they were unless the command succeeds."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import Result
+
+Run = Callable[..., Result]
+
+SPELLINGS = {
+    "another spelling": ("a.csv", "./a.csv"),
+    "a folder and back": ("a.csv", "folder/../a.csv"),
+    "a symbolic link": ("a.csv", "link.csv"),
+    "standard output": ("-", "/dev/stdout"),
+    "standard output as a file": ("/dev/stdout", "/dev/fd/1"),
+}
+
+
+@pytest.mark.parametrize("name", SPELLINGS)
+def test_two_outputs_under_two_spellings_of_one_path_are_refused(
+    name: str, shell: Run, tmp_path: Path
+) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link.csv").symlink_to("a.csv")
+    first, second = SPELLINGS[name]
+    result = shell(f"scarid trajgen --duration 3 -o {first} --expected {second} --torque-noise 1")
+    assert result.status == 2
+    assert result.out == ""
+    assert "two outputs cannot share it" in result.err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["folder", "link.csv"]
+
+
+def test_an_output_that_replaces_a_file_keeps_its_mode_and_follows_a_link(
+    shell: Run, tmp_path: Path
+) -> None:
+    (tmp_path / "folder").mkdir()
+    file, link = tmp_path / "folder" / "a.csv", tmp_path / "link.csv"
+    file.write_text("before")
+    file.chmod(0o640)
+    link.symlink_to("folder/a.csv")
+    assert shell("scarid -h > /dev/null; scarid trajgen --duration 3 -q -o link.csv").status == 0
+    assert link.is_symlink()
+    assert file.read_text().startswith("t,q1_ref")
+    assert stat.S_IMODE(file.stat().st_mode) == 0o640
+
+
+def test_the_rest_of_a_killed_run_is_told_and_removed(shell: Run, tmp_path: Path) -> None:
+    """That of a run which is still there is left alone, and so is any other file."""
+    mine = tmp_path / f".a.csv.{os.getpid()}.part"
+    others = [mine, tmp_path / ".a.csv.x.part", tmp_path / ".b.csv.999999999.part"]
+    abandoned = tmp_path / ".a.csv.999999999.part"
+    young = tmp_path / ".a.csv.999999998.part"
+    for path in (abandoned, *others):
+        path.write_text("a part")
+        os.utime(path, (0.0, 0.0))
+    young.write_text("perhaps of a run on another machine")
+    result = shell("scarid trajgen --duration 3 -q -o a.csv")
+    assert result.status == 0
+    assert ".a.csv.999999999.part" in result.err
+    assert not abandoned.exists()
+    assert all(path.exists() for path in (*others, young))
+
+
+def test_an_output_to_closed_standard_output_by_its_path_is_a_failure(shell: Run) -> None:
+    result = shell("scarid trajgen --duration 3 -q -o /dev/stdout >&-")
+    assert result.status == 74
+    assert result.err.count("\n") == 1
+
+
+def test_standard_output_can_be_given_by_its_path(shell: Run) -> None:
+    expected = shell("scarid trajgen --duration 3 -q")
+    assert shell("scarid trajgen --duration 3 -q -o /dev/stdout | cat").out == expected.out
