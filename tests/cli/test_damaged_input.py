@@ -129,7 +129,7 @@ STRANGE = {
 
 
 @pytest.mark.parametrize("kind", STRANGE)
-@pytest.mark.parametrize("command", ["convert", "filter", "resample --rate 50", "info"])
+@pytest.mark.parametrize("command", ["convert", "filter", "resample -q --rate 50", "info"])
 def test_a_column_of_an_unusual_type_passes_or_is_refused_in_one_line(
     kind: str, command: str, scarid: Run, tmp_path: Path
 ) -> None:
