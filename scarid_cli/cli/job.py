@@ -156,7 +156,8 @@ class Job:
         """Report a line to the user, on standard error."""
         if not self.quiet:
             name = click.get_current_context().command_path
-            print(f"{name}: {message}", file=sys.stderr)  # noqa: T201
+            with contextlib.suppress(OSError):  # a remark that cannot be made is no failure
+                print(f"{name}: {message}", file=sys.stderr)  # noqa: T201
 
 
 @contextlib.contextmanager
