@@ -78,7 +78,8 @@ def _failed(where: str, error: Exception) -> int:
 
 def _reported(where: str, message: str, status: int) -> int:
     # A message of a library may have line breaks.
-    print(f"{where}: {' '.join(message.split())}", file=sys.stderr)  # noqa: T201
+    with contextlib.suppress(OSError):  # the status says it as well
+        print(f"{where}: {' '.join(message.split())}", file=sys.stderr, flush=True)  # noqa: T201
     return status
 
 

@@ -207,7 +207,8 @@ class Job:
         if not self.quiet:
             name = click.get_current_context().command_path
             start = styled(verdict, verdict, 2) if verdict else ""
-            print(f"{name}: {start}{message.removeprefix(verdict)}", file=sys.stderr)  # noqa: T201
+            with contextlib.suppress(OSError):  # a remark that cannot be made is no failure
+                print(f"{name}: {start}{message.removeprefix(verdict)}", file=sys.stderr)  # noqa: T201
 
 
 @contextlib.contextmanager

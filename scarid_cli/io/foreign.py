@@ -88,7 +88,7 @@ def _npz(path: str) -> dict[str, Any]:
     with zipfile.ZipFile(path) as archive:
         for entry in archive.infolist():
             require_moderate(path, entry.file_size)
-    with np.load(path, allow_pickle=False) as arrays:
+    with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as arrays:
         return {name: arrays[name] for name in arrays.files}
 
 

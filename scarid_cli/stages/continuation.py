@@ -5,8 +5,8 @@ from __future__ import annotations
 import io
 import json
 from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -51,13 +51,15 @@ def saved(checkpoint: Checkpoint, settings: dict[str, Any]) -> bytes:
 def restored(path: str, settings: dict[str, Any]) -> Checkpoint:
     """The checkpoint in a file, which must be that of an estimation with the same settings."""
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
             document = json.loads(str(archive["tree"]))
             checkpoint = _unpacked(document["checkpoint"], archive)
-            before = document["settings"]
+            before = dict(document["settings"])
+            if not isinstance(checkpoint, Checkpoint):
+                raise TypeError("another structure")
     except FileNotFoundError:
         raise UsageFault(f"{path}: no such file; make one with `scarid identify --save`") from None
-    except (BadZipFile, EOFError, KeyError, OSError, TypeError, ValueError):
+    except Exception:  # damage shows in whatever a reader does with it
         raise BadData(
             f"{path}: this is not a saved estimation; make one with `scarid identify --save`"
         ) from None
@@ -67,7 +69,6 @@ def restored(path: str, settings: dict[str, Any]) -> Checkpoint:
                 f"{path}: the estimation was saved with {key} {before.get(key)}, not {value}; "
                 "continue it with the same"
             )
-    assert isinstance(checkpoint, Checkpoint)
     return checkpoint
 
 

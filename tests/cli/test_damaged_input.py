@@ -212,3 +212,24 @@ def test_malformed_metadata_is_bad_data(document: bytes, scarid: Run, tmp_path: 
     table = pa.table({"t": T, "q1": T}).replace_schema_metadata({b"scarid": document})
     pq.write_table(table, tmp_path / "log.parquet")
     refused(scarid("info", tmp_path / "log.parquet"), 65, "metadata")
+
+
+@pytest.mark.parametrize("error", [">&-", "/dev/full"])
+def test_the_status_is_that_of_the_failure_when_standard_error_is_closed_or_full(
+    error: str, shell: Run, tmp_path: Path
+) -> None:
+    (tmp_path / "bad.csv").write_text("t,q1\n0,1\n")
+    words = "2>&-" if error == ">&-" else f"2> {error}"
+    assert shell(f"scarid filter bad.csv {words}").status == 65
+    assert shell(f"scarid trajgen --duration 3 {words}").status == 0
+
+
+def test_a_damaged_state_is_bad_data(scarid: Run, samples: Path, tmp_path: Path) -> None:
+    motion, state = tmp_path / "motion.parquet", tmp_path / "state.npz"
+    assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
+    result = scarid("identify", motion, "--save", state, "-o", tmp_path / "p.csv")
+    assert result.status == 0
+    content = state.read_bytes()
+    for n in np.random.default_rng(0).integers(0, len(content) - 1, 10):
+        state.write_bytes(content[:n])
+        refused(scarid("identify", motion, "--from", state), 65, "state.npz")
