@@ -12,6 +12,7 @@ from scarid_cli.cli.declare import declare
 @options.table_input
 @options.robot
 @click.option("--strict", is_flag=True, help="Exit with 1 if there are warnings only.")
+@options.window
 @options.as_json
 @options.common
 def command() -> None:

@@ -43,6 +43,7 @@ from scarid_cli.cli.described import describing
     help="Allow settings that differ between joints together with --match. A torque contains the "
     "accelerations of all joints of an arm, so this suits only joints that move independently.",
 )
+@options.selection
 @options.table_output
 @options.common
 def command() -> None:

@@ -33,6 +33,7 @@ from scarid_cli.cli.declare import declare
     is_flag=True,
     help="Filter forwards and backwards: no delay, but offline. Holds the whole log in memory.",
 )
+@options.selection
 @options.table_output
 @options.common
 def command() -> None:

@@ -78,6 +78,7 @@ from scarid_cli.cli.described import describing
     metavar="STATE",
     help="Write the state of the estimation (.npz), to be continued with --from.",
 )
+@options.selection
 @options.table_output
 @options.common
 def command() -> None:

@@ -8,6 +8,7 @@ from scarid_cli.cli.declare import declare
 
 @declare("info")
 @options.log_input
+@options.window
 @options.as_json
 @options.common
 def command() -> None:

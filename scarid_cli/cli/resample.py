@@ -18,6 +18,7 @@ from scarid_cli.cli.declare import declare
     help="The longest interval to interpolate [s]; a longer one is a gap.  [default: 5 periods of "
     "the log, or one period of the new rate if that is longer]",
 )
+@options.selection
 @options.table_output
 @options.common
 def command() -> None:

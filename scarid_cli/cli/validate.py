@@ -14,6 +14,7 @@ from scarid_cli.cli.declare import declare
 @options.robot
 @options.treatment
 @options.side_output("--predictions", help="Write the measured and the predicted torques.")
+@options.selection
 @options.table_output
 @options.common
 def command() -> None:
