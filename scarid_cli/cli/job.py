@@ -15,14 +15,14 @@ import click
 
 from scarid_cli import __version__
 from scarid_cli.cli.commandline import command_line
-from scarid_cli.cli.options import first_and_last
 from scarid_cli.cli.robots import another, misfit
+from scarid_cli.cli.selecting import selection_of
 from scarid_cli.cli.terminal import is_terminal, styled
 from scarid_cli.errors import TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
-from scarid_cli.io.selection import REFUSE, SPLIT, Lacking, Selection, within
+from scarid_cli.io.selection import REFUSE, SPLIT, Lacking, within
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document, Output, all_or_none, same_place, write_table
 
@@ -49,7 +49,7 @@ class Job:
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
         self.notes: list[str] = []
-        self._selection = _selection_of(options)
+        self._selection = selection_of(options)
         self._lacking: list[tuple[str, Lacking]] = []
 
     def output(self, path: str, wanted: str | None = None, *, readable: bool = False) -> Output:
@@ -120,7 +120,7 @@ class Job:
         self,
         path: str,
         kind: str,
-        robot: str | None,
+        robot: str | Robot | None,
         *,
         torques: bool = False,
         reference: bool = False,
@@ -134,10 +134,10 @@ class Job:
         and clock of a table `as_recorded` are not checked.
         """
         opened = within(self._opened_table(path), self._selection)
-        if without_derivatives and not schemas.numbered(opened.columns, "dq", "ddq"):
+        if without_derivatives and not schemas.numbered(opened.columns, "ddq"):
             kind = without_derivatives
         table = conforming(opened, kind)
-        arm = self.robot(robot, table)
+        arm = self.robot(robot, table) if isinstance(robot, str | None) else robot
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
         columns = schemas.of_joints(len(arm.joints), *fields)
@@ -271,12 +271,3 @@ def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:
     if len(values) not in (1, joints):
         raise UsageFault(f"{option}: {len(values)} values for {joints} joints; give 1 or {joints}")
     return list(values) * (joints // len(values))
-
-
-def _selection_of(options: dict[str, Any]) -> Selection:
-    """The rows to read, by the options of `selection`, if the command has them."""
-    first, last = first_and_last(options.get("rows") or ":") or (1, None)
-    start, end = options.get("from_time"), options.get("to_time")
-    if start is not None and end is not None and end <= start:
-        raise UsageFault(f"--to-time {end:g} is not after --from-time {start:g}; give a later time")
-    return Selection(start, end, first, last, options.get("missing") or REFUSE)

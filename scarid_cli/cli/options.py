@@ -17,7 +17,7 @@ from scarid_cli.io import FORMATS
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-# The options of `selection`, `table_output` and `common`: the job deals with them, not the command.
+# The options of `selecting`, `table_output` and `common`: the job deals with them, not the command.
 SELECTION = ("from_time", "to_time", "rows", "missing")
 SHARED = (*SELECTION, "output", "format", "no_history", "quiet", "verbose", "debug")
 
@@ -113,27 +113,6 @@ class Numbers(click.ParamType[tuple[float, ...]]):
         return numbers
 
 
-def first_and_last(rows: str) -> tuple[int, int | None] | None:
-    """The rows that `A:B` names, counted from 1; None if this names none."""
-    first, colon, last = rows.partition(":")
-    if not colon or not all(part.isdecimal() or not part for part in (first, last)):
-        return None
-    low, high = int(first or 1), int(last) if last else None
-    return (low, high) if low >= 1 and (high is None or high >= low) else None
-
-
-class Rows(click.ParamType[str]):
-    """`A:B`, the rows from A to B of a log, counted from 1; A or B may be left out."""
-
-    name = "rows"
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> str:
-        if first_and_last(str(value)) is None:
-            text = f"{value!r}: give the first and the last row, counted from 1, such as 100:5000, "
-            self.fail(f"{text}100: or :5000", param, ctx)
-        return str(value)
-
-
 def require_readable(path: str, *, folders: bool = False) -> None:
     """Refuse a path that does not exist (exit status 2), or that cannot be read (74)."""
     try:
@@ -158,7 +137,9 @@ RATE = Number(Range(0.0, 1e7, open=True))  # Hz
 DURATION = Number(Range(0.0, 1e6, open=True))  # s
 
 
-def _all(*decorators: Callable[[F], F]) -> Callable[[F], F]:
+def all_of(*decorators: Callable[[F], F]) -> Callable[[F], F]:
+    """Several declarations as one, in this order."""
+
     def decorate(function: F) -> F:
         for decorator in reversed(decorators):
             function = decorator(function)
@@ -172,42 +153,15 @@ def table_input(function: F) -> F:
     return click.argument("file", default="-", metavar="[FILE]", type=INPUT)(function)
 
 
+def table_inputs(function: F) -> F:
+    """The tables to read: FILEs, or standard input."""
+    return click.argument("files", nargs=-1, metavar="[FILE]...", type=INPUT)(function)
+
+
 def log_input(function: F) -> F:
     """The table or the recording to read: FILE, the folder of a rosbag2, or standard input."""
     kind = InputFile(folders=True)
     return click.argument("file", default="-", metavar="[FILE]", type=kind)(function)
-
-
-def window(function: F) -> F:
-    """Which part of a log is read."""
-    return _all(
-        click.option(
-            "--from-time", type=Number(FINITE), metavar="S",
-            help="Read the log from this time on [s], by its own clock.",
-        ),
-        click.option(
-            "--to-time", type=Number(FINITE), metavar="S",
-            help="Read the log up to this time [s], by its own clock, and stop there.",
-        ),
-        click.option(
-            "--rows", type=Rows(), metavar="A:B",
-            help="Read rows A to B of the log, counted from 1; A or B may be left out.",
-        ),
-    )(function)  # fmt: skip
-
-
-def selection(function: F) -> F:
-    """Which part of a log is read, and what becomes of rows that lack a value."""
-    return _all(
-        window,
-        click.option(
-            "--missing", type=click.Choice(("refuse", "drop", "split")), default="refuse",
-            show_default=True,
-            help="What to do with rows that lack a value which the command reads: refuse the log; "
-            "drop them, as if they had not been recorded; or drop them and begin a new segment "
-            "after them, as after a gap.",
-        ),
-    )(function)  # fmt: skip
 
 
 def side_output(*names: str, help: str, metavar: str = "FILE") -> Callable[[F], F]:
@@ -230,7 +184,7 @@ def settings_of(algorithm: str) -> Callable[[F], F]:
 
 def table_output(function: F) -> F:
     """Where the table goes and in what format."""
-    return _all(
+    return all_of(
         click.option(
             "-o", "--output", cls=Unrecorded, default="-", metavar="FILE",
             help="Write the table to FILE, in the format of its extension "
@@ -256,7 +210,7 @@ def as_json(function: F) -> F:
 
 def common(function: F) -> F:
     """What every command takes."""
-    return _all(
+    return all_of(
         click.option("-q", "--quiet", cls=Unrecorded, is_flag=True, help="Report only errors."),
         click.option("-v", "--verbose", cls=Unrecorded, is_flag=True, help="Report what was read."),
         click.option(
@@ -274,7 +228,7 @@ robot: Callable[[F], F] = click.option(
 
 def treatment(function: F) -> F:
     """How the rows of the regression are treated, by identify, validate and urdf alike."""
-    return _all(
+    return all_of(
         click.option(
             "--skip", type=NUMBERS, metavar="ROWS[,ROWS]",
             help="Leave out this many rows at the start and, if there are two numbers, at the end.",

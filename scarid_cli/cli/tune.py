@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
@@ -30,7 +30,7 @@ from scarid_cli.cli.declare import declare
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of a search."
 )
 @options.side_output("--save", help="Write the chosen settings, for differentiate --settings.")
-@options.selection
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:

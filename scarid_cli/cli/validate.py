@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
@@ -14,7 +14,7 @@ from scarid_cli.cli.declare import declare
 @options.robot
 @options.treatment
 @options.side_output("--predictions", help="Write the measured and the predicted torques.")
-@options.selection
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:
