@@ -18,7 +18,7 @@ from scarid_cli.cli.commandline import command_line
 from scarid_cli.cli.robots import another, misfit
 from scarid_cli.cli.selecting import selection_of
 from scarid_cli.cli.terminal import is_terminal, styled
-from scarid_cli.errors import TooShort, UsageFault
+from scarid_cli.errors import CORRECT, TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
@@ -50,6 +50,7 @@ class Job:
         self.left_out: list[TooShort] = []
         self.notes: list[str] = []
         self._selection = selection_of(options)
+        self._offers = "missing" in options  # whether the command has --missing
         self._lacking: list[tuple[str, Lacking]] = []
 
     def output(self, path: str, wanted: str | None = None, *, readable: bool = False) -> Output:
@@ -108,8 +109,10 @@ class Job:
         lacking = None
         if self._selection.missing != REFUSE and schemas.load(kind).sampled:
             lacking = partial(self._without_lacking, table.name)
-        found = checked(table, kind, reads=reads, regular=regular, lacking=lacking)
-        return self._reported(found)
+        remedy = f"{CORRECT}, or leave such rows out with --missing" if self._offers else CORRECT
+        return self._reported(
+            checked(table, kind, reads=reads, regular=regular, lacking=lacking, remedy=remedy)
+        )
 
     def _without_lacking(self, name: str, columns: list[str]) -> Lacking:
         lacking = Lacking(columns, self._selection.missing == SPLIT)

@@ -19,15 +19,18 @@ Reading = Callable[[str, "str | Robot | None"], "tuple[Table, Robot]"]
 
 
 def read_logs(
-    job: Job, files: Sequence[str], robot: str | None, reading: Reading
+    job: Job, files: Sequence[str], robot: str | None, reading: Reading, *, skip: object = None
 ) -> tuple[Table, Robot]:
     """The logs as one table, and their robot, which is that of the first log if none is given.
 
-    Each is opened by `reading`, given its path and the robot. A single log stays as it is.
+    Each is opened by `reading`, given its path and the robot; without files, this is standard
+    input. A single log stays as it is. `skip` is what was given to --skip.
     """
-    first, arm = reading(files[0], robot)
-    if len(files) == 1:
+    first, arm = reading(files[0] if files else "-", robot)
+    if len(files) < 2:
         return first, arm
+    if skip:
+        raise UsageFault("--skip counts the rows of one log; choose rows of each with --rows")
     _require_different(files)
     tables = [first, *(reading(file, arm)[0] for file in files[1:])]
     if remark := another(arm, tables[1:]):

@@ -55,9 +55,7 @@ def run(
     if initial and not method.INITIAL:
         raise UsageFault(f"--initial: {name} has no initial parameters; leave the option out")
     side, place = job.side_table(trace), job.side_text(save)
-    if given["skip"] and len(files) > 1:
-        raise UsageFault("--skip counts the rows of one log; choose rows of each with --rows")
-    table, arm = read_logs(job, files or ("-",), robot, partial(_read, job, method))
+    table, arm = read_logs(job, files, robot, partial(_read, job, method), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
     if not method.FOLLOWS and not numbered(table.columns, "ddq"):
         row_by_row = bool(trace or resumed or save)
