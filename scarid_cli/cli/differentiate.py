@@ -43,6 +43,14 @@ from scarid_cli.cli.described import describing
     help="Allow settings that differ between joints together with --match. A torque contains the "
     "accelerations of all joints of an arm, so this suits only joints that move independently.",
 )
+@click.option(
+    "--velocity",
+    type=click.Choice(("estimated", "measured")),
+    default="estimated",
+    show_default=True,
+    help="Estimate the velocities from the positions, or take the columns dq1, dq2, ... of the "
+    "log, behind the low-pass of the method; the accelerations are their derivatives.",
+)
 @selecting.selection
 @options.table_output
 @options.common
@@ -57,7 +65,8 @@ def command() -> None:
       scarid differentiate --method p2smd --set gamma0=25 --set gamma1=20 log.csv
       scarid filter --zero-phase --cutoff 20 log.csv | scarid differentiate --method central
 
-    Adds the columns dq1, dq2, ... and ddq1, ddq2, ... for the positions q1, q2, ... The default
+    Adds the columns dq1, dq2, ... and ddq1, ddq2, ... for the positions q1, q2, ... Velocities
+    that the log has are kept as dq1_measured, ... unless --velocity measured uses them. The default
     settings suit moves that take a second, sampled at 200 Hz with a 16-bit encoder. Those of p2smd,
     2smd, astd and ed-fir are the paper's Table 1, or the nearest settings that work.
 
