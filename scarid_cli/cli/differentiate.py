@@ -48,8 +48,8 @@ from scarid_cli.cli.described import describing
     type=click.Choice(("estimated", "measured")),
     default="estimated",
     show_default=True,
-    help="Estimate the velocities from the positions, or take the columns dq1, dq2, ... of the "
-    "log, behind the low-pass of the method; the accelerations are their derivatives.",
+    help="Estimate the velocities from the positions, or take those of the log (dq1 or "
+    "dq1_measured, ...) behind the low-pass of the method, and differentiate these.",
 )
 @selecting.selection
 @options.table_output

@@ -15,7 +15,6 @@ from scarid_cli.algorithms.processes.bandwidth import bandwidth_of, velocity_noi
 from scarid_cli.algorithms.processes.matching import settling_rows
 from scarid_cli.algorithms.processes.method import MatchedForm, Method
 from scarid_cli.errors import TooShort
-from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import SEGMENT, Table, matrix, number, without
 from scarid_cli.stages.columns import Edges, Plan, Task, processed
 
@@ -94,20 +93,6 @@ def _motion(
         table = without(table, "settled")
     meta = replace(table.meta, kind="motion", extra=extra)
     return processed(replace(table, meta=meta), schema, planned, left_out)
-
-
-def measured_apart(table: Table) -> Table:
-    """The table with dq and ddq of its own as `dq*_measured`, unless they are estimates.
-
-    In a motion they are estimates: those of an earlier differentiation, which are replaced.
-    """
-    if table.meta.kind == "motion" or "settled" in table.columns:
-        return table
-    own = [f"{name}_measured" for name in numbered(table.columns, "dq", "ddq")]
-    new = {name.removesuffix("_measured"): name for name in own if name not in table.columns}
-    schema = pa.schema([field.with_name(new.get(field.name, field.name)) for field in table.schema])
-    renamed = (batch.rename_columns(schema.names) for batch in table.batches)
-    return replace(table, schema=schema, batches=renamed) if new else table
 
 
 def _plain(table: Table, methods: list[Method]) -> Plan:

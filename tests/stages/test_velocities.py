@@ -18,7 +18,8 @@ from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.processes.method import Matching
 from scarid_cli.io.table import Table
-from scarid_cli.stages.differentiate import differentiate, matched, measured_apart
+from scarid_cli.stages.differentiate import differentiate, matched
+from scarid_cli.stages.velocities import apart
 
 Run = Callable[..., Result]
 LINEAR = [n for n in DIFFERENTIATORS.names if DIFFERENTIATORS.load(n)().suits_velocities]
@@ -69,7 +70,7 @@ def test_the_bits_are_the_same_however_the_rows_arrive(
 def test_velocities_of_the_log_are_kept_beside_the_estimates() -> None:
     methods = [DIFFERENTIATORS.load("kalman")()] * 2
     measurement = replace(log(), meta=replace(log().meta, kind="measurement"))
-    found = collected(matched(measured_apart(measurement), methods))
+    found = collected(matched(apart(measurement), methods))
     np.testing.assert_array_equal(found.column("dq1_measured"), motion()["dq1"])
     assert not np.array_equal(found.column("dq1"), motion()["dq1"])
 
@@ -91,6 +92,11 @@ def test_the_command_tells_what_becomes_of_them(with_velocities: Path, scarid: R
     used = scarid("differentiate", "--velocity", "measured", with_velocities)
     assert "_measured" not in used.out.splitlines()[0]
     assert used.status == 0
+    names, rows = with_velocities.read_text("utf-8").split("\n", 1)
+    for column in ("dq1", "dq2"):
+        names = names.replace(f",{column},", f",{column}_measured,")
+    with_velocities.write_text(f"{names}\n{rows}")
+    assert scarid("differentiate", "--velocity", "measured", with_velocities).out == used.out
 
 
 def test_a_log_with_velocities_only_is_a_measurement(with_velocities: Path, scarid: Run) -> None:

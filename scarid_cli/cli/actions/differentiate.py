@@ -11,6 +11,7 @@ from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.schemas import joints_of, numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages import differentiate as stage
+from scarid_cli.stages import velocities
 from scarid_cli.stages.suitability import Watch
 
 
@@ -19,17 +20,14 @@ def run(
 ) -> None:
     """Write the motion; the choice is that of a method and its settings, of `configured`."""
     own = velocity == "measured"
-    signals = ["q"] if match is False else ["q", "tau"]
-    signals += ["dq"] if own else []
-    log = job.read(file, "measurement", reads=lambda names: numbered(names, *signals))
-    methods = configured(joints_of(log.columns, "q"), **choice)
-    if own:
-        _require_velocities(log, methods)
-    table = log if own else stage.measured_apart(log)
-    if table.columns != log.columns:
-        job.notes.append(
-            "the velocities of the log are kept as dq1_measured, ...; --velocity measured uses them"
-        )
+    signals = ("q",) if match is False else ("q", "tau")
+
+    def reads(names: list[str]) -> list[str]:
+        return numbered(names, *signals) + (velocities.measured(names) if own else [])
+
+    table = job.read(file, "measurement", reads=reads)
+    methods = configured(joints_of(table.columns, "q"), **choice)
+    table = _with_velocities(table, methods) if own else _with_estimates(job, table)
     if match is None:
         match = joints_of(table.columns, "tau") > 0
     if match and not per_joint:
@@ -57,31 +55,42 @@ def _watched(job: Job, table: Table, methods: list[Any]) -> None:
         )
 
 
-def _require_velocities(log: Table, methods: list[Any]) -> None:
-    """Refuse a log without velocities of all joints, or a method that only takes positions."""
+def _with_estimates(job: Job, log: Table) -> Table:
+    """The log, whose own velocities, if it has any, are kept beside those to be estimated."""
+    table = velocities.apart(log)
+    if table.columns != log.columns:
+        job.notes.append(
+            "the velocities of the log are kept as dq1_measured, ...; --velocity measured uses them"
+        )
+    return table
+
+
+def _with_velocities(log: Table, methods: list[Any]) -> Table:
+    """The log with its own velocities as dq.
+
+    Refuses a log without those of all joints, or a method that only takes positions.
+    """
+    log = velocities.used(log)
     for i, method in enumerate(methods, start=1):
-        column, unit = f"dq{i}", log.unit(f"q{i}")
-        if column not in log.columns:
-            raise bad_data(
-                log.name,
-                f"the columns {', '.join(log.columns)}",
-                expected="the measured velocity of each joint",
-                remedy="name the columns with `scarid convert --map`, or leave --velocity out",
-                column=column,
-            )
-        if unit and log.unit(column) not in (None, f"{unit}/s"):
-            raise bad_data(
-                log.name,
-                f"unit {log.unit(column)}",
-                expected=f"{unit}/s",
-                remedy="convert it with `scarid convert --unit`",
-                column=column,
-            )
+        _require_velocity(log, f"dq{i}", log.unit(f"q{i}"))
         if not method.suits_velocities:
             raise UsageFault(
                 "--velocity measured needs a linear method, such as kalman or rts: what this one "
                 "does depends on the positions, for which its settings are"
             )
+    return log
+
+
+def _require_velocity(log: Table, column: str, unit: str | None) -> None:
+    """Refuse a log without this velocity, or with one in another unit than that of the position."""
+    if column not in log.columns:
+        found, expected = f"the columns {', '.join(log.columns)}", "the velocity of each joint"
+        remedy = "name the columns with `scarid convert --map`, or leave --velocity out"
+        raise bad_data(log.name, found, expected=expected, remedy=remedy, column=column)
+    own = log.unit(column)
+    if unit and own and own != f"{unit}/s":
+        remedy = "convert it with `scarid convert --unit`"
+        raise bad_data(log.name, f"unit {own}", expected=f"{unit}/s", remedy=remedy, column=column)
 
 
 def _require_alike(methods: list[Any]) -> None:
