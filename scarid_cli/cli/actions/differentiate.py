@@ -16,7 +16,7 @@ from scarid_cli.stages.suitability import Watch
 
 
 def run(
-    job: Job, *, file: str, match: bool | None, per_joint: bool, velocity: str, **choice: Any
+    job: Job, *, file: str, match: bool | None, per_joint: bool, velocity: str | None, **choice: Any
 ) -> None:
     """Write the motion; the choice is that of a method and its settings, of `configured`."""
     own = velocity == "measured"
