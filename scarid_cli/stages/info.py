@@ -15,6 +15,8 @@ from scarid_cli.io import schemas
 from scarid_cli.io.clock import nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
 
+FEW = 8  # values of a list that are shown on a line
+
 
 @dataclass
 class Extent:
@@ -141,7 +143,7 @@ def _columns(columns: tuple[Column, ...]) -> Iterator[str]:
 
 
 def _metadata(key: str, value: Any) -> Iterator[str]:
-    """A value on one line, a list with one line for each item, a matrix by its size only."""
+    """A value on one line, a collection with one line for each item, a matrix by its size only."""
     if isinstance(value, list) and value and isinstance(value[0], list):
         yield f"{key:<9} {len(value)} by {len(value[0])} numbers"
     elif isinstance(value, dict) and "information" in value:
@@ -149,6 +151,9 @@ def _metadata(key: str, value: Any) -> Iterator[str]:
     elif isinstance(value, list):
         yield key
         yield from (f"  {_text(item)}" for item in value)
+    elif isinstance(value, dict) and any(isinstance(item, dict | list) for item in value.values()):
+        yield key
+        yield from (f"  {name}: {_text(item)}" for name, item in value.items())
     else:
         yield f"{key:<9} {_text(value)}"
 
@@ -156,6 +161,8 @@ def _metadata(key: str, value: Any) -> Iterator[str]:
 def _text(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{name} {_text(item)}" for name, item in value.items())
+    if isinstance(value, list):
+        return " ".join(map(_text, value)) if len(value) <= FEW else f"{len(value)} values"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
