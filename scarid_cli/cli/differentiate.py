@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 from scarid_cli.cli.described import describing
 
@@ -43,6 +43,7 @@ from scarid_cli.cli.described import describing
     help="Allow settings that differ between joints together with --match. A torque contains the "
     "accelerations of all joints of an arm, so this suits only joints that move independently.",
 )
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:

@@ -6,8 +6,12 @@ import shlex
 from dataclasses import replace
 from typing import Any
 
+from click import get_current_context
+
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.job import Job, command_line, was_given
+from scarid_cli.cli.commandline import command_line, given_words, was_given
+from scarid_cli.cli.job import Job
+from scarid_cli.cli.options import SELECTION
 from scarid_cli.cli.progress import steps
 from scarid_cli.io.table import Table
 
@@ -32,15 +36,16 @@ def motion(job: Job, measurement: Table, robot: Robot, added: list[str]) -> Tabl
 
 
 def _pipe(smoother: Any, added: list[str]) -> str:
-    """The pipe of two commands that gives the same parameters."""
-    from click import get_current_context
-
-    file = str(get_current_context().params["file"])
-    log = "" if file == "-" else f" {shlex.quote(file)}"
+    """The pipe of two commands that gives the same parameters; of several logs, one for each."""
     settings = " ".join(f"--set {n}={getattr(smoother, n):.4g}" for n in ("noise", "intensity"))
-    differentiate = f"scarid differentiate --method rts {settings} --format arrow{log}"
-    words = [command_line(without="file"), *(word for word in added if _is_new(word))]
-    return f"{differentiate} | {' '.join(words)}"
+    words = ["scarid differentiate --method rts", settings, *given_words(SELECTION)]
+    differentiate = " ".join([*words, "--format arrow"])
+    options = [word for word in added if _is_new(word)]
+    identify = " ".join([command_line(without=("files", *SELECTION)), *options])
+    files = [shlex.quote(str(file)) for file in get_current_context().params["files"]]
+    if len(files) > 1:
+        return " ".join([identify, *(f"<({differentiate} {file})" for file in files)])
+    return f"{' '.join([differentiate, *(f for f in files if f != '-')])} | {identify}"
 
 
 def _is_new(option: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
@@ -27,15 +27,10 @@ from scarid_cli.cli.declare import declare
     "--robot).",
 )
 @click.option(
-    "--to-time",
-    type=options.NUMBER,
-    metavar="SECONDS",
-    help="Use only the first seconds of the log, as for settings of an online identification.",
-)
-@click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of a search."
 )
 @options.side_output("--save", help="Write the chosen settings, for differentiate --settings.")
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:

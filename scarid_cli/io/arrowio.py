@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import pyarrow as pa
@@ -65,7 +66,8 @@ def read_parquet(source: ByteSource) -> Table:
         raise _unreadable(source.name, error) from None
     require_moderate(source.name, _largest_chunk(file.metadata))
     batches = file.iter_batches(batch_size=READ_ROWS, use_threads=False)
-    return _table(source.name, file.schema_arrow, _counted(batches, source.name, file.metadata))
+    found = _counted(batches, source.name, file.metadata)
+    return replace(_table(source.name, file.schema_arrow, found), length=file.metadata.num_rows)
 
 
 def _largest_chunk(footer: Any) -> int:

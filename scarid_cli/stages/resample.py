@@ -100,20 +100,20 @@ def _ordered(table: Table) -> Iterator[pa.RecordBatch]:
     for batch in table.batches:
         if batch.num_rows:
             steps, _, last = steps_of(batch, last)
-            _check(steps, table.name, row)
+            _check(steps, table, row)
         row += batch.num_rows
         yield batch
 
 
-def _check(steps: Array, name: str, row: int) -> None:
+def _check(steps: Array, table: Table, row: int) -> None:
     if np.any(steps < 0.0):
         at = int(np.argmax(steps < 0.0))
         raise bad_data(
-            name,
+            table.name,
             f"time that goes back by {-steps[at]:.6g} s",
             expected="time to increase from row to row",
             remedy="sort the log",
-            row=row + at + 1,
+            row=table.row(row + at + 1),
             column="t",
         )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
+from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import motion
 from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
@@ -32,7 +34,7 @@ ONLINE, OFFLINE = "rls", "wls"  # what a motion, and a measurement, are identifi
 def run(
     job: Job,
     *,
-    file: str,
+    files: tuple[str, ...],
     robot: str | None,
     estimator: str | None,
     initial: str | None,
@@ -53,9 +55,9 @@ def run(
     if initial and not method.INITIAL:
         raise UsageFault(f"--initial: {name} has no initial parameters; leave the option out")
     side, place = job.side_table(trace), job.side_text(save)
-    table, arm = _read(job, file, robot, method)
+    table, arm = read_logs(job, files, robot, partial(_read, job, method), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
-    if not method.FOLLOWS and not numbered(table.columns, "dq"):
+    if not method.FOLLOWS and not numbered(table.columns, "ddq"):
         row_by_row = bool(trace or resumed or save)
         if not (estimator or values or given["forgetting"] or initial or row_by_row):
             name, method = OFFLINE, ESTIMATORS.load(OFFLINE)
@@ -105,7 +107,7 @@ def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
     return REQUIRED
 
 
-def _read(job: Job, file: str, robot: str | None, method: Any) -> tuple[Table, Robot]:
+def _read(job: Job, method: Any, file: str, robot: str | Robot | None) -> tuple[Table, Robot]:
     """The motion or measurement, or whatever else the estimator reads, and the robot."""
     return job.read_for(
         file,
