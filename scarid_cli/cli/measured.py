@@ -9,7 +9,7 @@ from typing import Any
 from click import get_current_context
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.commandline import command_line, given_words, was_given
+from scarid_cli.cli.command_line import command_line, given_words, was_given
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.options import SELECTION
 from scarid_cli.cli.progress import steps
