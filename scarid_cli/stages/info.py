@@ -15,7 +15,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.clock import nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
 
-FEW = 8  # values of a list that are shown on a line
+FEW = 8  # values of a list, or entries of a dictionary, that are shown
 
 
 @dataclass
@@ -151,6 +151,8 @@ def _metadata(key: str, value: Any) -> Iterator[str]:
     elif isinstance(value, list):
         yield key
         yield from (f"  {_text(item)}" for item in value)
+    elif isinstance(value, dict) and len(value) > FEW:
+        yield f"{key:<9} {len(value)} entries (--json shows them)"
     elif isinstance(value, dict) and any(isinstance(item, dict | list) for item in value.values()):
         yield key
         yield from (f"  {name}: {_text(item)}" for name, item in value.items())
