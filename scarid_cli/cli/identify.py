@@ -10,7 +10,7 @@ from scarid_cli.cli.declare import declare
 from scarid_cli.cli.described import describing
 
 
-@declare("identify", describing(ESTIMATORS, "Estimators and their settings"))
+@declare("identify", describing(ESTIMATORS, "Estimators"))
 @options.table_inputs
 @options.robot
 @click.option(

@@ -42,15 +42,15 @@ def window(function: F) -> F:
     return all_of(
         click.option(
             "--from-time", type=Number(FINITE), metavar="S",
-            help="Read the log from this time on [s], by its own clock.",
+            help="Read the log from this time on [s].",
         ),
         click.option(
             "--to-time", type=Number(FINITE), metavar="S",
-            help="Read the log up to this time [s], by its own clock, and stop there.",
+            help="Read the log up to this time [s].",
         ),
         click.option(
             "--rows", type=Rows(), metavar="A:B",
-            help="Read rows A to B of the log, counted from 1; A or B may be left out.",
+            help="Read rows A to B only, counted from 1.",
         ),
     )(function)  # fmt: skip
 
@@ -62,9 +62,8 @@ def selection(function: F) -> F:
         click.option(
             "--missing", type=click.Choice(("refuse", "drop", "split")), default="refuse",
             show_default=True,
-            help="What to do with rows that lack a value which the command reads: refuse the log; "
-            "drop them, as if they had not been recorded; or drop them and begin a new segment "
-            "after them, as after a gap.",
+            help="What to do where a value is missing: refuse the log, drop the row, or also begin "
+            "a new segment after it, as after a gap.",
         ),
     )(function)  # fmt: skip
 

@@ -16,8 +16,10 @@ from scarid_cli.cli.declare import declare
     "methods",
     multiple=True,
     type=click.Choice(["all", *DIFFERENTIATORS.names]),
-    help="A differentiator to tune, repeatable; `all` stands for every causal one. The first is "
-    "what differentiate --settings uses.  [default: rts and kalman with --robot, else kalman]",
+    metavar="NAME",
+    help="A method of `scarid differentiate` to tune, repeatable; `all` stands for every causal "
+    "one. The first is what differentiate --settings uses.  [default: rts and kalman with --robot, "
+    "else kalman]",
 )
 @click.option(
     "--robot",

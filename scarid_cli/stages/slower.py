@@ -1,8 +1,4 @@
-"""Sensors that are slower than the logger, which repeats their last values until the next ones.
-
-Positions and torques often come from different devices, so each group of signals has a rate of its
-own. Rows in which a group only repeats its values get interpolated ones.
-"""
+"""Sensors that are slower than the logger, whose readings are interpolated row by row."""
 
 from __future__ import annotations
 
@@ -13,15 +9,10 @@ from itertools import chain
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.processes.filling import Readings
+from scarid_cli.algorithms.processes.filling import READINGS, SEARCH, Readings, reading_interval
 from scarid_cli.arrays import Array, Marks, Numbers
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table, matrix, segments_of, with_columns
-
-READINGS = 32  # new values of a group, by which its rate is judged
-SEARCH = 100_000  # rows in which so many have to be found
-SLOWER = 1.5  # times the interval of the rows: that of a slower sensor's readings, at least
-TOGETHER = 0.9  # share of a group's values that change in a reading, as a mean
 
 
 @dataclass(frozen=True)
@@ -34,14 +25,13 @@ class Slower:
 
 
 def groups(table: Table) -> dict[str, list[str]]:
-    """The columns of positions and of torques; a single one proves nothing, and is no group."""
-    found = {"positions": numbered(table.columns, "q"), "torques": numbered(table.columns, "tau")}
-    return {name: columns for name, columns in found.items() if len(columns) > 1}
+    """The columns of positions and of torques."""
+    return {"positions": numbered(table.columns, "q"), "torques": numbered(table.columns, "tau")}
 
 
 def slower_groups(table: Table) -> tuple[list[Slower], Table]:
     """The groups with slower sensors, judged by the first rows, and the table as it was."""
-    candidates = [Candidate(name, columns) for name, columns in groups(table).items()]
+    candidates = [Candidate(name, x) for name, x in groups(table).items() if len(x) > 1]
     read: list[pa.RecordBatch] = []
     for batch in table.batches if candidates else ():
         read.append(batch)
@@ -54,45 +44,36 @@ def slower_groups(table: Table) -> tuple[list[Slower], Table]:
 
 
 class Candidate:
-    """A group whose first readings are counted."""
+    """A group of signals, and its first rows."""
 
     def __init__(self, name: str, columns: list[str]) -> None:
         self._name, self._columns = name, columns
-        self._last = np.empty((len(columns) + 1, 0))
-        self._rows = 0
-        self._instants: list[Array] = []  # s, of the rows
-        self._times: list[Array] = []  # s, of the readings
-        self._changed: list[Array] = []  # shares of the values that change in them
+        self._parts: list[Array] = []  # (time and values, rows)
+        self._last = np.empty((len(columns), 0))
+        self._rows, self._readings = 0, 0
 
     @property
     def decided(self) -> bool:
-        return self._rows >= SEARCH or sum(map(len, self._times)) > READINGS
+        return self._rows >= SEARCH or self._readings > READINGS
 
     def add(self, batch: pa.RecordBatch) -> None:
-        """Count the readings of a batch, until they are enough."""
+        """More rows, until there are enough readings."""
         if self.decided or not batch.num_rows:
             return
-        new = np.array(matrix(batch.slice(0, SEARCH - self._rows), ["t", *self._columns]))
+        new = np.array(matrix(batch, ["t", *self._columns]))
+        together = np.concatenate((self._last, new[1:]), axis=1)
+        self._readings += int(np.count_nonzero(np.any(np.diff(together, axis=1) != 0.0, axis=0)))
         self._rows += new.shape[1]
-        together = np.concatenate((self._last, new), axis=1)
-        self._last = together[:, -1:]
-        changed = (np.diff(together[1:], axis=1) != 0.0).mean(axis=0)
-        self._instants.append(new[0])
-        self._times.append(together[0, 1:][changed > 0.0])
-        self._changed.append(changed[changed > 0.0])
+        self._last = new[1:, -1:]
+        self._parts.append(new)
 
     def found(self) -> Slower | None:
         """The group, if its sensor is slower than the rows."""
-        if not self._rows:
+        if not self._parts:
             return None
-        times, changed = (np.concatenate(x)[: READINGS + 1] for x in (self._times, self._changed))
-        if len(times) <= READINGS or changed.mean() < TOGETHER:
-            return None
-        rows = np.concatenate(self._instants)
-        steps = np.diff(rows[rows <= times[-1]])
-        interval = float(np.median(np.diff(times)))
-        slower = interval > SLOWER * float(np.median(steps[steps > 0.0]))
-        return Slower(self._name, self._columns, interval) if slower else None
+        t, *values = np.concatenate(self._parts, axis=1)
+        interval = reading_interval(t, np.array(values))
+        return Slower(self._name, self._columns, interval) if interval else None
 
 
 class Filling:

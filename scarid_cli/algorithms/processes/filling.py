@@ -1,4 +1,8 @@
-"""Readings of a slow sensor, interpolated at the rows in which a logger only repeats them."""
+"""Readings of a slow sensor, interpolated at the rows in which a logger only repeats them.
+
+Positions and torques often come from different devices, so each of these groups of signals has a
+rate of its own. A group of a single signal proves nothing, and is left alone.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,28 @@ import numpy as np
 from scarid_cli.arrays import Array, Marks, Numbers
 
 NODES = 4  # readings through which the polynomial goes
+READINGS = 32  # new values of a group, by which its rate is judged
+SEARCH = 100_000  # rows in which so many have to be found
+SLOWER = 1.5  # times the interval of the rows: that of a slower sensor's readings, at least
+TOGETHER = 0.9  # share of a group's values that change in a reading, as a mean
+
+
+def reading_interval(t: Array, values: Array) -> float | None:
+    """The interval between the readings of a group [s] if it is slower than the rows, else None.
+
+    Times (rows) [s] and values (signals, rows), of which the first readings decide.
+    """
+    if len(values) < 2:
+        return None
+    t, values = t[:SEARCH], values[:, :SEARCH]
+    changed = (np.diff(values, axis=1) != 0.0).mean(axis=0)
+    at = np.flatnonzero(changed)[: READINGS + 1]
+    if len(at) <= READINGS or changed[at].mean() < TOGETHER:
+        return None
+    steps = np.diff(t[: at[-1] + 2])
+    rows = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else np.inf
+    interval = float(np.median(np.diff(t[at + 1])))
+    return interval if interval > SLOWER * rows else None
 
 
 @dataclass(frozen=True)
