@@ -32,6 +32,7 @@ from scarid_cli.stages.trajgen import tabulate
 
 REFERENCE = 100.0  # Hz, of the trajectories
 CONTROL = 1000.0  # Hz
+RESAMPLED = {"lost-rows", "position-rate", "torque-rate"}
 FLEXIBLE, CONSTANTS = "flexible joint", "motor constant"
 Given = dict[str, tuple[float, ...]]
 
@@ -204,7 +205,7 @@ def log(robot: Robot, condition: Condition, seed: int) -> Table:
     table = simulate(
         trajectory(robot, seed, condition), loop, condition.rate, truth=False, given=known
     )
-    if {"lost-rows"} & set(condition.given):
+    if RESAMPLED & set(condition.given):  # the last two by `identify` itself
         table = resample(table, condition.rate)
     return replace(table, batches=list(table.batches))  # type: ignore[arg-type]
 
