@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+from scarid_cli.algorithms.robots import values
 from scarid_cli.errors import UsageFault
 
 ENDLESS = 1e9  # rad: urdfdom does not read inf
@@ -44,6 +45,7 @@ def read(path: str) -> Tree:
         _turn_endless_joints_into_angles(tree)
         _drop_shapes(tree)
         model = pinocchio.buildModelFromXML(ElementTree.tostring(tree, encoding="unicode"))
+        values.moderate(model.njoints - 1)
         mimics = {j.get("name", ""): m for j in tree.findall("joint") for m in j.findall("mimic")}
         drivers = {name: mimic.get("joint", "") for name, mimic in mimics.items()}
         offsets = {name: float(mimic.get("offset", "0")) for name, mimic in mimics.items()}
