@@ -10,6 +10,7 @@ import pyarrow as pa
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import UsageFault
+from scarid_cli.io.stated import stated_robot
 from scarid_cli.stages import validate as stage
 from scarid_cli.stages.changes import known
 from scarid_cli.stages.estimates import errors_of
@@ -31,7 +32,7 @@ def run(
         raise UsageFault("--predictions needs every row and cannot be combined with --decimate")
     side = job.side_table(predictions)
     stored = job.read(parameters, "parameters")
-    table, arm = job.read_for(file, "motion", robot or stored.meta.robot, torques=True)
+    table, arm = job.read_for(file, "motion", robot or stated_robot(stored), torques=True)
     arm, treatment = for_robot(arm, treatment, given)
     treatment = for_motion(table.meta, treatment, given)
     batches = list(stored.batches)
