@@ -10,6 +10,8 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +19,7 @@ from typing import Any
 
 import pytest
 
+SUITES = ("tests/unit", "tests/stages", "tests/cli")
 CONFIGURATION = """[run]
 data_file = {folder}/coverage
 parallel = true
@@ -67,9 +70,8 @@ class Reached:
     lines: dict[str, dict[int, set[str]]]
 
     def by(self, file: str, line: int) -> set[str]:
-        """The tests that reach this line; those that reach the module if it only defines names."""
-        lines = self.lines.get(file, {})
-        return lines.get(line) or set()
+        """The tests that reach this line."""
+        return self.lines.get(file, {}).get(line, set())
 
     def module(self, file: str) -> set[str]:
         """The tests that reach any line of the module."""
@@ -83,6 +85,26 @@ class Reached:
                 for name in tests:
                     counts[name] += 1
         return counts
+
+
+def record(folder: Path, tree: Path) -> None:
+    """Run the tests of a tree once, and keep in this folder which lines each of them reaches."""
+    configuration = folder / "coverage.ini"
+    configuration.write_text(CONFIGURATION.format(folder=folder, tree=tree))
+    for old in folder.glob("coverage.*.*"):
+        old.unlink()
+    environment = {
+        **os.environ,
+        "COVERAGE_PROCESS_START": str(configuration),
+        "PYTHONPATH": os.pathsep.join(map(str, (tree, tree / "benchmarks"))),
+        "SCARID_REACHED": str(folder / "passed.json"),
+    }
+    coverage = [sys.executable, "-m", "coverage"]
+    tests = ["-q", "-n", "0", "-p", "reached", "-p", "no:cacheprovider", "--hypothesis-seed=0"]
+    run = [*coverage, "run", f"--rcfile={configuration}", "-m", "pytest", *tests, *SUITES]
+    subprocess.run(run, cwd=tree, env=environment, check=False)  # what fails is left out
+    combine = [*coverage, "combine", "-q", f"--rcfile={configuration}"]
+    subprocess.run(combine, cwd=tree, check=True)
 
 
 def read(folder: Path, tree: Path) -> Reached:

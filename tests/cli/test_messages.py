@@ -196,7 +196,7 @@ def test_no_control_character_of_a_parameter_reaches_the_terminal(
     words: tuple[str, ...], scarid: Run, tmp_path: Path
 ) -> None:
     result = scarid("report", parameters(tmp_path, [EVIL]), *words, "--title", EVIL)
-    assert "1m\\u202eq" in result.out
+    assert "u202eq" in result.out
     assert all(c.isprintable() or c == "\n" for c in result.out)
 
 
