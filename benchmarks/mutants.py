@@ -103,7 +103,10 @@ def main() -> None:
     tree = folder / "tree"
     if not (folder / "passed.json").exists():
         _copy(tree)
+        shutil.copytree(tree / "scarid_cli", folder / "original" / "scarid_cli")
         reached.record(folder, tree)
+    # A run that was killed may have left a change.
+    shutil.copytree(folder / "original", tree, dirs_exist_ok=True)
     study = Study(folder, tree, reached.read(folder, tree))
     trials = Trials(tree, study.reached.taken)
     if trials.outcome("", study.control(), list(study.reached.taken)[::500]).result != "survived":
