@@ -15,6 +15,7 @@ from scarid_cli.arrays import Array, Numbers
 from scarid_cli.io import schemas
 from scarid_cli.io.clock import nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
+from scarid_cli.printable import printable
 
 FEW = 8  # values of a list, or entries of a dictionary, that are shown
 
@@ -136,10 +137,11 @@ def _column(
 def _columns(columns: tuple[Column, ...]) -> Iterator[str]:
     """A line for each column: name, type, unit, extremes, and what it is."""
     ranges = [column.extent.text if column.extent else "" for column in columns]
-    width = max((len(column.name) for column in columns), default=0)
+    names = [printable(column.name) for column in columns]
+    width = max(map(len, names), default=0)
     wide = max(map(len, ranges), default=0)
-    for column, text in zip(columns, ranges, strict=True):
-        start = f"  {column.name:<{width}}  {column.type:<7} {column.unit or '-':<10}"
+    for column, name, text in zip(columns, names, ranges, strict=True):
+        start = f"  {name:<{width}}  {column.type:<7} {column.unit or '-':<10}"
         yield f"{start} {text:<{wide}}  {column.about}".rstrip()
 
 
