@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import stat
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -14,7 +13,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from scarid_cli import __version__
-from scarid_cli.cli.commandline import command_line
+from scarid_cli.cli.chain import Place
+from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.robots import another, misfit
 from scarid_cli.cli.selecting import selection_of
 from scarid_cli.cli.terminal import is_terminal, styled
@@ -23,8 +23,10 @@ from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
 from scarid_cli.io.selection import REFUSE, SPLIT, Lacking, within
+from scarid_cli.io.stated import in_file, stated_robot
 from scarid_cli.io.table import Table
-from scarid_cli.io.writer import Document, Output, all_or_none, same_place, write_table
+from scarid_cli.io.writer import Document, Handover, Output, all_or_none, same_place
+from scarid_cli.printable import printable
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -42,6 +44,8 @@ class Job:
     out: Output
 
     def __init__(self, options: dict[str, Any]) -> None:
+        place = click.get_current_context().obj
+        self.place: Place = place
         self.quiet: bool = options["quiet"]
         self._verbose = options["verbose"] and not self.quiet
         self._history = not options.get("no_history")
@@ -58,6 +62,9 @@ class Job:
 
         On a terminal, a table that is `readable` is printed for a person.
         """
+        if path == "-" and self.place.following:
+            following = self.place.following
+            return self._new(path, lambda: Handover(following))
         asked = wanted or os.environ.get("SCARID_FORMAT")
         if readable and path == "-" and not asked and is_terminal():
             from scarid_cli.cli.readable import Readable
@@ -160,14 +167,14 @@ class Job:
         """
         from scarid_cli.algorithms.robots.reading import DEFAULT_ROBOT, load
 
-        stated = next((table.meta.robot for table in tables if table.meta.robot), None)
-        found = name or stated or os.environ.get("SCARID_ROBOT")
+        found = name or next(filter(None, map(stated_robot, tables)), None)
+        found = found or os.environ.get("SCARID_ROBOT")
         if not found:
             self.notes.append(
                 f"no robot is stated, {DEFAULT_ROBOT} is assumed (state it with --robot or "
                 "SCARID_ROBOT)"
             )
-        robot = load(found or DEFAULT_ROBOT)
+        robot = load(self.described(found or DEFAULT_ROBOT))
         if remark := another(robot, tables):
             self.notes.append(remark)
         return robot
@@ -182,7 +189,8 @@ class Job:
     ) -> Table:
         """The table in a source, with a progress line where a person waits: not inside a pipe."""
         table = open_table(through(source) if through else source)
-        if self.quiet or not is_terminal(2) or stat.S_ISFIFO(os.fstat(1).st_mode):
+        hands_over = self.place.following is not None
+        if self.quiet or hands_over or not is_terminal(2) or stat.S_ISFIFO(os.fstat(1).st_mode):
             return table
         from scarid_cli.cli.progress import counted
 
@@ -199,6 +207,11 @@ class Job:
             self.say(f"{table.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
         return table
 
+    def described(self, robot: str) -> str:
+        """The robot; the history names the file of its description, if it is in one."""
+        known = (source.name for source in self.sources)
+        return self.noted(robot) if in_file(robot) and robot not in known else robot
+
     def noted(self, path: str) -> str:
         """The path of an input that is not a table; the history names it as well."""
         self.opened(path)
@@ -210,13 +223,13 @@ class Job:
             raise UsageFault(
                 "standard input can be read only once; give a FILE for the other table"
             )
-        source = ByteSource.open(path)
+        source = (path == "-" and self.place.source) or ByteSource.open(path)
         self.sources.append(source)
         return source
 
     def write(self, table: Table, output: Output | None = None) -> None:
         """Send a table to an output, by default the command's, and report omitted segments."""
-        write_table(table, output or self.out)
+        (output or self.out).take(table)
         self.say_notes()
         if self.left_out:
             count = len(self.left_out)
@@ -250,10 +263,8 @@ class Job:
         On a terminal it begins in the colour of the `verdict`, if it begins with one.
         """
         if not self.quiet:
-            name = click.get_current_context().command_path
             start = styled(verdict, verdict, 2) if verdict else ""
-            with contextlib.suppress(OSError):  # a remark that cannot be made is no failure
-                print(f"{name}: {start}{message.removeprefix(verdict)}", file=sys.stderr)  # noqa: T201
+            self.place.say(f"{start}{printable(message.removeprefix(verdict))}")
 
 
 @contextlib.contextmanager

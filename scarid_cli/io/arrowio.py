@@ -9,8 +9,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.ipc as ipc
 
-from scarid_cli.errors import BadData, OutputFailure, cut_short
-from scarid_cli.io.bytesource import CHUNK, ByteSource, require_moderate
+from scarid_cli.errors import BadData, OutputFailure, ScaridError, cut_short
+from scarid_cli.io.bytesource import CHUNK, STDIN, ByteSource, require_moderate
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
 
@@ -23,6 +23,8 @@ READ_ROWS = 1 << 13
 
 def read_stream(source: ByteSource) -> Table:
     """A table from an Arrow IPC stream."""
+    if isinstance(source, Handed):
+        return source.table
     try:
         reader = ipc.open_stream(pa.PythonFile(source, mode="r"))
     except (pa.ArrowException, OSError) as error:
@@ -38,6 +40,23 @@ def read_stream(source: ByteSource) -> Table:
             raise cut_short(source.name)
 
     return _table(source.name, reader.schema, batches())
+
+
+class Handed(ByteSource):
+    """The table of the stage before `then`, in place of the stream that a pipe would carry.
+
+    Its first bytes say that it is an Arrow stream, and nobody reads any others.
+    """
+
+    def __init__(self, table: Table) -> None:
+        super().__init__(0, STDIN)
+        self._ahead = END_OF_STREAM
+        self.table = _table(STDIN, table.arrow_schema(), table.batches)
+
+    @property
+    def regular(self) -> bool:
+        """It stands for a pipe."""
+        return False
 
 
 def read_file(source: ByteSource) -> Table:
@@ -96,7 +115,9 @@ def _small(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
             yield batch.slice(start, READ_ROWS)
 
 
-def _unreadable(name: str, error: Exception) -> BadData:
+def _unreadable(name: str, error: Exception) -> ScaridError:
+    if isinstance(error, OSError) and error.errno:  # the device, and not the content
+        return OutputFailure(f"{name}: {error.strerror}")
     reason = str(error).partition("\n")[0]
     return BadData(f"{name}: not a complete Arrow or Parquet table ({reason}); write it again")
 
@@ -123,11 +144,7 @@ def _sound(name: str, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBa
                 return
             # The offsets of texts point into memory; numbers have none, and cost no time here.
             batch.validate(full=not all(pa.types.is_primitive(f.type) for f in batch.schema))
-        except OSError as error:
-            if error.errno:  # the device, and not the content
-                raise OutputFailure(f"{name}: {error.strerror}") from None
-            raise _unreadable(name, error) from None
-        except pa.ArrowException as error:
+        except (pa.ArrowException, OSError) as error:
             raise _unreadable(name, error) from None
         yield batch
 

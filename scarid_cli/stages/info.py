@@ -15,6 +15,9 @@ from scarid_cli.arrays import Array, Numbers
 from scarid_cli.io import schemas
 from scarid_cli.io.clock import nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
+from scarid_cli.printable import printable
+
+FEW = 8  # values of a list, or entries of a dictionary, that are shown
 
 
 @dataclass
@@ -134,15 +137,16 @@ def _column(
 def _columns(columns: tuple[Column, ...]) -> Iterator[str]:
     """A line for each column: name, type, unit, extremes, and what it is."""
     ranges = [column.extent.text if column.extent else "" for column in columns]
-    width = max((len(column.name) for column in columns), default=0)
+    names = [printable(column.name) for column in columns]
+    width = max(map(len, names), default=0)
     wide = max(map(len, ranges), default=0)
-    for column, text in zip(columns, ranges, strict=True):
-        start = f"  {column.name:<{width}}  {column.type:<7} {column.unit or '-':<10}"
+    for column, name, text in zip(columns, names, ranges, strict=True):
+        start = f"  {name:<{width}}  {column.type:<7} {column.unit or '-':<10}"
         yield f"{start} {text:<{wide}}  {column.about}".rstrip()
 
 
 def _metadata(key: str, value: Any) -> Iterator[str]:
-    """A value on one line, a list with one line for each item, a matrix by its size only."""
+    """A value on one line, a collection with one line for each item, a matrix by its size only."""
     if isinstance(value, list) and value and isinstance(value[0], list):
         yield f"{key:<9} {len(value)} by {len(value[0])} numbers"
     elif isinstance(value, dict) and "information" in value:
@@ -150,6 +154,11 @@ def _metadata(key: str, value: Any) -> Iterator[str]:
     elif isinstance(value, list):
         yield key
         yield from (f"  {_text(item)}" for item in value)
+    elif isinstance(value, dict) and len(value) > FEW:
+        yield f"{key:<9} {len(value)} entries (--json shows them)"
+    elif isinstance(value, dict) and any(isinstance(item, dict | list) for item in value.values()):
+        yield key
+        yield from (f"  {name}: {_text(item)}" for name, item in value.items())
     else:
         yield f"{key:<9} {_text(value)}"
 
@@ -157,6 +166,8 @@ def _metadata(key: str, value: Any) -> Iterator[str]:
 def _text(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{name} {_text(item)}" for name, item in value.items())
+    if isinstance(value, list):
+        return " ".join(map(_text, value)) if len(value) <= FEW else f"{len(value)} values"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

@@ -31,6 +31,7 @@ from scarid_cli.io.table import (
     with_columns,
 )
 from scarid_cli.stages.holding import Holding, measured
+from scarid_cli.stages.slower import Filling, slower_groups
 
 SLOWER = 0.05  # fraction of the log's period by which the new period must be longer to low-pass
 
@@ -46,7 +47,8 @@ def resample(
     Numbers are interpolated linearly, and low-passed if the new period is longer than that of the
     log; other columns keep the value of the previous row. An interval longer than `max_gap` [s]
     (by default MAX_GAP periods) is a gap, after which the column `segment` is one higher. Held
-    samples of a slower sensor are left out first (algorithms/processes/holding.py).
+    samples of a slower sensor are left out first (algorithms/processes/holding.py), and those of
+    one group of signals only are interpolated (algorithms/processes/filling.py).
     """
     fields = [field for field in table.schema if field.name != SEGMENT]
     schema = pa.schema([*fields, pa.field(SEGMENT, pa.int64())])
@@ -116,14 +118,19 @@ def _rows(
     max_gap: float | None,
     report: Callable[[Clock], None],
 ) -> Iterator[pa.RecordBatch]:
+    slower, table = slower_groups(table)
     own, batches = _with_period(table)
     limit = max_gap or max(MAX_GAP * own, period)
     splitting, holding = Splitting(limit), Holding(measured(table), limit)
+    fillings = [Filling(group, max(limit, MAX_GAP * group.interval)) for group in slower]
     factor = max(1, int(np.ceil(period / own - SLOWER)))
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]
     interpolation = Interpolation(Resampler(period / factor), schema, numbers)
     decimation = Decimation(Decimator(factor), schema, numbers, period) if factor > 1 else None
-    for batch in holding.rows(batches):
+    rows = holding.rows(batches)
+    for filling in fillings:
+        rows = filling.rows(rows)
+    for batch in rows:
         for begins, piece in splitting.pieces(batch):
             if begins and decimation:
                 yield from decimation.finish()
@@ -134,7 +141,8 @@ def _rows(
                 yield found
     if decimation:
         yield from decimation.finish()
-    report(replace(splitting.clock, held=holding.count))
+    filled = tuple((f.slower.name, f.slower.interval, f.count) for f in fillings if f.count)
+    report(replace(splitting.clock, held=holding.count, filled=filled))
 
 
 class Splitting:

@@ -8,6 +8,7 @@ import numpy as np
 
 from scarid_cli.algorithms.checks.finding import Finding, failed, ok, several, warning
 from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.algorithms.processes.filling import reading_interval
 from scarid_cli.algorithms.processes.holding import MAX_GAP, held_in
 from scarid_cli.arrays import Array
 
@@ -131,3 +132,19 @@ def held(log: Log) -> Finding:
         return ok("held samples", figure if count else "none")
     advice = "a slower sensor behind a faster logger: `scarid resample` keeps the first of each"
     return warning("held samples", figure, advice)
+
+
+def slower(log: Log) -> Finding:
+    """Positions or torques of a sensor that is slower than the rows, by the rule of `resample`."""
+    held, period = held_in(log.t, log.sensed)
+    t = log.t[~held]
+    found = {
+        name: interval
+        for name, values in (("positions", log.q), ("torques", log.tau))
+        if (interval := reading_interval(t, values[:, ~held]))
+    }
+    if not found:
+        return ok("slower sensors", "none")
+    figure = " and ".join(f"{name} are new every {1e3 * x:.3g} ms" for name, x in found.items())
+    advice = f"`scarid resample --rate {1.0 / period:.6g}` interpolates between their readings"
+    return warning("slower sensors", f"{figure} only, rows every {1e3 * period:.3g} ms", advice)

@@ -16,6 +16,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
+from scarid_cli.cli.evened import Evened
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import motion
@@ -55,7 +56,9 @@ def run(
     if initial and not method.INITIAL:
         raise UsageFault(f"--initial: {name} has no initial parameters; leave the option out")
     side, place = job.side_table(trace), job.side_text(save)
-    table, arm = read_logs(job, files, robot, partial(_read, job, method), skip=given["skip"])
+    evened = Evened(job)
+    reading = partial(_read, job, method, evened)
+    table, arm = read_logs(job, files, robot, reading, skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
     if not method.FOLLOWS and not numbered(table.columns, "ddq"):
         row_by_row = bool(trace or resumed or save)
@@ -63,7 +66,7 @@ def run(
             name, method = OFFLINE, ESTIMATORS.load(OFFLINE)
         if given["align"] is None and method.ALIGNS and not row_by_row:
             treatment = replace(treatment, align=True)
-        table = motion(job, table, arm, _options(name, treatment))
+        table = motion(job, table, arm, _options(name, treatment), evened.rates)
     given["all_rows"] |= method.FOLLOWS
     reach = Reach(len(arm.joints))
     table = reach.watched(table)
@@ -107,9 +110,11 @@ def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
     return REQUIRED
 
 
-def _read(job: Job, method: Any, file: str, robot: str | Robot | None) -> tuple[Table, Robot]:
+def _read(
+    job: Job, method: Any, evened: Evened, file: str, robot: str | Robot | None
+) -> tuple[Table, Robot]:
     """The motion or measurement, or whatever else the estimator reads, and the robot."""
-    return job.read_for(
+    table, arm = job.read_for(
         file,
         "trajectory" if method.FOLLOWS else "motion",
         robot,
@@ -117,6 +122,9 @@ def _read(job: Job, method: Any, file: str, robot: str | Robot | None) -> tuple[
         reference=method.REFERENCE,
         without_derivatives=None if method.FOLLOWS else "measurement",
     )
+    if method.FOLLOWS or numbered(table.columns, "ddq"):
+        return table, arm
+    return evened.table(file, table), arm
 
 
 def _options(name: str, treatment: Treatment) -> list[str]:

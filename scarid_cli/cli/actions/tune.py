@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.commandline import command_line
+from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.progress import steps
 from scarid_cli.cli.settings import document
