@@ -97,6 +97,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200, help="changes, beside former ones")
     parser.add_argument("--seed", type=int, default=16)
     parser.add_argument("--folder", type=Path, default=FOLDER)
+    parser.add_argument("--seconds", type=float, default=300.0, help="of tests for a change")
     parser.add_argument("--again", action="store_true", help="try the survivors once more")
     given = parser.parse_args()
     folder = given.folder.resolve()
@@ -108,7 +109,7 @@ def main() -> None:
     # A run that was killed may have left a change.
     shutil.copytree(folder / "original", tree, dirs_exist_ok=True)
     study = Study(folder, tree, reached.read(folder, tree))
-    trials = Trials(tree, study.reached.taken)
+    trials = Trials(tree, study.reached.taken, given.seconds)
     if trials.outcome("", study.control(), list(study.reached.taken)[::500]).result != "survived":
         raise SystemExit(f"tests fail without any change: see {folder / 'log'}")
     results = folder / "outcomes.jsonl"

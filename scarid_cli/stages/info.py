@@ -147,9 +147,9 @@ def _columns(columns: tuple[Column, ...]) -> Iterator[str]:
 
 def _metadata(key: str, value: Any) -> Iterator[str]:
     """A value on one line, a collection with one line for each item, a matrix by its size only."""
-    if isinstance(value, list) and value and isinstance(value[0], list):
+    if isinstance(value, list) and value and all(isinstance(row, list) for row in value):
         yield f"{key:<9} {len(value)} by {len(value[0])} numbers"
-    elif isinstance(value, dict) and "information" in value:
+    elif key == "evidence" and value:
         yield f"{key:<9} of {len(value['score'])} columns in {value['blocks']} blocks"
     elif isinstance(value, list):
         yield key
