@@ -123,7 +123,7 @@ batch: $(BATCH)/installed
 	$(BATCH)/bin/python workflow/batch.py $(CONFIG) --profile $(PROFILE) $(OPTIONS)
 
 test-batch: $(BATCH)/installed
-	$(BATCH)/bin/python -m pytest tests/workflow
+	$(BATCH)/bin/python -m pytest tests/workflows
 
 test-slurm: $(BATCH)/installed
 	$(BATCH)/bin/python -m pytest tests/slurm

@@ -11,6 +11,7 @@ import pytest
 from conftest import ROOT
 from fleet import fleet
 from slurm.cluster import cluster, missing
+from workflows.outcomes import in_one_process, outcome
 
 LOGS, GROUP = 8, 2  # of four robots
 SNAKEMAKE = ("snakemake", "snakemake_executor_plugin_slurm")
@@ -38,15 +39,5 @@ def test_a_batch_on_slurm_ends_in_the_bytes_of_one_process(tmp_path: Path) -> No
     assert len(jobs) == 4 * (3 + 2)  # prepare, identify and validate a group; tune, reference
     assert all("JobState=COMPLETED" in job for job in jobs)
     by_slurm = outcome(config.parent)
-    subprocess.run(
-        [sys.executable, "-m", "steps", "all", config.name],
-        cwd=config.parent, env={**found.environment, "PYTHONPATH": str(ROOT / "workflow")}, check=True,
-    )  # fmt: skip
+    in_one_process(config)
     assert outcome(config.parent) == by_slurm
-
-
-def outcome(folder: Path) -> dict[str, bytes]:
-    """All tables of an outcome, but not what the steps hand to each other."""
-    out = folder / "outcome"
-    paths = (path for path in out.rglob("*") if path.is_file() and "work" not in path.parts)
-    return {str(path.relative_to(out)): path.read_bytes() for path in paths}

@@ -15,7 +15,7 @@ from steps.plan import Log, Plan, Robot
 from scarid_cli.arrays import Array
 
 VERDICTS = {"good": 0, "doubtful": 1, "not identifiable": 2}
-SETTLED = 2  # worst verdict of a reference, and of a log that counts for the trend
+SETTLED = 2  # the rank from which a log does not count for the trend
 NEIGHBOURS = 3  # logs before and after one
 FAR = 6.0  # usual distances
 MAD = 1.4826  # standard deviations of a normal distribution per median absolute deviation
@@ -37,17 +37,18 @@ def reference(plan: Plan, robot: Robot) -> None:
 
 
 def _identified(plan: Plan, robot: Robot) -> list[Entry]:
-    """The logs with parameters."""
-    return [
-        (log, result)
-        for group in plan.groups(robot)
-        for log, result in zip(
-            plan.logs(robot, group),
-            places.read(places.results(plan, robot, "identify", group)),
-            strict=True,
+    """The logs with parameters, and what was found of each."""
+    found = []
+    for group in plan.groups(robot):
+        prepared, identified = (
+            places.read(places.results(plan, robot, step, group))
+            for step in ("prepare", "identify")
         )
-        if "estimates" in result
-    ]
+        for log, *results in zip(plan.logs(robot, group), prepared, identified, strict=True):
+            merged = {**results[0], **results[1]}
+            if "estimates" in merged:
+                found.append((log, merged))
+    return found
 
 
 def _alike(identified: list[Entry]) -> tuple[list[Entry], Array, Array]:
@@ -70,6 +71,11 @@ def _spread(apart: Array, errors: Array) -> Array:
     return np.maximum(np.maximum(scatter, np.median(errors, axis=0)), least)
 
 
+def _rank(result: Result) -> int:
+    """How little an identification is worth, by its verdict and by the check of its log."""
+    return SETTLED if result["check"] == "failed" else VERDICTS[result["verdict"]]
+
+
 def _nearest(identified: list[Entry]) -> list[Log]:
     """The two logs nearest to the median of all parameters, of those with the best verdict."""
     if not identified:
@@ -77,7 +83,7 @@ def _nearest(identified: list[Entry]) -> list[Log]:
     alike, values, errors = _alike(identified)
     apart = values - np.median(values, axis=0)
     distances = np.sqrt(np.mean((apart / _spread(apart, errors)) ** 2, axis=1))
-    ranks = [VERDICTS[result["verdict"]] for _, result in alike]
+    ranks = [_rank(result) for _, result in alike]
     ordered = sorted(zip(ranks, distances.tolist(), range(len(alike)), strict=True))
     return [alike[i][0] for _, _, i in ordered[:2]]
 
@@ -85,11 +91,19 @@ def _nearest(identified: list[Entry]) -> list[Log]:
 def _steady(identified: list[Entry]) -> list[Log]:
     """The logs for a trend: without those that are far from the logs just before and after them."""
     alike, values, errors = _alike(identified)
-    around = range(-NEIGHBOURS, NEIGHBOURS + 1)
-    last = len(alike) - 1
-    near = np.array([values[np.clip(np.arange(len(alike)) + k, 0, last)] for k in around])
-    apart = values - np.median(near, axis=0)
-    far = np.any(np.abs(apart) > FAR * _spread(apart, errors), axis=1)
+    sides = []
+    for order in (1, -1):
+        ordered = values[::order]
+        near = [
+            np.median(ordered[max(i - NEIGHBOURS, 0) : i], axis=0) for i in range(1, len(alike))
+        ]
+        sides.append(np.vstack([np.full_like(values[:1], np.nan), *near])[::order])
+    before, after = values - sides[0], values - sides[1]
+    apart = np.fmin(np.abs(before), np.abs(after))
+    apart[before * after <= 0.0] = 0.0  # between its neighbours, as where something drifts
+    usual = np.nanmedian(np.abs(before), axis=0)
+    scale = np.maximum(np.maximum(usual, np.median(errors, axis=0)), np.finfo(float).tiny)
+    far = np.any(apart > FAR * scale, axis=1)
     return [log for (log, _), out in zip(alike, far, strict=True) if not out]
 
 
@@ -120,7 +134,7 @@ def _compared(plan: Plan, robot: Robot, first: Log, logs: list[Log], messages: l
 
 def _trend(plan: Plan, robot: Robot, identified: list[Entry], messages: list[str]) -> Result:
     """The trend over the logs in order, which `compare` finds in three and more tables."""
-    judged = [entry for entry in identified if VERDICTS[entry[1]["verdict"]] < SETTLED]
+    judged = [entry for entry in identified if _rank(entry[1]) < SETTLED]
     logs = _steady(judged) if len(judged) > 2 else []
     if len(logs) < 3:
         return {}
