@@ -36,7 +36,7 @@ def test_a_batch_on_slurm_ends_in_the_bytes_of_one_process(tmp_path: Path) -> No
         assert done.returncode == 0, done.stderr[-3000:]
         jobs = found.finished()
     print(*jobs, sep="\n")  # the accounting log
-    assert len(jobs) == 4 * (3 + 2)  # prepare, identify and validate a group; tune, reference
+    assert len(jobs) == 4 * (2 + 2)  # identify and validate a group; tune and reference a robot
     assert all("JobState=COMPLETED" in job for job in jobs)
     by_slurm = outcome(config.parent)
     in_one_process(config)

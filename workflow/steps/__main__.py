@@ -14,12 +14,11 @@ from steps import plan as plans
 from steps.collect import collect
 from steps.identify import identify
 from steps.plan import Plan, PlanError
-from steps.prepare import prepare
 from steps.reference import reference
 from steps.tune import tune
 from steps.validate import validate
 
-OF_GROUPS = {"prepare": prepare, "identify": identify, "validate": validate}
+OF_GROUPS = {"identify": identify, "validate": validate}
 OF_ROBOTS = {"tune": tune, "reference": reference}
 STEPS: dict[str, Callable[..., None]] = {**OF_GROUPS, **OF_ROBOTS}
 
@@ -27,7 +26,7 @@ STEPS: dict[str, Callable[..., None]] = {**OF_GROUPS, **OF_ROBOTS}
 def everything(plan: Plan) -> None:
     """The whole batch in this process, without Snakemake: what the benchmarks compare with."""
     for robot in plan.robots:
-        for step in ("prepare", "tune", "identify", "reference", "validate"):
+        for step in ("tune", "identify", "reference", "validate"):
             groups = [[group] for group in plan.groups(robot)] if step in OF_GROUPS else [[]]
             for words in groups:
                 STEPS[step](plan, robot, *words)

@@ -17,7 +17,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, table_of
 from scarid_cli.io.writer import Output, all_or_none
 
-STEPS = ("prepare", "identify", "validate")
+STEPS = ("identify", "validate")
 LEVEL = 0.05  # of `compare`
 Row = dict[str, Any]
 

@@ -1,15 +1,17 @@
-"""differentiate and identify: from a measurement to parameters, with the motion beside them."""
+"""From the logs of a group to parameters, with the motions beside them."""
 
 from __future__ import annotations
 
 import json
 import shlex
+import shutil
 from pathlib import Path
 
 import pyarrow.parquet as pq
 from steps import places
 from steps.commands import Result, failure, of_each, run
 from steps.plan import Log, Plan, Robot
+from steps.prepare import prepare
 
 from scarid_cli.errors import REQUIRED
 
@@ -18,39 +20,39 @@ FACTS = ("verdict", "samples", "condition_number", "delay", "delay_error")
 
 
 def identify(plan: Plan, robot: Robot, group: str) -> None:
-    """Identify the logs of a group that were prepared."""
-    prepared = places.read(places.results(plan, robot, "prepare", group))
+    """Convert, check, resample, differentiate and identify the logs of a group."""
     tuned = places.read(places.results(plan, robot, "tune"))
-    motions = places.work(plan, robot, group, "motions")
-    motions.mkdir(parents=True, exist_ok=True)
+    measurements, motions = (places.work(plan, robot, group, what) for what in ("logs", "motions"))
+    for folder in (measurements, motions):
+        folder.mkdir(parents=True, exist_ok=True)
 
-    def step(entry: tuple[Log, Result]) -> Result:
-        log, before = entry
-        places.cleared(plan, robot, log, "identify")
-        if before["status"]:
-            return {"status": before["status"]}
-        if tuned["status"]:
-            return {key: tuned[key] for key in ("status", "step", "error")}
-        return _identified(plan, robot, group, log, motions)
+    def step(log: Log) -> Result:
+        own = places.cleared(plan, robot, log, "identify")
+        measurement = places.table(measurements, log)
+        found = prepare(robot, log, measurement, own / "check.json")
+        if not found["status"] and tuned["status"]:
+            found |= {key: tuned[key] for key in ("status", "step", "error")}
+        if not found["status"]:
+            found |= _identified(plan, robot, log, measurement, places.table(motions, log), found)
+        measurement.unlink(missing_ok=True)
+        return found
 
-    entries = list(zip(plan.logs(robot, group), prepared, strict=True))
-    places.write(places.results(plan, robot, "identify", group), of_each(step, entries))
+    found = of_each(step, plan.logs(robot, group))
+    shutil.rmtree(measurements)
+    places.write(places.results(plan, robot, "identify", group), found)
 
 
-def _identified(plan: Plan, robot: Robot, group: str, log: Log, motions: Path) -> Result:
-    messages: list[str] = []
+def _identified(
+    plan: Plan, robot: Robot, log: Log, measurement: Path, motion: Path, found: Result
+) -> Result:
     parameters = places.folder_of(plan, robot, log) / "parameters.parquet"
-    measurement = places.table(places.work(plan, robot, group, "logs"), log)
     settings = ["--settings", str(plan.out / "robots" / robot.name / "settings.toml")]
     chosen = settings if robot.tuned else shlex.split(robot.pipe["differentiate"])
-    words = ["differentiate", str(measurement), *chosen, "then"]
-    words += ["tee", str(places.table(motions, log)), "then"]
+    words = ["differentiate", str(measurement), *chosen, "then", "tee", str(motion), "then"]
     words += ["identify", "--robot", robot.description, *shlex.split(robot.pipe["identify"])]
-    ran = run([*words, "-o", str(parameters)], messages)
-    if ran.status not in (0, REQUIRED):
-        return {**failure(ran), "messages": messages}
-    found = failure(ran) if ran.status else {"status": 0}
-    return {**found, "messages": messages, **_facts(parameters)}
+    ran = run([*words, "-o", str(parameters)], found["messages"])
+    failed = failure(ran) if ran.status else {}
+    return failed | (_facts(parameters) if ran.status in (0, REQUIRED) else {})
 
 
 def _facts(parameters: Path) -> Result:

@@ -9,8 +9,7 @@ from typing import Any
 from steps.plan import Log, Plan, Robot
 
 MADE = {
-    "prepare": ("check.json",),
-    "identify": ("parameters.parquet",),
+    "identify": ("check.json", "parameters.parquet"),
     "validate": ("metrics.parquet", "prediction.parquet", "report.html"),
 }
 

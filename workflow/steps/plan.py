@@ -21,6 +21,7 @@ PIPE = {
     "identify": "--estimator wls --align",
     "validate": "",
 }
+TRIED = 20  # logs of a robot, until one is found that tune can work with
 PAGES = ("all", "needed", "none")
 KEYS = {"out", "group", "pages", "pipe", "robots"}
 OF_ROBOT = {"robot", "logs", "pipe"}

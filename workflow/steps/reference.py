@@ -38,17 +38,16 @@ def reference(plan: Plan, robot: Robot) -> None:
 
 def _identified(plan: Plan, robot: Robot) -> list[Entry]:
     """The logs with parameters, and what was found of each."""
-    found = []
-    for group in plan.groups(robot):
-        prepared, identified = (
-            places.read(places.results(plan, robot, step, group))
-            for step in ("prepare", "identify")
+    return [
+        (log, result)
+        for group in plan.groups(robot)
+        for log, result in zip(
+            plan.logs(robot, group),
+            places.read(places.results(plan, robot, "identify", group)),
+            strict=True,
         )
-        for log, *results in zip(plan.logs(robot, group), prepared, identified, strict=True):
-            merged = {**results[0], **results[1]}
-            if "estimates" in merged:
-                found.append((log, merged))
-    return found
+        if "estimates" in result
+    ]
 
 
 def _alike(identified: list[Entry]) -> tuple[list[Entry], Array, Array]:

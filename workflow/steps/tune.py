@@ -3,49 +3,59 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator
+import shutil
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pyarrow.parquet as pq
 from steps import places
 from steps.commands import Result, failure, run
-from steps.plan import Log, Plan, Robot
+from steps.plan import TRIED, Log, Plan, Robot
+from steps.prepare import prepare
 
-from scarid_cli.errors import OK
+from scarid_cli.errors import BAD_DATA, OK
 
 RANKS = {"ok": 0, "warning": 1, "failed": 2}
-TRIED = 5  # logs
 
 
 def tune(plan: Plan, robot: Robot) -> None:
-    """Tune on one log; if that fails, on the next one."""
-    place = places.results(plan, robot, "tune")
+    """Tune on the first log that passes the check, else on the one that comes nearest to it."""
     settings = plan.out / "robots" / robot.name / "settings.toml"
     settings.parent.mkdir(parents=True, exist_ok=True)
     settings.unlink(missing_ok=True)
     found: Result = {"status": OK, "tuned_on": None, "cutoff": None, "messages": []}
     if robot.tuned:
-        none = "no log can be converted and checked"
-        found = {"status": 65, "step": "tune", "error": f"{none}: there is nothing to tune on"}
-        for log, measurement in list(_candidates(plan, robot))[:TRIED]:
-            found = _tuned(robot, log, measurement, settings)
-            if not found["status"]:
-                break
-    places.write(place, found)
+        folder = places.work(plan, robot, "tune", "logs")
+        folder.mkdir(parents=True, exist_ok=True)
+        found = _first(_candidates(robot, folder), robot, settings)
+        shutil.rmtree(folder)
+    places.write(places.results(plan, robot, "tune"), found)
 
 
-def _candidates(plan: Plan, robot: Robot) -> Iterator[tuple[Log, Path]]:
-    """The logs that were prepared, those that passed the check first."""
-    ranked = []
-    for group in plan.groups(robot):
-        found = places.read(places.results(plan, robot, "prepare", group))
-        folder = places.work(plan, robot, group, "logs")
-        ranked += [
-            (RANKS[result["check"]], log.order, log, places.table(folder, log))
-            for log, result in zip(plan.logs(robot, group), found, strict=True)
-            if not result["status"]
-        ]
-    for _, _, log, measurement in sorted(ranked, key=lambda entry: entry[:2]):
+def _first(candidates: Iterable[tuple[Log, Path]], robot: Robot, settings: Path) -> Result:
+    """The result of tuning on the first log with which it succeeds."""
+    none = "none of the first logs can be converted and checked: there is nothing to tune on"
+    found: Result = {"status": BAD_DATA, "step": "tune", "error": none, "messages": []}
+    for log, measurement in candidates:
+        found = _tuned(robot, log, measurement, settings)
+        if not found["status"]:
+            break
+    return found
+
+
+def _candidates(robot: Robot, folder: Path) -> Iterator[tuple[Log, Path]]:
+    """The first logs, those that pass the check before the others."""
+    others = []
+    for log in robot.logs[:TRIED]:
+        measurement = places.table(folder, log)
+        found = prepare(robot, log, measurement, folder / "check.json")
+        if found["status"]:
+            continue
+        if RANKS[found["check"]]:
+            others.append((RANKS[found["check"]], log.order, log, measurement))
+        else:
+            yield log, measurement
+    for _, _, log, measurement in sorted(others, key=lambda entry: entry[:2]):
         yield log, measurement
 
 
