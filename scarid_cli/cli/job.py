@@ -151,7 +151,7 @@ class Job:
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
         columns = schemas.of_joints(len(arm.joints), *fields)
-        require(table, columns, f"this one for robot {arm.name} (another: --robot)")
+        require(table, columns, f"this column for robot {arm.name} (another: --robot)")
         if remark := misfit(table, arm, columns):
             self.notes.append(remark)
         if as_recorded:
