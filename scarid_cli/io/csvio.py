@@ -118,7 +118,14 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
             name,
             f"the single column {names[0]!r}",
             expected="columns separated by commas",
-            remedy="convert it first with `scarid convert --separator CHAR`",
+            remedy="convert it first: `scarid convert` finds the separator",
+        )
+    if names and all(NUMERIC.match(column) for column in names):
+        raise bad_data(
+            name,
+            f"{len(names)} numbers in the first line",
+            expected="a header with the names of the columns",
+            remedy="name them with `scarid convert --header t,q1,...`",
         )
     for column in names:
         if not column or names.count(column) > 1:
