@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -42,6 +43,7 @@ class Job:
         self._verbose = options["verbose"] and not self.quiet
         self._history = not options.get("no_history")
         self.outputs: list[Output | Document] = []
+        self._folders: list[Path] = []
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
         self.notes: list[str] = []
@@ -69,6 +71,18 @@ class Job:
     def side_text(self, path: str | None) -> Document | None:
         """The document of a side output, if it was asked for."""
         return self.text(path) if path else None
+
+    def folder(self, path: Path) -> None:
+        """Make a folder for outputs, which is removed again if they fail."""
+        if not path.exists():
+            path.mkdir(parents=True)
+            self._folders.append(path)
+
+    def remove_folders(self) -> None:
+        """Remove the folders that were made, if nothing is in them."""
+        for path in self._folders:
+            with contextlib.suppress(OSError):
+                path.rmdir()
 
     def _new(self, path: str, opened: Callable[[], D]) -> D:
         if any(same_place(path, output.path) for output in self.outputs):
@@ -219,6 +233,9 @@ def job(options: dict[str, Any]) -> Iterator[Job]:
         with all_or_none(run.outputs):
             yield run
             run.say_notes()
+    except BaseException:
+        run.remove_folders()
+        raise
     finally:
         for source in run.sources:
             source.close()

@@ -29,6 +29,10 @@ EXTENSIONS = {
     ".feather": "arrow-file",
 }
 STDOUT = "<stdout>"
+PART, BEFORE = (
+    ".part",
+    ".before",
+)  # ends of names: of a file that is written, and of one it replaces
 YOUNG = 60.0  # s
 
 
@@ -47,6 +51,8 @@ class Target:
     def __init__(self, path: str) -> None:
         self.name = STDOUT if path == "-" else path
         self._part: Path | None = None
+        self._before: Path | None = None  # what was there before, under another name
+        self._put = False  # whether the file is in its place
         self._place = Path(os.path.realpath(path))
         if path == "-":
             self._fd = 1
@@ -54,7 +60,7 @@ class Target:
             self._fd = os.dup(1)
         elif _regular(self._place):
             self._remove_abandoned()
-            self._part = self._place.with_name(f".{self._place.name}.{os.getpid()}.part")
+            self._part = self._place.with_name(f".{self._place.name}.{os.getpid()}{PART}")
             self._fd = self._open(self._part, os.O_CREAT | os.O_TRUNC)
         else:
             self._fd = self._open(self._place)
@@ -84,25 +90,51 @@ class Target:
         except OSError as error:
             raise self._failure(error) from None
 
-    def commit(self) -> None:
-        """Put the file in its place."""
+    @property
+    def is_file(self) -> bool:
+        """Whether this is a regular file, which can be put in its place and taken back."""
+        return self._part is not None or self._put
+
+    def commit(self, *, keep: bool) -> None:
+        """Put the file in its place; `keep` what was there before, until all is settled."""
+        assert self._part
         try:
             self._close()
-            if self._part:
-                with contextlib.suppress(FileNotFoundError):
-                    self._part.chmod(stat.S_IMODE(self._place.stat().st_mode))
-                self._part.replace(self._place)
+            with contextlib.suppress(FileNotFoundError):
+                self._part.chmod(stat.S_IMODE(self._place.stat().st_mode))
+            if keep and self._place.exists():
+                self._before = self._part.with_suffix(BEFORE)
+                self._before.hardlink_to(self._place)
+            self._part.replace(self._place)
         except OSError as error:
-            self.discard()
             raise self._failure(error) from None
-        self._part = None
+        self._part, self._put = None, True
+
+    def settle(self) -> None:
+        """All outputs are complete and in their places."""
+        try:
+            self._close()
+        except OSError as error:
+            raise self._failure(error) from None
+        self._forget()
 
     def discard(self) -> None:
-        """Leave nothing behind."""
+        """Leave nothing behind, but what was there before."""
         with contextlib.suppress(OSError):
             self._close()
-        if self._part:
-            self._part.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            if self._part:
+                self._part.unlink(missing_ok=True)
+            elif self._put and self._before:
+                self._before.replace(self._place)
+            elif self._put:
+                self._place.unlink()
+        self._forget()
+
+    def _forget(self) -> None:
+        if self._before:
+            self._before.unlink(missing_ok=True)
+        self._put, self._before = False, None
 
     def _close(self) -> None:
         if self._fd > 1:
@@ -141,8 +173,12 @@ def _abandoned(part: Path, start: str) -> bool:
     A young part may be that of a run on another machine, whose processes are not known here.
     """
     name = part.name
-    number = name.removeprefix(start).removesuffix(".part")
-    if name != f"{start}{number}.part" or not number.isdecimal() or _runs(int(number)):
+    number = name.removeprefix(start).removesuffix(PART).removesuffix(BEFORE)
+    if (
+        name not in (f"{start}{number}{PART}", f"{start}{number}{BEFORE}")
+        or not number.isdecimal()
+        or _runs(int(number))
+    ):
         return False
     return time.time() - part.stat().st_mtime > YOUNG
 
@@ -248,13 +284,22 @@ def _writer(name: str) -> Any:
 
 @contextlib.contextmanager
 def all_or_none(outputs: list[Output | Document]) -> Iterator[None]:
-    """Finish all outputs when the block ends, or abort all of them when it fails."""
+    """Finish all outputs when the block ends, or abort all of them when it fails.
+
+    Files come first: they can be taken back, but not the end mark of a table in a pipe.
+    """
     try:
         yield
-        for output in outputs:
+        files = [output for output in outputs if output.target.is_file]
+        for output in files:
             output.finish()
+        for output in files:
+            output.target.commit(keep=len(outputs) > 1)
         for output in outputs:
-            output.target.commit()
+            if output not in files:
+                output.finish()
+        for output in outputs:
+            output.target.settle()
     except BaseException:
         for output in outputs:
             output.abort()
