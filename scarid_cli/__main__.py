@@ -6,6 +6,7 @@ import contextlib
 import os
 import signal
 import sys
+import warnings
 from types import FrameType
 
 # numpy starts a thread per processor for a linear algebra that is never large here.
@@ -13,17 +14,17 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import click
 
-from scarid_cli.cli import scarid
+from scarid_cli.cli import chain, scarid
 from scarid_cli.errors import (
     BAD_DATA,
     BROKEN_PIPE,
     BUG,
     INTERRUPTED,
     IO_FAILURE,
-    OK,
     USAGE,
     ScaridError,
 )
+from scarid_cli.printable import printable
 
 TERMINATED = 128 + signal.SIGTERM
 
@@ -35,11 +36,9 @@ class Terminated(BaseException):
 def main(arguments: list[str] | None = None) -> int:
     """Run one command line and return its exit status. An error is one line on standard error."""
     words = sys.argv[1:] if arguments is None else arguments
-    name = next((f"scarid {word}" for word in words if not word.startswith("-")), "scarid")
     try:
         # Not `scarid.main`: click turns a broken pipe into exit status 1.
-        with scarid.make_context("scarid", words) as context:
-            scarid.invoke(context)
+        status = chain.run(scarid, words)
         sys.stdout.flush()
     except click.exceptions.Exit as stop:
         return stop.exit_code
@@ -55,11 +54,13 @@ def main(arguments: list[str] | None = None) -> int:
         return TERMINATED
     except BrokenPipeError:
         return BROKEN_PIPE
-    except Exception as error:
+    except chain.StageFailed as failure:
         if "--debug" in words:
-            raise
-        return _failed(name, error)
-    return OK
+            raise failure.error from None
+        return _failed(failure.where, failure.error)
+    except OSError as error:  # of standard output
+        return _failed("scarid", error)
+    return status
 
 
 def _failed(where: str, error: Exception) -> int:
@@ -78,8 +79,9 @@ def _failed(where: str, error: Exception) -> int:
 
 def _reported(where: str, message: str, status: int) -> int:
     # A message of a library may have line breaks.
+    line = printable(f"{where}: {' '.join(message.split())}")
     with contextlib.suppress(OSError):  # the status says it as well
-        print(f"{where}: {' '.join(message.split())}", file=sys.stderr, flush=True)  # noqa: T201
+        print(line, file=sys.stderr, flush=True)  # noqa: T201
     return status
 
 
@@ -87,6 +89,8 @@ def run() -> None:
     """The entry of the `scarid` command."""
     _mend_streams()
     sys.meta_path.insert(0, WithoutPandas())
+    if not sys.warnoptions:  # python -W, PYTHONWARNINGS
+        warnings.simplefilter("ignore")  # those of libraries are for programmers
     signal.signal(signal.SIGTERM, _terminate)
     status = _flushed(main())
     for number, code in (

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.ipc as ipc
 
-from scarid_cli.errors import BadData, OutputFailure, cut_short
-from scarid_cli.io.bytesource import ByteSource, require_moderate
+from scarid_cli.errors import BadData, OutputFailure, ScaridError, cut_short
+from scarid_cli.io.bytesource import STDIN, ByteSource, require_moderate
 from scarid_cli.io.parts import parts
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
@@ -25,6 +26,8 @@ GROUP = 1 << 26  # bytes of the numbers of a group at most; wide tables have few
 
 def read_stream(source: ByteSource) -> Table:
     """A table from an Arrow IPC stream."""
+    if isinstance(source, Handed):
+        return source.table
     try:
         reader = ipc.open_stream(pa.PythonFile(Weighed(source), mode="r"))
     except (pa.ArrowException, OSError) as error:
@@ -40,6 +43,23 @@ def read_stream(source: ByteSource) -> Table:
             raise cut_short(source.name)
 
     return _table(source.name, reader.schema, batches())
+
+
+class Handed(ByteSource):
+    """The table of the stage before `then`, in place of the stream that a pipe would carry.
+
+    Its first bytes say that it is an Arrow stream, and nobody reads any others.
+    """
+
+    def __init__(self, table: Table) -> None:
+        super().__init__(0, STDIN)
+        self._ahead = END_OF_STREAM
+        self.table = _table(STDIN, table.arrow_schema(), table.batches)
+
+    @property
+    def regular(self) -> bool:
+        """It stands for a pipe."""
+        return False
 
 
 def read_file(source: ByteSource) -> Table:
@@ -69,7 +89,8 @@ def read_parquet(source: ByteSource) -> Table:
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source.name, error) from None
     batches = file.iter_batches(batch_size=pages.rows_at_once(file), use_threads=False)
-    return _table(source.name, file.schema_arrow, _counted(batches, source.name, file.metadata))
+    found = _counted(batches, source.name, file.metadata)
+    return replace(_table(source.name, file.schema_arrow, found), length=file.metadata.num_rows)
 
 
 def _counted(batches: Iterator[pa.RecordBatch], name: str, footer: Any) -> Iterator[pa.RecordBatch]:
@@ -85,7 +106,9 @@ def _counted(batches: Iterator[pa.RecordBatch], name: str, footer: Any) -> Itera
         )
 
 
-def _unreadable(name: str, error: Exception) -> BadData:
+def _unreadable(name: str, error: Exception) -> ScaridError:
+    if isinstance(error, OSError) and error.errno:  # the device, and not the content
+        return OutputFailure(f"{name}: {error.strerror}")
     reason = str(error).partition("\n")[0]
     return BadData(f"{name}: not a complete Arrow or Parquet table ({reason}); write it again")
 
@@ -112,11 +135,7 @@ def _sound(name: str, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBa
                 return
             # The offsets of texts point into memory; numbers have none, and cost no time here.
             batch.validate(full=not all(pa.types.is_primitive(f.type) for f in batch.schema))
-        except OSError as error:
-            if error.errno:  # the device, and not the content
-                raise OutputFailure(f"{name}: {error.strerror}") from None
-            raise _unreadable(name, error) from None
-        except pa.ArrowException as error:
+        except (pa.ArrowException, OSError) as error:
             raise _unreadable(name, error) from None
         yield from parts(batch, name)
 

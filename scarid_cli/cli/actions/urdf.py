@@ -7,7 +7,8 @@ from typing import Any
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.cli.job import Job, command_line
+from scarid_cli.cli.command_line import command_line
+from scarid_cli.cli.job import Job
 from scarid_cli.cli.treatment import for_motion, for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import urdf as stage
@@ -29,7 +30,7 @@ def run(
     rows = given["smooth_sign"] or given["all_rows"] or given["bandwidth"]
     if not motion and (treatment != Treatment() or rows):
         raise UsageFault("options for the rows of a motion need --motion FILE")
-    arm = load(robot)
+    arm = load(job.described(robot))
     if not arm.body:
         raise UsageFault(f"{robot}: has no URDF to write parameters into")
     text = Path(arm.body.path).read_text("utf-8")
