@@ -25,7 +25,8 @@ from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
 from scarid_cli.io.selection import REFUSE, SPLIT, Lacking, within
 from scarid_cli.io.stated import in_file, stated_robot
 from scarid_cli.io.table import Table
-from scarid_cli.io.writer import Document, Handover, Output, all_or_none, same_place
+from scarid_cli.io.target import same_place
+from scarid_cli.io.writer import Document, Handover, InFolder, Output, all_or_none
 from scarid_cli.printable import printable
 
 if TYPE_CHECKING:
@@ -75,6 +76,10 @@ class Job:
     def text(self, path: str) -> Document:
         """The output for a document beside the tables, which is opened early as well."""
         return self._new(path, lambda: Document(path))
+
+    def figure(self, path: str) -> Document:
+        """The output for a document in a folder that is made if need be."""
+        return self._new(path, lambda: InFolder(path))
 
     def side_table(self, path: str | None) -> Output | None:
         """The table of a side output, if it was asked for."""

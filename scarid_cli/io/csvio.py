@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.csv as pacsv
 
 from scarid_cli.errors import BadData, bad_data, cut_short
-from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.bytesource import ByteSource, require_moderate_row
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Metadata, Table
 
@@ -46,7 +46,7 @@ def _table(source: ByteSource) -> Table:
     lines = _complete_lines(source)
     first = next(lines, b"")
     while not (header_end := _header_end(first)) and (more := next(lines, None)):
-        first += more
+        first = more
     if not header_end:
         raise bad_data(
             source.name,
@@ -70,13 +70,15 @@ def _complete_lines(source: ByteSource) -> Iterator[bytes]:
     tells whether it ends within quotes.
     """
     held: list[bytes] = []
-    inside = False
+    inside, size = False, 0
     while data := source.read_some():
         end = _last_row_end(data, inside=inside)
         if end:
             yield b"".join([*held, data[:end]])
             held, inside, data = [], False, data[end:]
         held.append(data)
+        size = len(data) if end else size + len(data)
+        require_moderate_row(source.name, size)
         inside ^= bool(data.count(b'"') % 2)
     if rest := b"".join(held):
         yield rest + b"\n"
@@ -127,7 +129,7 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
             expected="a header with the names of the columns",
             remedy="name them with `scarid convert --header t,q1,...`",
         )
-    for column in names:
+    for column in names if len(set(names)) < len(names) or not all(names) else ():
         if not column or names.count(column) > 1:
             found = f"{names.count(column)} columns of this name" if column else "no name"
             raise bad_data(

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.errors import BadData, OutputFailure, UsageFault, bad_data
-from scarid_cli.io.bytesource import ByteSource, Wrapped, require_moderate
+from scarid_cli.errors import BadData, ScaridError, bad_data
+from scarid_cli.io.bytesource import ByteSource, Wrapped, max_batch, require_moderate
+from scarid_cli.io.matfile import COPIES, TOO_LARGE
 from scarid_cli.io.notation import SPACE, Notation
 from scarid_cli.io.table import Metadata, Table, doubles
 
@@ -73,7 +74,7 @@ def read_archive(path: str) -> Table:
 def _read(path: str) -> dict[str, Any]:
     try:
         return _npz(path) if path.endswith(".npz") else _mat(path)
-    except (MemoryError, UsageFault, OutputFailure):
+    except (MemoryError, ScaridError):
         raise
     except Exception as error:  # damage shows in whatever a reader does with it
         reason = " ".join(str(error).split()) or type(error).__name__
@@ -82,12 +83,16 @@ def _read(path: str) -> dict[str, Any]:
         ) from None
 
 
-def _npz(path: str) -> dict[str, Any]:
+def require_moderate_archive(path: str) -> None:
+    """Refuse an .npz file whose arrays would take far too much memory, which they do twice."""
     import zipfile
 
     with zipfile.ZipFile(path) as archive:
-        for entry in archive.infolist():
-            require_moderate(path, entry.file_size)
+        require_moderate(path, COPIES * sum(entry.file_size for entry in archive.infolist()))
+
+
+def _npz(path: str) -> dict[str, Any]:
+    require_moderate_archive(path)
     with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as arrays:
         return {name: arrays[name] for name in arrays.files}
 
@@ -98,8 +103,10 @@ def _mat(path: str) -> dict[str, Any]:
     import subprocess
     import sys
 
-    program = [sys.executable, "-m", "scarid_cli.io.matfile", path]
+    program = [sys.executable, "-m", "scarid_cli.io.matfile", path, str(max_batch())]
     done = subprocess.run(program, capture_output=True, check=False)
+    if done.returncode == TOO_LARGE:
+        require_moderate(path, int(done.stdout))
     if done.returncode:
         lines = done.stderr.decode(errors="replace").splitlines()
         raise ValueError(lines[-1] if lines else "its reader crashed")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
@@ -93,8 +94,8 @@ def _columns_to_check(table: Table, schema: schemas.TableSchema, reads: Reads | 
 
 
 def _faults_of_columns(table: Table, schema: schemas.TableSchema) -> Iterator[Fault]:
-    for column in table.columns:
-        if (count := table.columns.count(column)) > 1:
+    for column, count in Counter(table.columns).items():
+        if count > 1:
             yield column, f"{count} columns of this name", "one", "rename or drop one of them"
     missing = schema.missing_from(table.columns)
     if missing:

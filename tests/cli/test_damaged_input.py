@@ -168,6 +168,8 @@ def test_csv_with_a_stray_quote_or_a_long_line_is_read_in_linear_time(
     content = start + tail
 
     class Pieces:
+        name = "log.csv"
+
         def __init__(self) -> None:
             self.left = [Bytes(content[i : i + 4096]) for i in range(0, len(content), 4096)]
 

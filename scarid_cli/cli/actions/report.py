@@ -78,6 +78,5 @@ def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | No
 
 def _save(job: Job, folder: Path, titles: list[str], drawn: list[list[str]]) -> None:
     """Write each figure as a file of its own."""
-    folder.mkdir(parents=True, exist_ok=True)
     for name, document in naming.figures(titles, drawn):
-        job.text(str(folder / name)).write(document)
+        job.figure(str(folder / name)).write(document)
