@@ -111,6 +111,12 @@ class ByteSource:
         """Whether this is a regular file, rather than a pipe or a terminal."""
         return stat.S_ISREG(os.fstat(self.fd).st_mode)
 
+    def part_read(self) -> float | None:
+        """Which part of a regular file was read in order so far; None for a pipe."""
+        if not stat.S_ISREG(os.fstat(self.fd).st_mode):
+            return None
+        return os.lseek(self.fd, 0, os.SEEK_CUR) / max(os.fstat(self.fd).st_size, 1)
+
     def seekable(self) -> BinaryIO:
         """A seekable file of all the bytes: the source itself, or a temporary copy of a pipe."""
         if self._spool is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, field, replace
 from itertools import groupby, pairwise
 from math import isfinite
@@ -60,17 +60,25 @@ def _is_entry(entry: Any) -> bool:
     return digested and all(isinstance(entry.get(key), str) for key in ("command", "version"))
 
 
+def _as_counted(row: int) -> int:
+    return row
+
+
 @dataclass(frozen=True)
 class Table:
     """A stream of record batches with their schema; `name` says where it came from.
 
-    The batches can be iterated once. The unit of a column is in the metadata of its field.
+    The batches can be iterated once. The unit of a column is in the metadata of its field. `row`
+    gives the number in the log of a row of the table, both counted from 1: they differ where rows
+    were left out (io/selection.py). `length` is the number of rows, if the input states it.
     """
 
     name: str
     schema: pa.Schema
     meta: Metadata
     batches: Iterator[pa.RecordBatch]
+    row: Callable[[int], int] = _as_counted
+    length: int | None = None
 
     @property
     def columns(self) -> list[str]:

@@ -16,6 +16,8 @@ from scarid_cli.io.clock import nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
 from scarid_cli.printable import printable
 
+FEW = 8  # values of a list, or entries of a dictionary, that are shown
+
 
 @dataclass
 class Extent:
@@ -143,7 +145,7 @@ def _columns(columns: tuple[Column, ...]) -> Iterator[str]:
 
 
 def _metadata(key: str, value: Any) -> Iterator[str]:
-    """A value on one line, a list with one line for each item, a matrix by its size only."""
+    """A value on one line, a collection with one line for each item, a matrix by its size only."""
     if isinstance(value, list) and value and all(isinstance(row, list) for row in value):
         yield f"{key:<9} {len(value)} by {len(value[0])} numbers"
     elif key == "evidence" and value:
@@ -151,6 +153,11 @@ def _metadata(key: str, value: Any) -> Iterator[str]:
     elif isinstance(value, list):
         yield key
         yield from (f"  {_text(item)}" for item in value)
+    elif isinstance(value, dict) and len(value) > FEW:
+        yield f"{key:<9} {len(value)} entries (--json shows them)"
+    elif isinstance(value, dict) and any(isinstance(item, dict | list) for item in value.values()):
+        yield key
+        yield from (f"  {name}: {_text(item)}" for name, item in value.items())
     else:
         yield f"{key:<9} {_text(value)}"
 
@@ -158,6 +165,8 @@ def _metadata(key: str, value: Any) -> Iterator[str]:
 def _text(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{name} {_text(item)}" for name, item in value.items())
+    if isinstance(value, list):
+        return " ".join(map(_text, value)) if len(value) <= FEW else f"{len(value)} values"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.job import Job, command_line
+from scarid_cli.cli.command_line import command_line
+from scarid_cli.cli.job import Job
 from scarid_cli.cli.progress import steps
 from scarid_cli.cli.settings import document
 from scarid_cli.io.reader import require
@@ -21,7 +22,6 @@ def run(
     file: str,
     methods: tuple[str, ...],
     robot: str | None,
-    to_time: float | None,
     seed: int,
     save: str | None,
 ) -> None:
@@ -33,8 +33,7 @@ def run(
     arm = job.robot(robot, log) if robot else None
     joints = _joints(table, arm)
     names = _names(methods or (FOR_ROBOT if arm else FOR_POSITIONS))
-    used = record.until(table, to_time) if to_time else table
-    held = record.Record.of(used, joints, torques=arm is not None)
+    held = record.Record.of(table, joints, torques=arm is not None)
     with steps(quiet=job.quiet) as progress:
         if arm:
             found = bandwidth.bandwidth(held, arm, progress)
