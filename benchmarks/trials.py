@@ -95,14 +95,11 @@ class Trials:
         status = _waited(child, limit)
         if status is None:
             return "hangs", ""
-        failed = [
-            x
-            for x in log.read_text(errors="replace").splitlines()
-            if x.startswith(("FAILED", "ERROR"))
-        ]
+        lines = log.read_text(errors="replace").splitlines()
+        failed = [line for line in lines if line.startswith(("FAILED", "ERROR"))]
         by = failed[0].split(" - ")[0].partition(" ")[2] if failed else ""
         code = os.waitstatus_to_exitcode(status)
-        if code == pytest.ExitCode.USAGE_ERROR:
+        if code == pytest.ExitCode.USAGE_ERROR and not any("ERROR collecting" in x for x in lines):
             raise RuntimeError(f"the tests are not there: {log.read_text()}")
         results = {pytest.ExitCode.OK: "survived", pytest.ExitCode.TESTS_FAILED: "noticed"}
         return results.get(code, "no import"), by

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+from os import SEEK_END
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,8 @@ from scarid_cli.io.notation import SPACE, Notation
 from scarid_cli.io.table import Metadata, Table, doubles
 
 ARCHIVES = (".npz", ".mat")
+END_OF_ZIP = struct.Struct("<4s6xH10x")  # the last bytes: a mark, and how many files there are
+MANY = 0xFFFF  # stands for a number that is elsewhere
 COMMENTS = b"#%"  # that begin a line before the header
 
 
@@ -89,12 +93,22 @@ def require_moderate_archive(path: str) -> None:
 
     with zipfile.ZipFile(path) as archive:
         require_moderate(path, COPIES * sum(entry.file_size for entry in archive.infolist()))
+        _require_all(path, len(archive.infolist()))
 
 
 def _npz(path: str) -> dict[str, Any]:
     require_moderate_archive(path)
     with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as arrays:
         return {name: arrays[name] for name in arrays.files}
+
+
+def _require_all(path: str, found: int) -> None:
+    """Refuse an archive whose end states more arrays: a bit can hide one from zipfile."""
+    with Path(path).open("rb") as file:
+        file.seek(-END_OF_ZIP.size, SEEK_END)
+        mark, stated = END_OF_ZIP.unpack(file.read())
+    if mark == b"PK\5\6" and stated not in (found, MANY):
+        raise ValueError(f"it has {found} of {stated} arrays")
 
 
 def _mat(path: str) -> dict[str, Any]:
