@@ -12,7 +12,7 @@ from scarid_cli.io.table import Table
 from scarid_cli.reporting import naming, results, text
 from scarid_cli.reporting import published as values_of
 from scarid_cli.reporting import repeated as repetitions
-from scarid_cli.reporting.content import sections
+from scarid_cli.reporting.content import answered, sections
 
 
 def run(
@@ -42,7 +42,8 @@ def run(
         if figures:
             _save(job, Path(figures), [section.title for section in found], drawn)
         if page:
-            page.write(rendering.html(title, found, drawn, tables))
+            said = None if repeated else answered(collected, values)
+            page.write(rendering.html(title, said, found, drawn, tables))
     if plain:
         plain.write(text.markdown(title, found))
     if printed:
