@@ -36,30 +36,30 @@ from scarid_cli.cli.declare import declare
 def command() -> None:
     """Print tables and draw figures of logs, motions, parameters, traces, metrics and predictions.
 
-      \b
-        scarid report *.parameters.parquet
-        scarid report *.parquet --html report.html --markdown report.md
-        scarid identify motion.parquet | scarid report
-        scarid report --repeated runs/*/p2smd.cross.metrics.parquet
-    scarid report --fleet outcome --html outcome/fleet.html
+    \b
+      scarid report *.parameters.parquet
+      scarid report *.parquet --html report.html --markdown report.md
+      scarid identify motion.parquet | scarid report
+      scarid report --repeated runs/*/p2smd.cross.metrics.parquet
+      scarid report --fleet outcome --html outcome/fleet.html
 
-      A file is named METHOD.EXPERIMENT.KIND.EXTENSION: p2smd.direct.metrics.parquet holds the metrics
-      of method p2smd in experiment direct. EXPERIMENT and KIND may be left out. Methods appear in the
-      order of the files.
+    A file is named METHOD.EXPERIMENT.KIND.EXTENSION: p2smd.direct.metrics.parquet holds the metrics
+    of method p2smd in experiment direct. EXPERIMENT and KIND may be left out. Methods appear in the
+    order of the files.
 
-      Prints the tables: estimates with relative standard deviations (the paper's Table 2), errors of
-      the running estimates (Table 3), and the quality of the predicted torques in each experiment
-      (Tables 4 and 5). The page adds figures: the logs (Fig. 3), velocities and accelerations
-      (Fig. 4), the largest relative standard deviation of each method (Fig. 5), the estimates over
-      time (Fig. 6), and measured and predicted torques (Figs. 7 and 8).
+    Prints the tables: estimates with relative standard deviations (the paper's Table 2), errors of
+    the running estimates (Table 3), and the quality of the predicted torques in each experiment
+    (Tables 4 and 5). The page adds figures: the logs (Fig. 3), velocities and accelerations
+    (Fig. 4), the largest relative standard deviation of each method (Fig. 5), the estimates over
+    time (Fig. 6), and measured and predicted torques (Figs. 7 and 8).
 
-      A priori values are those of the robot named in the metadata. CSV has no metadata; a CSV takes
-      the robot of another table with the same parameters.
+    A priori values are those of the robot named in the metadata. CSV has no metadata; a CSV takes
+    the robot of another table with the same parameters.
 
-      --fleet prints which robots and logs of a batch need a look. Its page has a row for each log,
+    --fleet prints which robots and logs of a batch need a look. Its page has a row for each log,
     the failures first, which a browser sorts and filters without a network, with links to the pages
     of the logs.
 
     --html - or --markdown - writes that document to standard output in place of the tables. Tables
-      of any length are read in bounded memory.
+    of any length are read in bounded memory.
     """

@@ -99,7 +99,7 @@ class FleetRobot:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """How many logs have a finding of each rank; the last number is that of logs without any."""
+        """How many logs have a finding of each rank; the last number is of logs without any."""
         found = Counter(rank for log in self.logs for rank, _ in log.marks)
         found[FINE] = sum(not log.marks for log in self.logs)
         return tuple(found[rank] for rank in range(FINE + 1))

@@ -10,8 +10,8 @@ from scarid_cli.reporting.parts import NONE, Section
 
 WORDS = ("failed", "changed", "verdict not good", "check not ok", "nothing found")
 NOTE = (
-    "Failed: a command ended with an error. Changed: validate or compare found a change against the "
-    "reference log. A log may have several findings."
+    "Failed: a command ended with an error. Changed: validate or compare found a change against "
+    "the reference log. A log may have several findings."
 )
 
 

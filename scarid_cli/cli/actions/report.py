@@ -31,10 +31,10 @@ def run(
 ) -> None:
     """Print the tables, and write the documents."""
     if fleet:
-        _require_alone(
-            files, {"--repeated": repeated, "--published": published, "--figures": figures}
-        )
-        return of_fleet(job, fleet, title or "Fleet report", html, markdown, place)
+        others = {"--repeated": repeated, "--published": published, "--figures": figures}
+        _require_alone(files, others)
+        of_fleet(job, fleet, title or "Fleet report", html, markdown, place)
+        return
     title = title or "Identification report"
     paths = files or ("-",)
     _require_distinct(paths, html, markdown)
