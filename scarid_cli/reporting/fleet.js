@@ -72,9 +72,9 @@
       draw("line", { class: "here", x1: at, x2: at, y1: level(value - half), y2: level(value + half) }),
       draw("circle", { class: "here", cx: at, cy: level(value), r: 2.2 }));
     const sign = (differs ? " ◆" : "") + (trend ? " ↗" : "");
-    const name = make("small", {}, parameter.name + sign);
-    const number = make("small", {}, width > 100 ? words : shown(parameter, value));
-    return make("span", { class: differs ? "spark differs" : "spark" }, name, svg, number);
+    const number = width > 100 ? words : shown(parameter, value);
+    return make("span", { class: differs ? "spark differs" : "spark" },
+      make("small", {}, make("b", {}, parameter.name), `${sign} ${number}`), svg);
   }
   function parametersOf(i) {
     const robot = robots[logs.robot[i]];
@@ -128,13 +128,13 @@
       fill: (i) => (logs.r2[i].length ? [joints(logs.r2[i])] : []) },
     { title: "Delay [ms]", named: true, key: (i) => logs.delay[i], fill: (i) => [delay(i, "")] },
     { title: "Parameters", down: true, key: (i) => logs.apart[i],
-      fill: (i) => parametersOf(i).slice(0, SHOWN).map((p) => spark(i, p, 84, 24)) },
+      fill: (i) => parametersOf(i).slice(0, SHOWN).map((p) => spark(i, p, 92, 24)) },
   ];
   function row(i) {
     return make("tr", {}, ...columns.map((column, c) => {
       const cell = column.fill(i).filter((part) => part !== "");
-      const name = column.named ? { "data-name": column.title } : {};
-      return c === 1 ? make("th", { scope: "row" }, ...cell) : make("td", name, ...cell);
+      const name = { class: `c${c}`, ...(column.named ? { "data-name": column.title } : {}) };
+      return c === 1 ? make("th", { scope: "row", class: "c1" }, ...cell) : make("td", name, ...cell);
     }));
   }
   function details(i) {

@@ -12,11 +12,10 @@ from scarid_cli import __version__
 from scarid_cli.reporting.fleet import FINE, FleetRobot, Log
 from scarid_cli.reporting.fleet_curve import Cell, Curve, curve, strip
 from scarid_cli.reporting.fleet_data import embedded, href
-from scarid_cli.reporting.fleet_history import History
-from scarid_cli.reporting.fleet_sections import NOTE, WORDS, counted, joints, named, trend
+from scarid_cli.reporting.fleet_sections import NOTE, WORDS, counted, joints, level, named, trend
 
 CURVES = 3  # of a robot in the summary at most
-WIDTH, HEIGHT = 210, 64  # of a curve [px]
+WIDTH, HEIGHT = 190, 60  # of a curve [px]
 STRIP = 260  # the width of a strip [px]
 STATIC = 300  # logs in the table for print and for browsers without scripts
 HEIGHTS = (0, 3, 6, 9, 12)  # where the cell of a strip begins, by its finding
@@ -68,7 +67,7 @@ def html(title: str, robots: Sequence[FleetRobot], base: str, *, tsv: bool) -> s
         note=NOTE,
         href=lambda path: href(base, path),
         counted=counted,
-        number=number,
+        level=level,
     )
 
 
@@ -86,11 +85,6 @@ def _card(index: int, robot: FleetRobot) -> Card:
         cells=strip(robot, STRIP),
         curves=tuple(curve(robot, history, WIDTH, HEIGHT) for history in chosen[:CURVES]),
     )
-
-
-def number(history: History, value: float) -> str:
-    """A value of the history, to the last decimal place that matters."""
-    return f"{value:.{max(0, history.decimals)}f}"
 
 
 def _template(name: str) -> Template:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from scarid_cli.reporting.fleet import FINE, FleetRobot, Log
+from scarid_cli.reporting.fleet_history import History
 from scarid_cli.reporting.naming import printable
 from scarid_cli.reporting.parts import NONE, Section
 
@@ -76,3 +79,17 @@ def joints(robot: FleetRobot) -> str:
     """The joints whose parameters differ, those of most logs first."""
     found = robot.joints.most_common()
     return ", ".join(f"joint {joint} in {counted(count, 'log')}" for joint, count in found)
+
+
+def level(robot: FleetRobot, history: History) -> str:
+    """The first and the last value of a parameter with a trend; of another one, what is typical.
+
+    Values outside the axis are no part of a trend.
+    """
+    low, high = history.limits
+    inside = history.estimate[(history.estimate >= low) & (history.estimate <= high)]
+    digits = max(0, history.decimals)
+    if history.parameter in robot.trending:
+        return f"{inside[0]:.{digits}f} → {inside[-1]:.{digits}f} {history.unit}"
+    middle, half = float(np.median(history.estimate)), float(np.median(history.half))
+    return f"{middle:.{digits}f} ± {half:.{digits}f} {history.unit}"
