@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from scarid_cli.cli.fleet import of_fleet
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
@@ -23,11 +24,18 @@ def run(
     markdown: str | None,
     published: str | None,
     repeated: bool,
+    fleet: str | None,
     figures: str | None,
-    title: str,
+    title: str | None,
     place: str | None,
 ) -> None:
     """Print the tables, and write the documents."""
+    if fleet:
+        others = {"--repeated": repeated, "--published": published, "--figures": figures}
+        _require_alone(files, others)
+        of_fleet(job, fleet, title or "Fleet report", html, markdown, place)
+        return
+    title = title or "Identification report"
     paths = files or ("-",)
     _require_distinct(paths, html, markdown)
     page, plain, printed = (job.side_text(path) for path in (html, markdown, place))
@@ -67,6 +75,14 @@ def _reportable(job: Job, paths: Sequence[str]) -> list[Table]:
         raise skipped[0]
     job.notes += [f"skipped: {reason}" for reason in skipped]
     return tables
+
+
+def _require_alone(files: Sequence[str], others: Mapping[str, object]) -> None:
+    """Refuse what a report of a fleet has no use for."""
+    if files:
+        raise UsageFault(f"--fleet reads its own folder; leave {files[0]} out")
+    if given := next((option for option, value in others.items() if value), None):
+        raise UsageFault(f"{given} has no meaning with --fleet; leave it out")
 
 
 def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | None) -> None:
