@@ -9,7 +9,7 @@ from typing import Any
 
 from scarid_cli.io.bytesource import STDIN
 from scarid_cli.io.table import Table
-from scarid_cli.reporting.naming import printable
+from scarid_cli.printable import printable
 
 # The option that writes a table of these kinds beside the output of the command.
 BESIDE = {"prediction": "--predictions", "trace": "--trace"}
