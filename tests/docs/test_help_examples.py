@@ -148,7 +148,21 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for name, others in NAMES.items():
             copied(name, others)
         of_others()
+        of_a_batch(Path("outcome"))
     return place
+
+
+def of_a_batch(outcome: Path) -> None:
+    """The tables of a batch with a single log."""
+    outcome.mkdir()
+    for kind, columns in (
+        ("fleet", "robot,log,file,order,status\nscara2,monday,monday.csv,1,0\n"),
+        ("estimates", "robot,log,order,parameter,unit,estimate,robust_error,low,high\n"
+                      "scara2,monday,1,ZZ2,kg m2,0.064,0.001,0.062,0.066\n"),
+        ("robots", "robot,description,logs,identified,failed\nscara2,scara2,1,1,0\n"),
+    ):  # fmt: skip
+        Path(f"{kind}.csv").write_text(columns, "utf-8")
+        assert main(["convert", f"{kind}.csv", "-o", str(outcome / f"{kind}.parquet")]) == 0
 
 
 def copied(name: str, others: list[str]) -> None:
