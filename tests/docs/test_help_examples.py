@@ -12,10 +12,12 @@ from itertools import groupby
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from bags import STATE, state, write_mcap
 from click.testing import CliRunner
 from conftest import ROOT
+from pyarrow import parquet
 from scipy.io import savemat
 
 from scarid_cli.__main__ import main
@@ -155,14 +157,21 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def of_a_batch(outcome: Path) -> None:
     """The tables of a batch with a single log."""
     outcome.mkdir()
-    for kind, columns in (
-        ("fleet", "robot,log,file,order,status\nscara2,monday,monday.csv,1,0\n"),
-        ("estimates", "robot,log,order,parameter,unit,estimate,robust_error,low,high\n"
-                      "scara2,monday,1,ZZ2,kg m2,0.064,0.001,0.062,0.066\n"),
-        ("robots", "robot,description,logs,identified,failed\nscara2,scara2,1,1,0\n"),
-    ):  # fmt: skip
-        Path(f"{kind}.csv").write_text(columns, "utf-8")
-        assert main(["convert", f"{kind}.csv", "-o", str(outcome / f"{kind}.parquet")]) == 0
+    log = {"robot": ["scara2"], "log": ["monday"], "order": [1]}
+    estimate = {"parameter": ["ZZ2"], "unit": ["kg m2"], "estimate": [0.064]}
+    tables = {
+        "fleet": {**log, "file": ["monday.csv"], "status": [0]},
+        "estimates": {**log, **estimate, "robust_error": [0.001], "low": [0.062], "high": [0.066]},
+        "robots": {
+            "robot": ["scara2"],
+            "description": ["scara2"],
+            "logs": [1],
+            "identified": [1],
+            "failed": [0],
+        },
+    }
+    for kind, columns in tables.items():
+        parquet.write_table(pa.table(columns), outcome / f"{kind}.parquet")
 
 
 def copied(name: str, others: list[str]) -> None:
