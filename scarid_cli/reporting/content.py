@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from scarid_cli.reporting import published, torques
-from scarid_cli.reporting.answer import Answer, answer
 from scarid_cli.reporting.estimates import constants, estimates, fit, verdicts
 from scarid_cli.reporting.evolution import evolution
 from scarid_cli.reporting.kinds import (
@@ -24,7 +23,8 @@ from scarid_cli.reporting.wording import experiment_of, grouped, of_kind
 
 def sections(results: Sequence[Result], values: published.Values | None = None) -> list[Section]:
     """Everything that these results have to say, with published values beside them."""
-    colours = coloured(results)
+    labels = (r.name.label for r in results if not isinstance(r, Measurement))
+    colours = {name: i for i, name in enumerate(dict.fromkeys(labels))}
     results = published.beside(results, values or {})
     return [
         *verdicts(of_kind(results, Parameters)),
@@ -37,18 +37,6 @@ def sections(results: Sequence[Result], values: published.Values | None = None) 
         *_of_estimates(results, colours),
         *_of_torques(results, colours),
     ]
-
-
-def answered(results: Sequence[Result], values: published.Values | None = None) -> Answer | None:
-    """What the first screen of a page says of these results."""
-    return answer(published.beside(results, values or {}), coloured(results))
-
-
-def coloured(results: Sequence[Result]) -> dict[str, int]:
-    """The number of each method, which is that of its colour in the whole report; logs are last."""
-    labels = [r.name.label for r in results if not isinstance(r, Measurement)]
-    logged = [r.name.label for r in of_kind(results, Measurement)]
-    return {name: i for i, name in enumerate(dict.fromkeys([*labels, *logged]))}
 
 
 def _of_estimates(results: Sequence[Result], colours: dict[str, int]) -> Iterator[Section]:

@@ -42,9 +42,7 @@ class Parameters(_PerParameter):
     """Estimates with their relative standard deviations [%] (eq. 34); nan where unknown.
 
     `robust` holds relative standard errors [%] that are robust to autocorrelated residuals; it is
-    empty where the table has none. `low` and `high` are the ends of the 95 % intervals, in the
-    units of the estimates; both are empty where the table has none. `extra` is what the metadata
-    say of the estimation.
+    empty where the table has none. `extra` is what the metadata say of the estimation.
     """
 
     estimates: tuple[float, ...]
@@ -52,8 +50,6 @@ class Parameters(_PerParameter):
     extra: dict[str, Any]
     commands: tuple[str, ...] = ()
     robust: tuple[float, ...] = ()
-    low: tuple[float, ...] = ()
-    high: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

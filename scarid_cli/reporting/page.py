@@ -1,4 +1,4 @@
-"""A report as one self-contained HTML page: no network and no other file."""
+"""A report as one self-contained HTML page: no network, no script, no other file."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import logging
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from scarid_cli import __version__
 from scarid_cli.io.table import Table
-from scarid_cli.reporting import svg
-from scarid_cli.reporting.answer import Answer
 from scarid_cli.reporting.curves import POINTS
-from scarid_cli.reporting.origins import origins
-from scarid_cli.reporting.parts import Section, header_lines
+from scarid_cli.reporting.parts import Section, header_lines, split
+
+PAGE_WIDTH = 108  # characters of a table that fit an A4 page
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
@@ -31,11 +31,7 @@ def figures(sections: Sequence[Section]) -> list[list[str]]:
 
 
 def html(
-    title: str,
-    answer: Answer | None,
-    sections: Sequence[Section],
-    drawn: list[list[str]],
-    tables: Sequence[Table],
+    title: str, sections: Sequence[Section], drawn: list[list[str]], tables: Sequence[Table]
 ) -> str:
     """The whole page with its figures; it ends with the history of the `tables`."""
     from scarid_cli.reporting.figures import element
@@ -46,13 +42,11 @@ def html(
         points=POINTS,
         count=len(tables),
         no_break=NO_BREAK,
-        answer=answer,
-        origins=origins(tables),
-        colours=Markup(_colours()),
+        origins=_origins(tables),
         sections=[
             {
                 "section": section,
-                "anchor": anchor,
+                "parts": split(section, PAGE_WIDTH, wrapped=True) if section.rows else [],
                 "figures": [
                     (plot.caption, _own(element(document), f"f{i}-{j}-"))
                     for j, (plot, document) in enumerate(
@@ -60,26 +54,9 @@ def html(
                     )
                 ],
             }
-            for i, (section, anchor, documents) in enumerate(
-                zip(sections, anchors([s.title for s in sections]), drawn, strict=True), 1
-            )
+            for i, (section, documents) in enumerate(zip(sections, drawn, strict=True), 1)
         ],
     )
-
-
-def anchors(titles: Sequence[str]) -> list[str]:
-    """An identifier for each title; equal ones are numbered."""
-    found: list[str] = []
-    for title in titles:
-        name = "-".join(["s", *re.findall(r"[a-z0-9]+", title.lower())])
-        found.append(name if name not in found else f"{name}-{len(found)}")
-    return found
-
-
-def _colours() -> str:
-    """The colours of the methods on a light and on a dark page, and in print."""
-    dark = f"@media screen and (prefers-color-scheme:dark){{:root{{{svg.variables(1)}}}}}"
-    return f":root{{{svg.variables(0)}}}{dark}{svg.classes()}"
 
 
 def _template() -> Template:
@@ -91,8 +68,19 @@ def _template() -> Template:
         undefined=StrictUndefined,
     )
     environment.filters["wrapping"] = _wrapping
-    environment.filters["markup"] = Markup
     return environment.get_template("report.html")
+
+
+def _origins(tables: Sequence[Table]) -> list[dict[str, Any]]:
+    """Tables of one run share a history, which is listed once."""
+    origins: list[dict[str, Any]] = []
+    for table in tables:
+        same = next((o for o in origins if o["history"] == table.meta.history), None)
+        if same:
+            same["names"].append(table.name)
+        else:
+            origins.append({"names": [table.name], "history": table.meta.history})
+    return origins
 
 
 def _wrapping(header: str) -> str:

@@ -97,13 +97,14 @@ def pages(panels: Sequence[Panel]) -> list[tuple[Panel, ...]]:
     return [tuple(panels[i : i + PANELS]) for i in range(0, len(panels), PANELS)]
 
 
-def split(section: Section, width: int) -> list[Section]:
+def split(section: Section, width: int, *, wrapped: bool = False) -> list[Section]:
     """The section in parts of at most `width` characters, each of which repeats the key columns.
 
-    A group of columns is never divided.
+    A group of columns is never divided. `wrapped` headers are broken into the lines of
+    `header_lines`.
     """
     columns = list(zip(section.headers, *section.rows, strict=True))
-    widths = [max(map(len, column)) + GAP for column in columns]
+    widths = [_width(column, wrapped=wrapped) + GAP for column in columns]
     left = width - sum(widths[: section.keys])
     parts: list[list[int]] = [[]]
     used = 0
@@ -121,6 +122,12 @@ def split(section: Section, width: int) -> list[Section]:
 def header_lines(header: str) -> list[str]:
     """Where a header may be broken: after the experiment, and before the unit."""
     return header.replace(": ", ":\n").replace(" [", "\n[").split("\n")
+
+
+def _width(column: tuple[str, ...], *, wrapped: bool) -> int:
+    header, *cells = column
+    lines = header_lines(header) if wrapped else [header]
+    return max(map(len, (*lines, *cells)))
 
 
 def _part(section: Section, columns: list[tuple[str, ...]], chosen: list[int]) -> Section:

@@ -79,8 +79,6 @@ def _parameters(source: Source) -> Parameters:
         extra=table.meta.extra,
         commands=tuple(entry["command"] for entry in table.meta.history),
         robust=_relative(_numbers(rows, "robust_error"), rows["estimate"]),
-        low=_numbers(rows, "low") if "low" in rows else (),
-        high=_numbers(rows, "high") if "high" in rows else (),
     )
 
 

@@ -77,8 +77,8 @@ def test_the_page_needs_nothing_else(tables: list[Path], tmp_path: Path, scarid:
     assert {"script", "link", "img", "iframe"}.isdisjoint(page.tags)
     assert len(set(page.ids)) == len(page.ids)
     assert {reference.lstrip("#") for reference in page.references} <= set(page.ids)
-    # Dots of the first screen; bars; estimates over time; torques of two methods.
-    assert page.tags.count("svg") == page.tags.count("figcaption") == 5
+    # Bars; estimates over time; torques of two methods.
+    assert page.tags.count("svg") == page.tags.count("figcaption") == 4
     assert html.stat().st_size < 500_000
 
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 from reports import SCARA, a_line, element_of, evolution, parameters
 
 from scarid_cli.algorithms.statistics.prediction import Quality
-from scarid_cli.reporting import figures
+from scarid_cli.reporting import figures, page
 from scarid_cli.reporting.content import sections
 from scarid_cli.reporting.kinds import Metrics, Parameters, Prediction, Trace
 from scarid_cli.reporting.naming import Name
-from scarid_cli.reporting.parts import PANELS, Bars, Panels
+from scarid_cli.reporting.parts import GAP, PANELS, Bars, Panels, split
 
 
 def test_parameters_stand_beside_each_other_with_the_a_priori_values_of_their_robot() -> None:
@@ -122,3 +124,21 @@ def test_joints_with_different_numbers_of_samples_show_their_range() -> None:
     qualities = tuple(Quality(0.9, 1.0, 1.0, samples=n) for n in (350, 348, 349))
     (section,) = sections([Metrics(Name("m", ""), None, (1, 2, 3), ("N m",) * 3, qualities)])
     assert section.rows[0][1] == "348 to 350"
+
+
+def test_three_experiments_of_two_joints_fit_the_page_side_by_side() -> None:
+    """A group of columns is never divided: headings of one line were wider than the page."""
+    quality = Quality(r2=-25.78881, rmse=11.8412, relative_error=107.5, samples=3904)
+    results = [
+        Metrics(Name("2smd, published", e), None, (1, 2), ("N m",) * 2, (quality,) * 2)
+        for e in ("direct", "cross", "common")
+    ]
+    parts = split(sections(results)[0], page.PAGE_WIDTH, wrapped=True)
+    assert [len(part.headers) for part in parts] == [7, 7]
+    for part in parts:
+        columns = zip(part.headers, *part.rows, strict=True)
+        words = [
+            max(max(map(len, re.split(" (?=\\[)|(?<=:) ", c))) for c in column)
+            for column in columns
+        ]
+        assert sum(words) + GAP * (len(words) - 1) <= page.PAGE_WIDTH

@@ -13,7 +13,7 @@ from scarid_cli.io.table import Table
 from scarid_cli.reporting import naming, results, text
 from scarid_cli.reporting import published as values_of
 from scarid_cli.reporting import repeated as repetitions
-from scarid_cli.reporting.content import answered, sections
+from scarid_cli.reporting.content import sections
 
 
 def run(
@@ -50,8 +50,7 @@ def run(
         if figures:
             _save(job, Path(figures), [section.title for section in found], drawn)
         if page:
-            said = None if repeated else answered(collected, values)
-            page.write(rendering.html(title, said, found, drawn, tables))
+            page.write(rendering.html(title, found, drawn, tables))
     if plain:
         plain.write(text.markdown(title, found))
     if printed:
