@@ -10,7 +10,8 @@ from markupsafe import Markup
 from scarid_cli.arrays import Array
 from scarid_cli.reporting.study import svg
 
-WIDTH, LEFT, RIGHT = 340, 46, 6  # pixels of a panel
+NARROW, WIDE = 340, 500  # pixels of a panel, of three or two of which side by side
+LEFT, RIGHT = 46, 6
 TOP, BOTTOM = 6, 18
 INK = "ink"  # the class of measured and true signals
 
@@ -38,6 +39,12 @@ class Chart:
     level: float | None = None
     height: int = 104
     note: str = ""
+    width: int = NARROW
+
+    @property
+    def across(self) -> int:
+        """The width of the plot in pixels."""
+        return self.width - LEFT - RIGHT
 
 
 def times(charts: Sequence[Chart]) -> tuple[float, float]:
@@ -50,19 +57,18 @@ def times(charts: Sequence[Chart]) -> tuple[float, float]:
 
 def drawn(chart: Chart, between: tuple[float, float]) -> Markup:
     """The panel as an SVG element with a title above it."""
-    wide = WIDTH - LEFT - RIGHT
     plot = svg.element(
         "svg",
         *_content(chart, between),
         class_="plot",
         x=LEFT,
         y=TOP,
-        width=wide,
+        width=chart.across,
         height=chart.height,
         viewBox=f"0 0 {svg.WIDTH} {svg.HEIGHT}",
         preserveAspectRatio="none",
     )
-    size = f"0 0 {WIDTH} {TOP + chart.height + BOTTOM}"
+    size = f"0 0 {chart.width} {TOP + chart.height + BOTTOM}"
     image = svg.element(
         "svg",
         _frame(chart),
@@ -95,7 +101,7 @@ def _content(chart: Chart, between: tuple[float, float]) -> list[Markup]:
 
 
 def _frame(chart: Chart) -> Markup:
-    size = {"width": WIDTH - LEFT - RIGHT, "height": chart.height}
+    size = {"width": chart.across, "height": chart.height}
     return svg.element("rect", x=LEFT, y=TOP, class_="frame", **size)
 
 
@@ -116,7 +122,7 @@ def _vertical(chart: Chart) -> list[Markup]:
 
 def _horizontal(chart: Chart, between: tuple[float, float]) -> list[Markup]:
     first, last = between
-    wide, values = WIDTH - LEFT - RIGHT, svg.ticks(*between, 5)
+    wide, values = chart.across, svg.ticks(*between, 5)
     below = TOP + chart.height + 13
     return [
         svg.element(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from scarid_cli.algorithms.statistics.verdict import DOUBT
+from scarid_cli.algorithms.statistics.verdict import DOUBT, GOOD
 from scarid_cli.reporting.estimates import constants, fit
 from scarid_cli.reporting.evolution import evolution
 from scarid_cli.reporting.kinds import Parameters, Trace
-from scarid_cli.reporting.parts import NONE, Panels, Section, number
+from scarid_cli.reporting.parts import NONE, Panels, Section
 from scarid_cli.reporting.study.blocks import (
     Block,
     Chapter,
@@ -21,12 +21,12 @@ from scarid_cli.reporting.study.blocks import (
 )
 from scarid_cli.reporting.study.chart import Chart, Line
 from scarid_cli.reporting.study.forest import Row, forest
-from scarid_cli.reporting.study.intervals import Interval, intervals
+from scarid_cli.reporting.study.intervals import Interval, intervals, written
 from scarid_cli.reporting.study.svg import span
 from scarid_cli.reporting.study.view import View
 from scarid_cli.reporting.wording import grouped, titled
 
-ACROSS = 7  # methods of a matrix side by side
+ACROSS = 6  # methods of a matrix side by side
 FEW = 5  # methods of a list that are not folded
 
 
@@ -69,8 +69,9 @@ def parameters(view: View, results: Sequence[Parameters]) -> Iterator[Chapter]:
         robot = f"Robot {group[0].robot_name}. " if group[0].robot_name else ""
         words = ("95 % interval", "a priori", "published", "condition number")
         if i:
-            summary = f"{len(group)} identifications of {len(group[0].names)} parameters"
-            blocks = (Fold(summary, blocks),)
+            good = sum(r.extra.get("verdict") == GOOD for r in group)
+            robot += f"{len(group)} identifications; the verdict on {good or 'none'} is good. "
+            blocks = (Fold("Show the estimates", blocks),)
         yield Chapter(title, title, robot, words, blocks)
 
 
@@ -130,14 +131,14 @@ def _matrix(view: View, part: Sequence[Parameters]) -> Matrix:
 
 def _cell(result: Parameters, interval: Interval, known: float | None) -> tuple[str, str, str]:
     """The estimate, half its interval, and whether it is known and contains the a priori value."""
-    text = f"{interval.estimate:g}" if result.name.published else number(interval.estimate)
-    half, percent = number(interval.half), number(interval.relative())
-    if NONE in (text, half):
+    estimate, half, percent = written(interval)
+    text = f"{interval.estimate:g}" if result.name.published else estimate
+    if not half:
         return text.replace("nan", NONE), "", ""
-    relative = "" if percent == NONE else f" ({percent} %)"
     missed = known is not None and not interval.holds(known)
     vague = not interval.relative() <= 2.0 * DOUBT
-    return text, f"± {half}{relative}", "missed" if missed else "vague" if vague else "sure"
+    more = f"± {half} ({percent})" if percent else f"± {half}"
+    return text, more, "missed" if missed else "vague" if vague else "sure"
 
 
 def _details(group: Sequence[Parameters]) -> Iterator[Fold]:

@@ -8,9 +8,8 @@ from math import isfinite
 
 from markupsafe import Markup
 
-from scarid_cli.reporting.parts import NONE, number
 from scarid_cli.reporting.study import svg
-from scarid_cli.reporting.study.intervals import Interval
+from scarid_cli.reporting.study.intervals import Interval, written
 
 WIDTH, NAMES, NUMBERS = 470, 128, 128  # pixels: the whole, the names, the numbers on the right
 TOP, ROW, BOTTOM = 4, 19, 18
@@ -57,14 +56,14 @@ def limits(rows: Sequence[Row], known: float | None) -> tuple[float, float]:
     return svg.span([*values, *([] if known is None else [known])], 0.12)
 
 
-def written(interval: Interval) -> str:
+def _written(interval: Interval) -> str:
     """The estimate and half its interval as text."""
-    half = number(interval.half)
-    return number(interval.estimate) if half == NONE else f"{number(interval.estimate)} ± {half}"
+    estimate, half, _ = written(interval)
+    return f"{estimate} ± {half}" if half else estimate
 
 
 def _spoken(title: str, unit: str, rows: Sequence[Row], known: float | None) -> str:
-    values = "; ".join(f"{row.name} {written(row.interval)}" for row in rows)
+    values = "; ".join(f"{row.name} {_written(row.interval)}" for row in rows)
     apriori = "" if known is None else f", a priori {known:.4g}"
     return f"{title} {unit} with 95 % intervals{apriori}: {values}"
 
@@ -76,7 +75,7 @@ def _x(value: float, low: float, high: float) -> float:
 
 
 def _axis(low: float, high: float, bottom: float) -> list[Markup]:
-    values = svg.ticks(low, high, 3)
+    values = svg.ticks(low, high, 5)
     lines = [
         svg.element("path", d=f"M{_x(v, low, high):.1f} {TOP}V{bottom}", class_="grid")
         for v in values
@@ -99,7 +98,7 @@ def _row(row: Row, top: float, low: float, high: float) -> list[Markup]:
     name = row.name if len(row.name) <= LETTERS else row.name[: LETTERS - 1] + "…"
     parts = [
         svg.element("text", name, x=NAMES - 8, y=middle + 3.5, class_="name"),
-        svg.element("text", written(i), x=WIDTH - NUMBERS + 8, y=middle + 3.5, class_="value"),
+        svg.element("text", _written(i), x=WIDTH - NUMBERS + 8, y=middle + 3.5, class_="value"),
     ]
     style = f"{row.style}{' pale' if row.pale else ''}"
     return [*parts, svg.element("g", *_marks(i, middle, low, high), class_=style)]

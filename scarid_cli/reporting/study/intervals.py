@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import floor, isfinite, log10, nan
 
 from scarid_cli.reporting.kinds import Parameters
+from scarid_cli.reporting.parts import number
 
+KNOWN = 2  # digits of half an interval, to which the estimate is rounded
+MOST_PLACES = 9  # of a decimal number
 NORMAL = 1.96  # errors to either side, where the table states no interval
 
 
@@ -29,6 +32,28 @@ class Interval:
     def relative(self) -> float:
         """Half the interval in percent of the estimate; nan if it is not known."""
         return 100.0 * self.half / abs(self.estimate) if self.estimate else nan
+
+
+def written(interval: Interval) -> tuple[str, str, str]:
+    """The estimate, half its interval and the same in percent, to what is known of them.
+
+    Each is empty or a dash if it is not known.
+    """
+    half = interval.half
+    if not (isfinite(half) and half > 0.0 and isfinite(interval.estimate)):
+        return number(interval.estimate), "", ""
+    places = KNOWN - 1 - floor(log10(half))
+    percent = interval.relative()
+    share = f"{percent:,.0f} %" if percent >= 100.0 else f"{percent:.2g} %"
+    estimate = _rounded(interval.estimate, places)
+    return estimate, _rounded(half, places), share if isfinite(percent) else ""
+
+
+def _rounded(value: float, places: int) -> str:
+    """A number with so many decimal places, of which there are none if it is large."""
+    if places > MOST_PLACES:
+        return f"{value:.3g}"
+    return f"{round(value, places):,.{max(places, 0)}f}"
 
 
 def intervals(result: Parameters) -> list[Interval]:

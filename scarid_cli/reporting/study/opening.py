@@ -112,8 +112,8 @@ def _figure(ranking: Ranking, colours: dict[str, int]) -> League:
     places = (Place(s.name, f"m{colours[s.label]}", s.grade, s.errors(judge)) for s in ranked)
     where = EXPERIMENTS.get(judge, f"the experiment {judge}")
     return League(
-        caption=f"Error of the predicted torques of {where.rstrip(',')}; the best method first, further left "
-        "is better.",
+        caption=f"Error of the predicted torques of {where.rstrip(',')}; the best method first, "
+        "further left is better.",
         axis="relative error of the predicted torque [%]",
         marks=tuple(f"joint {joint}" for joint in joints),
         places=tuple(places),

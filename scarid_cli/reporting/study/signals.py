@@ -13,13 +13,14 @@ from scarid_cli.reporting.parts import Panel, Panels, Series, number
 from scarid_cli.reporting.signals import logs as logs_section
 from scarid_cli.reporting.signals import soft_sensors as sensors_section
 from scarid_cli.reporting.study.blocks import Block, Chapter, Figure, Fold, Grid, Key, figure
-from scarid_cli.reporting.study.chart import INK, Chart, Line
+from scarid_cli.reporting.study.chart import INK, NARROW, WIDE, Chart, Line
 from scarid_cli.reporting.study.svg import element, span
 from scarid_cli.reporting.study.view import View
 from scarid_cli.reporting.torques import experiment as torque_section
 from scarid_cli.reporting.torques import experiments
 from scarid_cli.reporting.wording import experiment_of, grouped, of_kind, titled, with_unit
 
+COLUMNS = 3  # of narrow panels side by side
 RESIDUAL = 58  # pixels, the height of the panel of a residual
 TAIL = 0.2  # % of the samples at either end that an axis may clip
 
@@ -35,9 +36,9 @@ def torques(view: View, results: Sequence[Metrics | Prediction]) -> Iterator[Cha
     for group in grouped(results, lambda r: (r.joints, r.name.experiment)):
         section = torque_section(group, view.colours)
         blocks: list[Block] = [Grid(section)] if section.rows else []
-        if overview and blocks:
-            blocks = [Fold("Table of this experiment", tuple(blocks))]
         predicted = sorted(of_kind(group, Prediction), key=view.place)
+        if overview and blocks and predicted:
+            blocks = [Fold("Table of this experiment", tuple(blocks))]
         blocks = [*_predictions(view, predicted, metrics), *blocks]
         yield Chapter(section.title, section.title, "", words, tuple(blocks))
 
@@ -83,19 +84,20 @@ def _prediction(
 ) -> Figure:
     name, style = result.name.label, view.style(result.name.label)
     quality = next((m.qualities for m in metrics if m.name == result.name), None)
-    above, below = [], []
+    width = WIDE if len(result.joints) < COLUMNS else NARROW
+    charts = []
     for i, joint in enumerate(result.joints):
         title = with_unit(f"tau{joint}", result.units[i])
         note = f"error {number(quality[i].relative_error)} %" if quality else ""
         lines = (Line("actual", INK, result.measured[i]), Line(name, style, result.predicted[i]))
-        above.append(Chart(title, lines, scales[i], note=note))
         rest = (Line(name, style, result.residuals[i]),)
-        below.append(Chart(f"residual of {title}", rest, residuals[i], 0.0, RESIDUAL))
+        charts.append(Chart(title, lines, scales[i], note=note, width=width))
+        below = Chart(f"residual of {title}", rest, residuals[i], 0.0, RESIDUAL, width=width)
+        charts.append(below)
     keys = (Key("actual", INK), Key(f"predicted, {name}", style))
-    ordered = [chart for pair in zip(above, below, strict=True) for chart in pair]
     experiment = f" in the experiment {result.name.experiment}" if result.name.experiment else ""
     caption = f"{name}: measured and predicted torques{experiment}, with the residual below."
-    return _paired(figure(caption, ordered, keys))
+    return _paired(figure(caption, charts, keys, wide=width == WIDE))
 
 
 def _paired(made: Figure) -> Figure:
@@ -150,7 +152,7 @@ def logs(view: View, results: Sequence[Measurement]) -> Iterator[Chapter]:
 
 def _log(view: View, plot: Panels) -> Figure:
     charts = [
-        Chart(panel.axis, lines, span([*_ends(line.points for line in lines)]))
+        Chart(panel.axis, lines, span([*_ends(line.points for line in lines)]), width=WIDE)
         for panel in plot.panels
         for lines in [tuple(_line(view, series) for series in panel.series)]
     ]
