@@ -14,6 +14,10 @@
 # make bench-checks    what check says of logs with known faults
 # make bench-changed   how often validate calls a change between two logs by its name
 # make emps EMPS=emps_train.csv   every differentiator on the real EMPS log
+# make batch CONFIG=fleet.toml   many logs of several robots, restartable; PROFILE=slurm on a cluster
+# make test-batch     the batch by Snakemake: killed, restarted, the same bytes
+# make test-slurm     the same on a Slurm that runs on this machine alone
+# make bench-batch LOGS=1000   a pipe, then, and a batch of a simulated fleet
 # make docs     generate docs/tables.md from schemas/
 # make samples  generate the small log and its parameters under samples/
 # make clean    remove everything that the other targets made
@@ -26,7 +30,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-checks bench-changed gauntlet emps docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -104,11 +108,35 @@ EMPS ?= ../shared/data/emps/emps_train.csv
 emps: $(VENV)/tested
 	$(BIN)/python benchmarks/emps.py $(EMPS)
 
+# --- batches ------------------------------------------------------------------------------------
+
+BATCH   := .venv-batch
+PROFILE ?= local
+
+$(BATCH)/installed: $(BUILD_FILES) $(shell find scarid_cli -name '*.py') $(wildcard schemas/*)
+	@test -x $(BATCH)/bin/python || $(PYTHON) -m venv $(BATCH)
+	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install '.[batch]' pytest
+	@touch $@
+
+batch: $(BATCH)/installed
+	@test -n "$(CONFIG)" || { echo "make batch CONFIG=FILE: which configuration? See docs/batch.md"; exit 2; }
+	$(BATCH)/bin/python workflow/batch.py $(CONFIG) --profile $(PROFILE) $(OPTIONS)
+
+test-batch: $(BATCH)/installed
+	$(BATCH)/bin/python -m pytest tests/workflows
+
+test-slurm: $(BATCH)/installed
+	$(BATCH)/bin/python -m pytest tests/slurm
+
+LOGS ?= 1000
+bench-batch: $(VENV)/installed $(BATCH)/installed
+	$(BIN)/python benchmarks/batch.py $(LOGS)
+
 docs: $(VENV)/installed
 	$(BIN)/python -m scarid_cli.reporting.schemas > docs/tables.md
 
 clean:
-	rm -rf build $(VENV) *.egg-info .hypothesis .pytest_cache .mypy_cache .ruff_cache
+	rm -rf build $(VENV) .venv-batch *.egg-info .hypothesis .pytest_cache .mypy_cache .ruff_cache
 	rm -f scarid_cli/kernels/*.so
 
 # --- the paper's procedure ------------------------------------------------------------------------

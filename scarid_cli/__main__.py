@@ -13,14 +13,13 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import click
 
-from scarid_cli.cli import scarid
+from scarid_cli.cli import chain, scarid
 from scarid_cli.errors import (
     BAD_DATA,
     BROKEN_PIPE,
     BUG,
     INTERRUPTED,
     IO_FAILURE,
-    OK,
     USAGE,
     ScaridError,
 )
@@ -35,11 +34,9 @@ class Terminated(BaseException):
 def main(arguments: list[str] | None = None) -> int:
     """Run one command line and return its exit status. An error is one line on standard error."""
     words = sys.argv[1:] if arguments is None else arguments
-    name = next((f"scarid {word}" for word in words if not word.startswith("-")), "scarid")
     try:
         # Not `scarid.main`: click turns a broken pipe into exit status 1.
-        with scarid.make_context("scarid", words) as context:
-            scarid.invoke(context)
+        status = chain.run(scarid, words)
         sys.stdout.flush()
     except click.exceptions.Exit as stop:
         return stop.exit_code
@@ -55,11 +52,13 @@ def main(arguments: list[str] | None = None) -> int:
         return TERMINATED
     except BrokenPipeError:
         return BROKEN_PIPE
-    except Exception as error:
+    except chain.StageFailed as failure:
         if "--debug" in words:
-            raise
-        return _failed(name, error)
-    return OK
+            raise failure.error from None
+        return _failed(failure.where, failure.error)
+    except OSError as error:  # of standard output
+        return _failed("scarid", error)
+    return status
 
 
 def _failed(where: str, error: Exception) -> int:

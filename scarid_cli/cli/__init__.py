@@ -25,6 +25,7 @@ COMMANDS = {
     "methods": "List the methods that commands offer, or describe one.",
     "robot": "Check a robot description.",
     "convert": "Convert between table formats, or turn a recorded log into a table.",
+    "tee": "Write a table to a file, and pass it on.",
     "info": "Describe a table: kind, columns, units, sampling, history.",
 }
 
@@ -92,5 +93,9 @@ def scarid() -> None:
         scarid differentiate --method p2smd | scarid identify
 
     Each command reads one table (CSV, Parquet or Arrow) from a FILE or from standard input, and
-    writes one to standard output or to -o FILE.
+    writes one to standard output or to -o FILE. The word `then` joins commands like a pipe, but in
+    one process, which is several times as fast and keeps units, robot and history:
+
+    \b
+      scarid filter --cutoff 20 log.csv then differentiate then identify
     """

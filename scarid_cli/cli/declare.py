@@ -48,7 +48,7 @@ def declare(
             with job(given) as run:
                 if "format" in given:
                     small = name in READABLE
-                    run.out = run.output(given["output"], given["format"], readable=small)
+                    run.out = run.output(given.get("output", "-"), given["format"], readable=small)
                 status = action.run(run, **own)
             if status:
                 raise click.exceptions.Exit(status)

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from scarid_cli import __version__
-from scarid_cli.cli.options import Unrecorded
+from scarid_cli.cli.chain import Place
+from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.robots import another, misfit
 from scarid_cli.cli.terminal import is_terminal, styled
 from scarid_cli.errors import TooShort, UsageFault
@@ -20,7 +21,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
 from scarid_cli.io.table import Table
-from scarid_cli.io.writer import Document, Output, all_or_none, same_place, write_table
+from scarid_cli.io.writer import Document, Handover, Output, all_or_none, same_place
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -38,6 +39,8 @@ class Job:
     out: Output
 
     def __init__(self, options: dict[str, Any]) -> None:
+        place = click.get_current_context().obj
+        self.place: Place = place
         self.quiet: bool = options["quiet"]
         self._verbose = options["verbose"] and not self.quiet
         self._history = not options.get("no_history")
@@ -51,6 +54,9 @@ class Job:
 
         On a terminal, a table that is `readable` is printed for a person.
         """
+        if path == "-" and self.place.following:
+            following = self.place.following
+            return self._new(path, lambda: Handover(following))
         asked = wanted or os.environ.get("SCARID_FORMAT")
         if readable and path == "-" and not asked and is_terminal():
             from scarid_cli.cli.readable import Readable
@@ -161,7 +167,7 @@ class Job:
         if self._verbose:
             rate = f"{1.0 / table.period:.6g} Hz, " if table.period else ""
             self.say(f"{table.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
-        return _with_progress(table, self.quiet)
+        return _with_progress(table, quiet=self.quiet or self.place.following is not None)
 
     def noted(self, path: str) -> str:
         """The path of an input that is not a table; the history names it as well."""
@@ -174,13 +180,13 @@ class Job:
             raise UsageFault(
                 "standard input can be read only once; give a FILE for the other table"
             )
-        source = ByteSource.open(path)
+        source = (path == "-" and self.place.source) or ByteSource.open(path)
         self.sources.append(source)
         return source
 
     def write(self, table: Table, output: Output | None = None) -> None:
         """Send a table to an output, by default the command's, and report omitted segments."""
-        write_table(table, output or self.out)
+        (output or self.out).take(table)
         self.say_notes()
         if self.left_out:
             count = len(self.left_out)
@@ -205,10 +211,8 @@ class Job:
         On a terminal it begins in the colour of the `verdict`, if it begins with one.
         """
         if not self.quiet:
-            name = click.get_current_context().command_path
             start = styled(verdict, verdict, 2) if verdict else ""
-            with contextlib.suppress(OSError):  # a remark that cannot be made is no failure
-                print(f"{name}: {start}{message.removeprefix(verdict)}", file=sys.stderr)  # noqa: T201
+            self.place.say(f"{start}{message.removeprefix(verdict)}")
 
 
 @contextlib.contextmanager
@@ -231,51 +235,7 @@ def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:
     return list(values) * (joints // len(values))
 
 
-def command_line(*, without: str = "") -> str:
-    """The command line, in a fixed order, without the options that change nothing in the table.
-
-    One more parameter may be left out, by its name.
-    """
-    context = click.get_current_context()
-    words = [context.info_name or ""]
-    for parameter in context.command.params:
-        name = parameter.name or ""
-        if isinstance(parameter, Unrecorded) or not was_given(name) or name == without:
-            continue
-        words += _words(parameter, context.params[name])
-    return " ".join(["scarid", *words])
-
-
-def was_given(name: str) -> bool:
-    """Whether a parameter of the command is on its command line."""
-    source = click.get_current_context().get_parameter_source(name)
-    return source is not None and source.name == "COMMANDLINE"
-
-
-def _words(parameter: click.Parameter, value: Any) -> list[str]:
-    import shlex
-
-    if isinstance(parameter, click.Argument):
-        values = value if isinstance(value, tuple) else (value,)
-        return [shlex.quote(str(v)) for v in values]
-    option = max(parameter.opts, key=len)
-    if parameter.is_flag:  # type: ignore[attr-defined]
-        return [option if value else parameter.secondary_opts[0]]
-    return [
-        word
-        for item in (value if parameter.multiple else [value])
-        for word in (option, *map(shlex.quote, _texts(item, parameter.nargs)))
-    ]
-
-
-def _texts(value: Any, count: int) -> list[str]:
-    if not isinstance(value, tuple):
-        return [str(value)]
-    texts = [f"{v:g}" if isinstance(v, float) else str(v) for v in value]
-    return texts if count > 1 else [",".join(texts)]
-
-
-def _with_progress(table: Table, quiet: bool) -> Table:
+def _with_progress(table: Table, *, quiet: bool) -> Table:
     """The table, with a progress line where a person waits: not in the middle of a pipe."""
     import stat
     from os import fstat

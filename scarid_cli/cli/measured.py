@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.job import Job, command_line, was_given
+from scarid_cli.cli.command_line import command_line, was_given
+from scarid_cli.cli.job import Job
 from scarid_cli.cli.progress import steps
 from scarid_cli.io.table import Table
 

@@ -174,6 +174,12 @@ def settings_of(algorithm: str) -> Callable[[F], F]:
     return click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help=text)
 
 
+table_format: Callable[[F], F] = click.option(
+    "--format", cls=Unrecorded, type=click.Choice(FORMATS),
+    help="Format of the output.  [default: that of the extension, else $SCARID_FORMAT, else csv]",
+)  # fmt: skip
+
+
 def table_output(function: F) -> F:
     """Where the table goes and in what format."""
     return _all(
@@ -183,11 +189,7 @@ def table_output(function: F) -> F:
             "(.csv, .parquet, .arrow for a file, .arrows for a stream).  "
             "[default: standard output]",
         ),
-        click.option(
-            "--format", cls=Unrecorded, type=click.Choice(FORMATS),
-            help="Format of the output.  "
-            "[default: that of the extension, else $SCARID_FORMAT, else csv]",
-        ),
+        table_format,
         click.option(
             "--no-history", cls=Unrecorded, is_flag=True,
             help="Write no history into the metadata.",

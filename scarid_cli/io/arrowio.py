@@ -9,7 +9,7 @@ import pyarrow as pa
 import pyarrow.ipc as ipc
 
 from scarid_cli.errors import BadData, OutputFailure, cut_short
-from scarid_cli.io.bytesource import CHUNK, ByteSource, require_moderate
+from scarid_cli.io.bytesource import CHUNK, STDIN, ByteSource, require_moderate
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
 
@@ -22,6 +22,8 @@ READ_ROWS = 1 << 13
 
 def read_stream(source: ByteSource) -> Table:
     """A table from an Arrow IPC stream."""
+    if isinstance(source, Handed):
+        return source.table
     try:
         reader = ipc.open_stream(pa.PythonFile(source, mode="r"))
     except (pa.ArrowException, OSError) as error:
@@ -37,6 +39,23 @@ def read_stream(source: ByteSource) -> Table:
             raise cut_short(source.name)
 
     return _table(source.name, reader.schema, batches())
+
+
+class Handed(ByteSource):
+    """The table of the stage before `then`, in place of the stream that a pipe would carry.
+
+    Its first bytes say that it is an Arrow stream, and nobody reads any others.
+    """
+
+    def __init__(self, table: Table) -> None:
+        super().__init__(0, STDIN)
+        self._ahead = END_OF_STREAM
+        self.table = _table(STDIN, table.arrow_schema(), table.batches)
+
+    @property
+    def regular(self) -> bool:
+        """It stands for a pipe."""
+        return False
 
 
 def read_file(source: ByteSource) -> Table:

@@ -8,7 +8,7 @@ import os
 import stat
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -198,6 +198,13 @@ class Output:
         assert self._writer is not None
         self._writer.write(batch)
 
+    def take(self, table: Table) -> None:
+        """Write every batch of a table."""
+        self.start(table.arrow_schema())
+        for batch in table.batches:
+            self.write(batch)
+        self.whole()
+
     def whole(self) -> None:
         """All rows are written, but the run may still fail."""
 
@@ -207,12 +214,38 @@ class Output:
             self._writer.close()
             self._writer = None
 
+    def commit(self) -> None:
+        """Put the file in its place."""
+        self.target.commit()
+
     def abort(self) -> None:
         """The table is incomplete, and must not look complete."""
         if self._writer:
             with contextlib.suppress(OSError, OutputFailure):
                 self._writer.abort()
         self.target.discard()
+
+
+class Handover(Output):
+    """The place of standard output before `then`: the next stage takes the table itself."""
+
+    def __init__(self, following: Callable[[Table], None]) -> None:
+        self.path = "-"
+        self.format = "arrow"  # like which it keeps the metadata
+        self._following = following
+
+    def take(self, table: Table) -> None:
+        """Let the next stage pull the rows."""
+        self._following(table)
+
+    def finish(self) -> None:
+        """The next stage has finished its own output."""
+
+    def commit(self) -> None:
+        """There is no file."""
+
+    def abort(self) -> None:
+        """The next stage has aborted its own output."""
 
 
 class Document:
@@ -227,6 +260,10 @@ class Document:
 
     def finish(self) -> None:
         """A document has no end mark."""
+
+    def commit(self) -> None:
+        """Put the file in its place."""
+        self.target.commit()
 
     def abort(self) -> None:
         self.target.discard()
@@ -254,16 +291,8 @@ def all_or_none(outputs: list[Output | Document]) -> Iterator[None]:
         for output in outputs:
             output.finish()
         for output in outputs:
-            output.target.commit()
+            output.commit()
     except BaseException:
         for output in outputs:
             output.abort()
         raise
-
-
-def write_table(table: Table, output: Output) -> None:
-    """Write every batch of a table to an output."""
-    output.start(table.arrow_schema())
-    for batch in table.batches:
-        output.write(batch)
-    output.whole()

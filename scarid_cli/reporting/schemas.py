@@ -43,6 +43,9 @@ USES = {
     "comparison": ("`compare`", "you"),
     "prediction": ("`validate --predictions`", "`report`"),
     "published": ("you", "`report --published`"),
+    "fleet": ("`make batch`", "`report --fleet`"),
+    "estimates": ("`make batch`", "`report --fleet`"),
+    "robots": ("`make batch`", "`report --fleet`"),
 }
 
 

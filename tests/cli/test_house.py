@@ -143,7 +143,7 @@ def test_the_page_on_tables_is_up_to_date() -> None:
 
 def test_schemas_are_table_schemas() -> None:
     """What the Frictionless standard asks of a field: a name and one of its types."""
-    for kind in (*schemas.KINDS, "via"):
+    for kind in (*schemas.KINDS, "via", "fleet", "estimates", "robots"):
         schema = schemas.load(kind)
         assert schema.kind == kind
         assert len({field.name for field in schema.fields}) == len(schema.fields)

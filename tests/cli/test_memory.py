@@ -16,6 +16,11 @@ def test_memory_does_not_grow_with_the_log(name: str, tmp_path: Path) -> None:
     assert long < 1.1 * short
 
 
+def test_memory_of_stages_in_one_process_does_not_grow_with_the_log() -> None:
+    chain = ["filter", "then", "differentiate", "then", "identify", "-q"]
+    assert peak(chain, 500_000)[0] < 1.1 * peak(chain, 50_000)[0]
+
+
 def test_memory_of_the_simulator_does_not_grow_with_a_standstill() -> None:
     def peak_of(seconds: int) -> float:
         source = [SCARID, "trajgen", "-q", "--duration", "2", "--format", "arrow"]

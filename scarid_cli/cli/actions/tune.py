@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.job import Job, command_line
+from scarid_cli.cli.command_line import command_line
+from scarid_cli.cli.job import Job
 from scarid_cli.cli.progress import steps
 from scarid_cli.cli.settings import document
 from scarid_cli.io.reader import require

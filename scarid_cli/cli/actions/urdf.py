@@ -7,7 +7,8 @@ from typing import Any
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.cli.job import Job, command_line
+from scarid_cli.cli.command_line import command_line
+from scarid_cli.cli.job import Job
 from scarid_cli.cli.treatment import for_motion, for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import urdf as stage

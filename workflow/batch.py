@@ -1,0 +1,51 @@
+"""Start a batch: `python workflow/batch.py CONFIG [--profile NAME] [options of Snakemake]`.
+
+`make batch` makes the environment first. Paths in the configuration are relative to its folder, in
+which everything runs. One batch at a time works there: the lock is the kernel's, so that one that
+was killed leaves none behind.
+"""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import os
+import sys
+from pathlib import Path
+
+from steps import plan
+
+HERE = Path(__file__).resolve().parent
+
+
+def main() -> None:
+    """Check the configuration, take the lock, and become Snakemake."""
+    parser = argparse.ArgumentParser(prog="batch", description=__doc__.partition("\n")[0])
+    parser.add_argument("config", type=Path)
+    parser.add_argument("--profile", default="local", help="local, slurm, kubernetes, or a folder")
+    given, more = parser.parse_known_args()
+    if not given.config.is_file():
+        sys.exit(f"batch: {given.config}: no such file")
+    profile = HERE / "profiles" / given.profile
+    profile = profile if profile.is_dir() else Path(given.profile).resolve()
+    if not profile.is_dir():
+        sys.exit(f"batch: --profile {given.profile}: no such profile or folder")
+    os.chdir(given.config.resolve().parent)
+    try:
+        out = plan.read(given.config.name).out
+    except plan.PlanError as error:
+        sys.exit(f"batch: {error}")
+    out.mkdir(parents=True, exist_ok=True)
+    lock = os.open(out / ".lock", os.O_RDWR | os.O_CREAT, 0o666)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        sys.exit(f"batch: another batch is at work in {out}; wait for its end")
+    os.set_inheritable(lock, True)  # noqa: FBT003
+    words = [sys.executable, "-m", "snakemake", "--config", f"batch={given.config.name}"]
+    words += ["--snakefile", str(HERE / "Snakefile"), "--profile", str(profile), "--nolock"]
+    os.execv(words[0], [*words, *more])
+
+
+if __name__ == "__main__":
+    main()

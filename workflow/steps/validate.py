@@ -1,0 +1,74 @@
+"""validate: whether each log fits the parameters of the reference; and the page of a log."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from pathlib import Path
+
+import pyarrow.parquet as pq
+from steps import places
+from steps.commands import Result, failure, of_each, run
+from steps.plan import Log, Plan, Robot
+
+
+def validate(plan: Plan, robot: Robot, group: str) -> None:
+    """Validate the logs of a group that were identified."""
+    identified = places.read(places.results(plan, robot, "identify", group))
+    against = places.read(places.results(plan, robot, "reference"))
+    motions = places.work(plan, robot, group, "motions")
+
+    def step(entry: tuple[Log, Result]) -> Result:
+        log, before = entry
+        places.cleared(plan, robot, log, "validate")
+        if "estimates" not in before:
+            return {"status": before["status"]}
+        name = against["second" if log.name == against["reference"] else "reference"]
+        found = _validated(plan, robot, log, places.table(motions, log), name) if name else {}
+        return found | _page(plan, robot, log, _needs_a_look(log, before, found, against), found)
+
+    entries = list(zip(plan.logs(robot, group), identified, strict=True))
+    places.write(places.results(plan, robot, "validate", group), of_each(step, entries))
+
+
+def _validated(plan: Plan, robot: Robot, log: Log, motion: Path, name: str) -> Result:
+    messages: list[str] = []
+    own = places.folder_of(plan, robot, log)
+    other = next(other for other in robot.logs if other.name == name)
+    parameters = places.folder_of(plan, robot, other) / "parameters.parquet"
+    words = ["validate", str(motion), "--parameters", str(parameters)]
+    words += ["--robot", robot.description, *shlex.split(robot.pipe["validate"])]
+    if plan.pages != "none":
+        words += ["--predictions", str(own / "prediction.parquet")]
+    ran = run([*words, "-o", str(own / "metrics.parquet")], messages)
+    found: Result = {"status": 0, "reference": name, "messages": messages}
+    if ran.status:
+        return found | failure(ran)
+    table = pq.read_table(own / "metrics.parquet")
+    change = json.loads(table.schema.metadata[b"scarid"])["extra"].get("change", {})
+    found |= {"change": change.get("verdict"), "change_reason": change.get("reason")}
+    return found | {"r2_validated": table.column("r2").to_pylist()}
+
+
+def _needs_a_look(log: Log, before: Result, found: Result, against: Result) -> bool:
+    compared = against.get("compared", {}).get(log.name, {})
+    changed = found.get("change") not in ("unchanged", None) or compared.get("differs")
+    return bool(changed or before["verdict"] != "good" or found.get("status"))
+
+
+def _page(plan: Plan, robot: Robot, log: Log, needed: bool, found: Result) -> Result:  # noqa: FBT001
+    """The log's own page, if there is to be one."""
+    own = places.folder_of(plan, robot, log)
+    prediction = own / "prediction.parquet"
+    if plan.pages == "none" or (plan.pages == "needed" and not needed):
+        prediction.unlink(missing_ok=True)
+        return {}
+    tables = [own / "parameters.parquet", own / "metrics.parquet", prediction]
+    words = ["report", *(str(path) for path in tables if path.exists()), "-q", "-o", os.devnull]
+    words += ["--html", str(own / "report.html"), "--title", f"{robot.name}: {log.name}"]
+    messages: list[str] = []
+    ran = run(words, messages)
+    if ran.status:
+        return {"messages": [*found.get("messages", []), *messages]}
+    return {"page": str((own / "report.html").relative_to(plan.out))}
