@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -14,6 +15,7 @@ from scarid_cli.reporting import naming, results, text
 from scarid_cli.reporting import published as values_of
 from scarid_cli.reporting import repeated as repetitions
 from scarid_cli.reporting.content import sections
+from scarid_cli.reporting.parts import Section
 
 
 def run(
@@ -43,14 +45,16 @@ def run(
     values = values_of.read(job.read(published, "published")) if published else None
     collected = results.collect(tables, repeated=repeated)
     found = (repetitions.sections if repeated else sections)(collected, values)
-    if page or figures:
-        from scarid_cli.reporting import page as rendering  # matplotlib takes half a second
+    if figures:
+        _save(job, Path(figures), found)
+    if page:
+        from scarid_cli.reporting.study import page as rendering  # jinja2 takes a tenth of a second
 
-        drawn = rendering.figures(found)
-        if figures:
-            _save(job, Path(figures), [section.title for section in found], drawn)
-        if page:
-            page.write(rendering.html(title, found, drawn, tables))
+        page.write(
+            rendering.plain(title, found, tables)
+            if repeated
+            else rendering.study(title, collected, values, tables)
+        )
     if plain:
         plain.write(text.markdown(title, found))
     if printed:
@@ -92,7 +96,11 @@ def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | No
         raise UsageFault(f"--html and --markdown both go to {html}; give two files")
 
 
-def _save(job: Job, folder: Path, titles: list[str], drawn: list[list[str]]) -> None:
+def _save(job: Job, folder: Path, found: list[Section]) -> None:
     """Write each figure as a file of its own."""
-    for name, document in naming.figures(titles, drawn):
+    # While it is imported, which takes half a second, matplotlib may log messages on its caches.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    from scarid_cli.reporting.figures import drawn
+
+    for name, document in naming.figures([section.title for section in found], drawn(found)):
         job.figure(str(folder / name)).write(document)
