@@ -134,15 +134,33 @@ def _rows(
         for begins, piece in splitting.pieces(batch):
             if begins and decimation:
                 yield from decimation.finish()
-            found = interpolation.rows(piece, splitting.segment, begins=begins)
-            if found and decimation:
-                found = decimation.rows(found, interpolation.first, interpolation.start)
-            if found:
-                yield found
+            for part in _moderate(piece, period / factor, table.name):
+                found = interpolation.rows(part, splitting.segment, begins=begins)
+                begins = False
+                if found and decimation:
+                    found = decimation.rows(found, interpolation.first, interpolation.start)
+                if found:
+                    yield found
     if decimation:
         yield from decimation.finish()
     filled = tuple((f.slower.name, f.slower.interval, f.count) for f in fillings if f.count)
     report(replace(splitting.clock, held=holding.count, filled=filled))
+
+
+def _moderate(piece: pa.RecordBatch, period: float, name: str) -> Iterator[pa.RecordBatch]:
+    """The piece in parts, each of which gives at most MOST new rows every `period` [s] or so."""
+    t = matrix(piece, ["t"])[0]
+    if np.max(np.diff(t), initial=0.0) > MOST * period:
+        raise bad_data(
+            name,
+            f"an interval of {np.max(np.diff(t)):.6g} s",
+            expected=f"at most {MOST:,} new rows within one",
+            remedy="give a lower --rate, or a shorter --max-gap; is the time in seconds?",
+            column="t",
+        )
+    numbers = np.floor((t - t[0]) / (MOST * period))
+    for start, end in pairwise([0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), len(t)]):
+        yield piece.slice(start, end - start)
 
 
 class Splitting:
