@@ -19,7 +19,7 @@ from scarid_cli.algorithms.processes.resampling import (
     ResamplerState,
 )
 from scarid_cli.arrays import Array, Numbers
-from scarid_cli.errors import bad_data
+from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.table import (
     SEGMENT,
     Instant,
@@ -33,6 +33,8 @@ from scarid_cli.io.table import (
 from scarid_cli.stages.holding import Holding, measured
 from scarid_cli.stages.slower import Filling, slower_groups
 
+MOST = 1 << 18  # new rows that are made at once, and that lie between two of the log
+SLOWEST_RATE = 100_000  # times slower than the log at most
 SLOWER = 0.05  # fraction of the log's period by which the new period must be longer to low-pass
 
 
@@ -125,6 +127,11 @@ def _rows(
     fillings = [Filling(group, max(limit, MAX_GAP * group.interval)) for group in slower]
     factor = max(1, int(np.ceil(period / own - SLOWER)))
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]
+    if factor > SLOWEST_RATE:
+        raise UsageFault(
+            f"--rate {1.0 / period:g}: {factor:,} times slower than the log of {1.0 / own:.6g} Hz; "
+            f"give at most {SLOWEST_RATE:,} times"
+        )
     interpolation = Interpolation(Resampler(period / factor), schema, numbers)
     decimation = Decimation(Decimator(factor), schema, numbers, period) if factor > 1 else None
     rows = holding.rows(batches)
