@@ -235,3 +235,28 @@ def test_a_damaged_state_is_bad_data(scarid: Run, samples: Path, tmp_path: Path)
     for n in np.random.default_rng(0).integers(0, len(content) - 1, 10):
         state.write_bytes(content[:n])
         refused(scarid("identify", motion, "--from", state), 65, "state.npz")
+
+
+@pytest.mark.parametrize("rate", ["1e-9", "0.001", "133", "1e7"])
+@pytest.mark.parametrize("step", [5e6, 1e-12])
+def test_a_clock_in_other_units_is_refused_or_resampled_in_bounded_memory(
+    rate: str, step: float, scarid: Run, tmp_path: Path
+) -> None:
+    """Such as nanoseconds, of which there would be 1e11 rows between two samples."""
+    t = 1.7e18 + step * np.arange(100) if step > 1.0 else step * np.arange(100)
+    pq.write_table(
+        pa.table({"t": t, "q1": np.sin(T[:1] + np.arange(100))}), tmp_path / "log.parquet"
+    )
+    result = scarid(
+        "resample", "-q", "--rate", rate, tmp_path / "log.parquet", "-o", tmp_path / "o.csv"
+    )
+    assert result.status in (0, 2, 65)
+    assert result.err.count("\n") == bool(result.status)
+
+
+def test_a_decimation_by_more_than_there_are_rows_is_refused(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    motion = tmp_path / "motion.parquet"
+    assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
+    refused(scarid("identify", motion, "--decimate", 10**9), 65, "1000000000")
