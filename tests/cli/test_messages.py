@@ -239,3 +239,16 @@ def test_warnings_of_libraries_are_not_printed(shell: Run, tmp_path: Path) -> No
         found = shell(f"scarid {command} log.csv > /dev/null").err
         assert "Warning" not in found
         assert all(line.startswith("scarid ") for line in found.splitlines())
+
+
+def test_a_run_that_fails_leaves_no_descriptor_open(scarid: Run, tmp_path: Path) -> None:
+    descriptors = Path("/proc/self/fd")
+    if not descriptors.is_dir():
+        pytest.skip("this system does not list the descriptors of a process")
+    bad = tmp_path / "bad.csv"
+    bad.write_text("t,q1\n0,1\n0.1,x\n")
+    opened = []
+    for name in ("a.csv", "b.parquet", "c.arrow", "d.arrows") * 2:
+        assert scarid("filter", bad, "-o", tmp_path / name).status == 65
+        opened.append(len(list(descriptors.iterdir())))
+    assert opened[4:] == opened[3:4] * 4  # the first ones open what libraries keep
