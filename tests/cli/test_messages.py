@@ -252,3 +252,14 @@ def test_a_run_that_fails_leaves_no_descriptor_open(scarid: Run, tmp_path: Path)
         assert scarid("filter", bad, "-o", tmp_path / name).status == 65
         opened.append(len(list(descriptors.iterdir())))
     assert opened[4:] == opened[3:4] * 4  # the first ones open what libraries keep
+
+
+@pytest.mark.parametrize("kind", ["nothing", "\u00c9", "joint"])
+def test_a_kind_that_is_none_opens_no_file(kind: str, scarid: Run, tmp_path: Path) -> None:
+    log = tmp_path / "log.parquet"
+    meta = {b"scarid": f'{{"kind": "{kind}", "history": []}}'.encode()}
+    pq.write_table(pa.table({"t": [0.0, 1.0], "q1": [0.0, 1.0]}).replace_schema_metadata(meta), log)
+    result = scarid("info", log)
+    assert (result.status, result.err) == (0, "")
+    assert "measurement (inferred from its columns)" in result.out
+    refused(scarid("report", log), 65, str(log))
