@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence
-from scarid_cli.algorithms.changes.likelihood import Difference
+from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
 
 RNG = np.random.default_rng(3)
 N = 4
@@ -35,3 +35,12 @@ def test_the_change_is_the_difference_of_the_estimates_weighted_by_its_informati
     change -= np.linalg.solve(first.information, first.score)
     assert found.information == pytest.approx(np.linalg.inv(covariance))
     assert found.gradient == pytest.approx(np.linalg.solve(covariance, change))
+
+
+@pytest.mark.parametrize(("blocks", "together"), [(1, 1), (2, 1), (7, 1), (7, 2), (7, 4), (3, 4)])
+def test_scores_of_joined_blocks_scatter_as_their_sums_do(blocks: int, together: int) -> None:
+    """About zero, with the factor of a jackknife; a single block has none."""
+    scores = RNG.standard_normal((blocks, N))
+    sums = [scores[i : i + together].sum(axis=0) for i in range(0, blocks, together)]
+    factor = len(sums) / (len(sums) - 1) if len(sums) > 1 else 1.0
+    assert _scatter(scores, together) == pytest.approx(factor * np.sum(np.square(sums)))
