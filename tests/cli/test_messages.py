@@ -15,6 +15,8 @@ import pytest
 from conftest import Result, refused
 from unit.arms import URDF
 
+from scarid_cli.__main__ import _flushed
+
 Run = Callable[..., Result]
 
 ROWS = [f"{k / 100},{k},{k * 0.5}" for k in range(100_000)]  # several blocks of the reader
@@ -263,3 +265,18 @@ def test_a_kind_that_is_none_opens_no_file(kind: str, scarid: Run, tmp_path: Pat
     assert (result.status, result.err) == (0, "")
     assert "measurement (inferred from its columns)" in result.out
     refused(scarid("report", log), 65, str(log))
+
+
+@pytest.mark.parametrize(("status", "expected"), [(0, 141), (65, 65), (2, 2)])
+def test_a_reader_that_is_gone_at_the_end_does_not_hide_a_failure(
+    status: int, expected: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Gone:
+        def flush(self) -> None:
+            raise BrokenPipeError
+
+    with monkeypatch.context() as patched:
+        patched.setattr("sys.stdout", Gone())
+        patched.setattr("os.dup2", lambda *_: None)
+        found = _flushed(status)
+    assert found == expected
