@@ -264,8 +264,7 @@ class Job:
         """
         if not self.quiet:
             start = styled(verdict, verdict, 2) if verdict else ""
-            text = printable(message.removeprefix(verdict))
-            self.place.say(f"{start}{text}")
+            self.place.say(f"{start}{printable(message.removeprefix(verdict))}")
 
 
 @contextlib.contextmanager

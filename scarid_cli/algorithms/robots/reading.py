@@ -62,6 +62,7 @@ def _arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
 def _robot(name: str, document: dict[str, Any]) -> Robot:
     values.only("a robot", document, KEYS)
     joints = tuple(joint_of(entry) for entry in values.tables("joint", document["joint"]))
+    values.moderate(len(joints))
     terms = values.tables("parameter", document["parameter"])
     parameters = tuple(_parameter(entry, len(joints)) for entry in terms)
     if not joints or not parameters:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+from scarid_cli.algorithms.robots import values
 from scarid_cli.errors import UsageFault
 
 ENDLESS = 1e9  # rad: urdfdom does not read inf
@@ -48,6 +49,7 @@ def read(path: str) -> Tree:
         _turn_endless_joints_into_angles(tree)
         _drop_shapes(tree)
         model = _model(pinocchio, ElementTree.tostring(tree, encoding="unicode"))
+        values.moderate(model.njoints - 1)
         mimics = {j.get("name", ""): m for j in tree.findall("joint") for m in j.findall("mimic")}
         drivers = {name: mimic.get("joint", "") for name, mimic in mimics.items()}
         offsets = {name: float(mimic.get("offset", "0")) for name, mimic in mimics.items()}
