@@ -12,6 +12,9 @@ import pytest
 from conftest import Result, refused
 from scipy.io import savemat
 
+from scarid_cli.errors import UsageFault
+from scarid_cli.stages.continuation import restored
+
 Run = Callable[..., Result]
 
 T = np.arange(50) / 100.0
@@ -233,3 +236,11 @@ def test_a_damaged_state_is_bad_data(scarid: Run, samples: Path, tmp_path: Path)
     for n in np.random.default_rng(0).integers(0, len(content) - 1, 10):
         state.write_bytes(content[:n])
         refused(scarid("identify", motion, "--from", state), 65, "state.npz")
+
+
+def test_a_state_that_is_not_there_is_asked_for(scarid: Run, samples: Path, tmp_path: Path) -> None:
+    with pytest.raises(UsageFault, match="no such file; make one with `scarid identify --save`"):
+        restored(str(tmp_path / "state.npz"), {})
+    motion = tmp_path / "motion.parquet"
+    assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
+    refused(scarid("identify", motion, "--from", tmp_path / "state.npz"), 2, "no such file")
