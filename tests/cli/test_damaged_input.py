@@ -12,6 +12,9 @@ import pytest
 from conftest import Result, refused
 from scipy.io import savemat
 
+from scarid_cli.errors import UsageFault
+from scarid_cli.stages.continuation import restored
+
 Run = Callable[..., Result]
 
 T = np.arange(50) / 100.0
@@ -260,3 +263,11 @@ def test_a_decimation_by_more_than_there_are_rows_is_refused(
     motion = tmp_path / "motion.parquet"
     assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
     refused(scarid("identify", motion, "--decimate", 10**9), 65, "1000000000")
+
+
+def test_a_state_that_is_not_there_is_asked_for(scarid: Run, samples: Path, tmp_path: Path) -> None:
+    with pytest.raises(UsageFault, match="no such file; make one with `scarid identify --save`"):
+        restored(str(tmp_path / "state.npz"), {})
+    motion = tmp_path / "motion.parquet"
+    assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
+    refused(scarid("identify", motion, "--from", tmp_path / "state.npz"), 2, "no such file")

@@ -21,7 +21,7 @@ from scarid_cli.io.table import Metadata
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers(-3, 9) | st.floats() | st.text(max_size=3)
-    | st.sampled_from([2**70, -(2**70), "motion", "../x", "scara2", "x.toml", "\x1b"]),
+    | st.sampled_from([2**70, -(2**70), "motion", "x", "../x", "scara2", "x.toml", "\x1b"]),
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=3), inner),
     max_leaves=6,
 )  # fmt: skip
