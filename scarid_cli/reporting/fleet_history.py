@@ -10,6 +10,7 @@ from math import floor, log10
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.io.table import Table
@@ -72,7 +73,7 @@ def histories(table: Table) -> Mapping[str, Mapping[str, History]]:
     places: dict[tuple[str, str], list[int]] = defaultdict(list)
     for place, key in enumerate(zip(*names, strict=True)):
         places[key].append(place)
-    order = rows.column("order").to_numpy()
+    order = rows.column("order").combine_chunks().to_numpy()
     columns = {name: _numbers(rows, name) for name in NUMBERS}
     units = rows.column("unit")
     found: dict[str, dict[str, History]] = defaultdict(dict)
@@ -90,5 +91,6 @@ NUMBERS = ("estimate", "robust_error", "low", "high", "errors")
 def _numbers(rows: pa.Table, column: str) -> Array:
     if column not in rows.column_names:
         return np.full(rows.num_rows, np.nan)
-    values: Array = rows.column(column).to_numpy()
-    return np.asarray(values, dtype=float)
+    # A column in chunks would be converted by pandas, whose import takes longer than the page.
+    values: Array = pc.fill_null(rows.column(column), float("nan")).combine_chunks().to_numpy()
+    return values
