@@ -122,7 +122,7 @@ class FleetRobot:
     @property
     def joints(self) -> Counter[int]:
         """In how many logs a parameter of each joint differs from the reference."""
-        of_logs = ({joint_of(name) for name in log.differing} for log in self.logs)
+        of_logs = (dict.fromkeys(map(joint_of, log.differing)) for log in self.logs)
         return Counter(joint for joints in of_logs for joint in joints if joint)
 
     @property

@@ -38,7 +38,7 @@ class History:
     @cached_property
     def half(self) -> Array:
         """Half of the width of each interval; 0 if the interval is not known."""
-        return np.nan_to_num((self.high - self.low) / 2.0)
+        return np.nan_to_num((self.high - self.low) / 2.0, posinf=0.0, neginf=0.0)
 
     @property
     def essential(self) -> bool:
@@ -51,10 +51,15 @@ class History:
 
     @property
     def decimals(self) -> int:
-        """The decimal places at which the interval of a typical log has two digits."""
-        half = float(np.median(self.half))
-        scale = half or float(np.median(np.abs(self.estimate))) / 1000.0
-        return min(15, 1 - floor(log10(scale))) if scale > 0.0 else 6
+        """The decimal places at which the interval of a typical log has two digits.
+
+        The largest estimate has at most 15 digits with them.
+        """
+        largest = float(np.max(np.abs(self.estimate)))
+        scale = float(np.median(self.half)) or largest / 1000.0
+        if scale <= 0.0:
+            return 0
+        return min(1 - floor(log10(scale)), 14 - floor(log10(largest or scale)))
 
     @cached_property
     def limits(self) -> tuple[float, float]:

@@ -28,7 +28,7 @@ WIDTH, HEIGHT = 190, 60  # of a curve [px]
 STRIP = 260  # the width of a strip [px]
 STATIC = 300  # logs in the table for print and for browsers without scripts
 HEIGHTS = (0, 3, 6, 9, 12)  # where the cell of a strip begins, by its finding
-CARDS = 24  # robots of the summary that are not folded
+CARDS = 10  # robots of the summary that are not folded
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,7 @@ def html(title: str, robots: Sequence[FleetRobot], base: str, *, tsv: bool) -> s
         cards=cards[:CARDS],
         folded=cards[CARDS:],
         fine=[robot for robot in robots if not robot.needs_look],
+        trending=[robot.name for robot in robots if robot.trending],
         totals=totals,
         words=WORDS,
         logs=sum(len(robot.logs) for robot in robots),
