@@ -23,8 +23,10 @@ from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
 from scarid_cli.io.selection import REFUSE, SPLIT, Lacking, within
+from scarid_cli.io.stated import in_file, stated_robot
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document, Handover, Output, all_or_none, same_place
+from scarid_cli.printable import printable
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -165,14 +167,14 @@ class Job:
         """
         from scarid_cli.algorithms.robots.reading import DEFAULT_ROBOT, load
 
-        stated = next((table.meta.robot for table in tables if table.meta.robot), None)
-        found = name or stated or os.environ.get("SCARID_ROBOT")
+        found = name or next(filter(None, map(stated_robot, tables)), None)
+        found = found or os.environ.get("SCARID_ROBOT")
         if not found:
             self.notes.append(
                 f"no robot is stated, {DEFAULT_ROBOT} is assumed (state it with --robot or "
                 "SCARID_ROBOT)"
             )
-        robot = load(found or DEFAULT_ROBOT)
+        robot = load(self.described(found or DEFAULT_ROBOT))
         if remark := another(robot, tables):
             self.notes.append(remark)
         return robot
@@ -204,6 +206,11 @@ class Job:
             rate = f"{1.0 / table.period:.6g} Hz, " if table.period else ""
             self.say(f"{table.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
         return table
+
+    def described(self, robot: str) -> str:
+        """The robot; the history names the file of its description, if it is in one."""
+        known = (source.name for source in self.sources)
+        return self.noted(robot) if in_file(robot) and robot not in known else robot
 
     def noted(self, path: str) -> str:
         """The path of an input that is not a table; the history names it as well."""
@@ -257,7 +264,7 @@ class Job:
         """
         if not self.quiet:
             start = styled(verdict, verdict, 2) if verdict else ""
-            self.place.say(f"{start}{message.removeprefix(verdict)}")
+            self.place.say(f"{start}{printable(message.removeprefix(verdict))}")
 
 
 @contextlib.contextmanager

@@ -126,10 +126,16 @@ class ByteSource:
     def _copied(self) -> BinaryIO:
         import tempfile
 
-        spool = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the source)
-        while data := self.read_some():
-            spool.write(data)
-        spool.seek(0)
+        try:
+            spool = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the source)
+            while data := self.read_some():
+                spool.write(data)
+            spool.seek(0)
+        except OSError as error:
+            raise OutputFailure(
+                f"{self.name}: no temporary copy can be made of it ({error.strerror}); give a file "
+                "in place of a pipe, or set TMPDIR to a folder with more space"
+            ) from None
         return spool
 
     def close(self) -> None:

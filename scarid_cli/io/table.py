@@ -44,7 +44,7 @@ class Metadata:
         meta = cls(**{**fields, "history": tuple(fields["history"])})
         texts = all(isinstance(x, str | None) for x in (meta.kind, meta.robot))
         numeric = isinstance(meta.period, int | float | None)
-        entries = all(isinstance(x, dict) for x in meta.history) and isinstance(meta.extra, dict)
+        entries = all(map(_is_entry, meta.history)) and isinstance(meta.extra, dict)
         if not (texts and numeric and entries and (meta.kind or "a").isalpha()):
             raise ValueError("a part of the metadata has another type than it should")
         return meta
@@ -52,6 +52,14 @@ class Metadata:
 
 def _as_counted(row: int) -> int:
     return row
+
+
+def _is_entry(entry: Any) -> bool:
+    """Whether this is an entry of a history: a command, a version, and digests of its inputs."""
+    if not isinstance(entry, dict) or not isinstance(entry.get("inputs"), dict):
+        return False
+    digested = all(isinstance(x, str | None) for x in entry["inputs"].values())
+    return digested and all(isinstance(entry.get(key), str) for key in ("command", "version"))
 
 
 @dataclass(frozen=True)

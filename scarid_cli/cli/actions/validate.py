@@ -13,6 +13,7 @@ from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import UsageFault
+from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
 from scarid_cli.stages import validate as stage
 from scarid_cli.stages.changes import known
@@ -35,7 +36,7 @@ def run(
         raise UsageFault("--predictions needs every row and cannot be combined with --decimate")
     side = job.side_table(predictions)
     stored = job.read(parameters, "parameters")
-    stated = robot or stored.meta.robot
+    stated = robot or stated_robot(stored)
     table, arm = read_logs(job, files, stated, partial(_read, job), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
     treatment = for_motion(table.meta, treatment, given)
