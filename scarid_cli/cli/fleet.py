@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from scarid_cli.cli.job import Job
-from scarid_cli.errors import UsageFault
+from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.table import Table
 from scarid_cli.reporting import text
 from scarid_cli.reporting.fleet import FleetRobot, fleet
@@ -55,7 +55,10 @@ def _read(job: Job, folder: Path) -> tuple[FleetRobot, ...]:
     logs, estimates, robots = (
         job.read(str(folder / name), name.removesuffix(".parquet")) for name in TABLES
     )
-    return fleet(_rows(robots), _rows(logs), histories(estimates))
+    rows = _rows(logs)
+    if not rows:
+        raise bad_data(logs.name, "no rows", expected="a row for each log", remedy="run the batch")
+    return fleet(_rows(robots), rows, histories(estimates))
 
 
 TABLES = ("fleet.parquet", "estimates.parquet", "robots.parquet")

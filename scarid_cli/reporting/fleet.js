@@ -116,13 +116,15 @@
     return button;
   }
   const why = (i) => (logs.notes[i].length ? make("span", { class: "why" }, logs.notes[i][0][1]) : "");
+  const CHECKS = ["failed", "warning", "ok"], VERDICTS = ["not identifiable", "doubtful", "good"];
+  const rank = (names, name) => (name === null ? null : names.indexOf(name));
   const columns = [
     { title: "Robot", key: (i) => robots[logs.robot[i]].name, fill: (i) => [robots[logs.robot[i]].name] },
     { title: "Log", key: (i) => logs.log[i], fill: (i) => [toggle(i), ...nameOf(i)] },
     { title: "Finding", key: (i) => logs.place[i], fill: (i) => [...marks(i), why(i)] },
-    { title: "Check", named: true, key: (i) => ["failed", "warning", "ok"].indexOf(logs.check[i] ?? "ok"),
+    { title: "Check", named: true, key: (i) => rank(CHECKS, logs.check[i]),
       fill: (i) => [logs.check[i] ?? ""] },
-    { title: "Verdict", named: true, key: (i) => ["not identifiable", "doubtful"].indexOf(logs.verdict[i]),
+    { title: "Verdict", named: true, key: (i) => rank(VERDICTS, logs.verdict[i]),
       fill: (i) => [logs.verdict[i] ?? ""] },
     { title: "R² of joints", named: true, key: (i) => (logs.r2[i].length ? least(logs.r2[i]) : null),
       fill: (i) => (logs.r2[i].length ? [joints(logs.r2[i])] : []) },
@@ -169,10 +171,11 @@
       && (need === "" || fits(i, need))
       && words.every((word) => textOf(i).includes(word)));
   }
+  const natural = new Intl.Collator("en", { numeric: true });
   const missing = (key) => key === null || key === undefined || Number.isNaN(key);
   function ordered(rows) {
     const keys = new Map(rows.map((i) => [i, columns[sorted].key(i)])), sign = down ? -1 : 1;
-    const compare = (a, b) => (typeof a === "string" ? a.localeCompare(b, "en", { numeric: true }) : a - b);
+    const compare = (a, b) => (typeof a === "string" ? natural.compare(a, b) : a - b);
     return rows.sort((i, j) => {
       const [a, b] = [keys.get(i), keys.get(j)];
       if (missing(a) || missing(b)) return missing(a) - missing(b) || i - j;

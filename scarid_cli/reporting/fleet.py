@@ -65,13 +65,19 @@ class Log:
     def notes(self) -> tuple[tuple[str, str], ...]:
         """What was found and by which command, the most serious first; empty if nothing was."""
         found = (
-            (self["step"] or "error", self["status"] and self["error"]),
+            (self["step"] or "error", self["status"] and self._error()),
             ("validate", self._changed and self["change_reason"]),
             ("compare", self["compare"] == "differs" and self._difference()),
             ("identify", self["verdict"] not in (None, "good") and self["reasons"]),
             ("check", self["check"] not in (None, "ok") and self["findings"]),
         )
         return tuple((command, str(text)) for command, text in found if text)
+
+    def _error(self) -> str:
+        """The error without the command and the file, which stand beside it."""
+        said = str(self["error"] or f"exit status {self['status']}")
+        said = said.removeprefix(f"scarid {self['step']}: ").removeprefix(str(self["file"]))
+        return said.lstrip(",: ")
 
     def _difference(self) -> str:
         p = self["p_value"]
@@ -116,7 +122,7 @@ class FleetRobot:
     @property
     def joints(self) -> Counter[int]:
         """In how many logs a parameter of each joint differs from the reference."""
-        of_logs = ({joint_of(name) for name in log.differing} for log in self.logs)
+        of_logs = (dict.fromkeys(map(joint_of, log.differing)) for log in self.logs)
         return Counter(joint for joints in of_logs for joint in joints if joint)
 
     @property

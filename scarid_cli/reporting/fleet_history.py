@@ -10,6 +10,7 @@ from math import floor, log10
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.io.table import Table
@@ -37,7 +38,7 @@ class History:
     @cached_property
     def half(self) -> Array:
         """Half of the width of each interval; 0 if the interval is not known."""
-        return np.nan_to_num((self.high - self.low) / 2.0)
+        return np.nan_to_num((self.high - self.low) / 2.0, posinf=0.0, neginf=0.0)
 
     @property
     def essential(self) -> bool:
@@ -50,10 +51,15 @@ class History:
 
     @property
     def decimals(self) -> int:
-        """The decimal places at which the interval of a typical log has two digits."""
-        half = float(np.median(self.half))
-        scale = half or float(np.median(np.abs(self.estimate))) / 1000.0
-        return min(15, 1 - floor(log10(scale))) if scale > 0.0 else 6
+        """The decimal places at which the interval of a typical log has two digits.
+
+        The largest estimate has at most 15 digits with them.
+        """
+        largest = float(np.max(np.abs(self.estimate)))
+        scale = float(np.median(self.half)) or largest / 1000.0
+        if scale <= 0.0:
+            return 0
+        return min(1 - floor(log10(scale)), 14 - floor(log10(largest or scale)))
 
     @cached_property
     def limits(self) -> tuple[float, float]:
@@ -72,7 +78,7 @@ def histories(table: Table) -> Mapping[str, Mapping[str, History]]:
     places: dict[tuple[str, str], list[int]] = defaultdict(list)
     for place, key in enumerate(zip(*names, strict=True)):
         places[key].append(place)
-    order = rows.column("order").to_numpy()
+    order = rows.column("order").combine_chunks().to_numpy()
     columns = {name: _numbers(rows, name) for name in NUMBERS}
     units = rows.column("unit")
     found: dict[str, dict[str, History]] = defaultdict(dict)
@@ -90,5 +96,6 @@ NUMBERS = ("estimate", "robust_error", "low", "high", "errors")
 def _numbers(rows: pa.Table, column: str) -> Array:
     if column not in rows.column_names:
         return np.full(rows.num_rows, np.nan)
-    values: Array = rows.column(column).to_numpy()
-    return np.asarray(values, dtype=float)
+    # A column in chunks would be converted by pandas, whose import takes longer than the page.
+    values: Array = pc.fill_null(rows.column(column), float("nan")).combine_chunks().to_numpy()
+    return values

@@ -12,14 +12,23 @@ from scarid_cli import __version__
 from scarid_cli.reporting.fleet import FINE, FleetRobot, Log
 from scarid_cli.reporting.fleet_curve import Cell, Curve, curve, strip
 from scarid_cli.reporting.fleet_data import embedded, href
-from scarid_cli.reporting.fleet_sections import NOTE, WORDS, counted, joints, level, named, trend
+from scarid_cli.reporting.fleet_sections import (
+    NOTE,
+    WORDS,
+    counted,
+    failures,
+    joints,
+    level,
+    named,
+    trend,
+)
 
 CURVES = 3  # of a robot in the summary at most
 WIDTH, HEIGHT = 190, 60  # of a curve [px]
 STRIP = 260  # the width of a strip [px]
 STATIC = 300  # logs in the table for print and for browsers without scripts
 HEIGHTS = (0, 3, 6, 9, 12)  # where the cell of a strip begins, by its finding
-CARDS = 24  # robots of the summary that are not folded
+CARDS = 10  # robots of the summary that are not folded
 
 
 @dataclass(frozen=True)
@@ -32,7 +41,7 @@ class Card:
     trend: str
     differing: str
     joints: str
-    failures: tuple[Log, ...]
+    failures: tuple[tuple[str, Log], ...]
     cells: tuple[Cell, ...]
     curves: tuple[Curve, ...]
 
@@ -54,6 +63,7 @@ def html(title: str, robots: Sequence[FleetRobot], base: str, *, tsv: bool) -> s
         cards=cards[:CARDS],
         folded=cards[CARDS:],
         fine=[robot for robot in robots if not robot.needs_look],
+        trending=[robot.name for robot in robots if robot.trending],
         totals=totals,
         words=WORDS,
         logs=sum(len(robot.logs) for robot in robots),
@@ -81,7 +91,7 @@ def _card(index: int, robot: FleetRobot) -> Card:
         trend=trend(robot),
         differing=", ".join(f"{name} in {n}" for name, n in robot.differing.most_common(6)),
         joints=joints(robot),
-        failures=tuple(log for log in robot.logs if log["status"])[:3],
+        failures=failures(robot),
         cells=strip(robot, STRIP),
         curves=tuple(curve(robot, history, WIDTH, HEIGHT) for history in chosen[:CURVES]),
     )

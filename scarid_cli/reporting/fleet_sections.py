@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -71,8 +72,18 @@ def named(counts: Sequence[int]) -> tuple[str, ...]:
 
 def trend(robot: FleetRobot) -> str:
     """What compare said of the trend; empty if there is none."""
-    said = str(robot.values.get("trend") or "")
-    return said if robot.trending else ""
+    said = str(robot.values.get("trend") or ", ".join(robot.trending))
+    return said.removeprefix("trend ") if robot.trending else ""
+
+
+def failures(robot: FleetRobot) -> tuple[tuple[str, Log], ...]:
+    """For each command that failed: in how many logs, and the first of them."""
+    first: dict[str, Log] = {}
+    for log in robot.logs:
+        if log["status"]:
+            first.setdefault(log.marks[0][1], log)
+    found = Counter(log.marks[0][1] for log in robot.logs if log["status"])
+    return tuple((f"{label} in {counted(found[label], 'log')}", first[label]) for label in first)
 
 
 def joints(robot: FleetRobot) -> str:
