@@ -233,6 +233,18 @@ def test_what_the_reader_of_urdfs_cannot_read_is_one_line_of_ours(
     refused(scarid("robot", "check", robot), 2, f"{robot}: not a URDF", reason)
 
 
+def test_shapes_that_the_reader_of_urdfs_does_not_know_are_no_matter(
+    scarid: Run, tmp_path: Path
+) -> None:
+    shape = "<geometry><cone/></geometry>"
+    more = f"<visual>{shape}</visual><collision>{shape}</collision>"
+    robot = tmp_path / "arm.urdf"
+    text = URDF.replace("TYPE", "revolute").replace('<link name="two">', f'<link name="two">{more}')
+    robot.write_text(text.replace("</robot>", '<material name="m"/></robot>'))
+    result = scarid("robot", "check", robot)
+    assert (result.status, result.err) == (0, "")
+
+
 def test_warnings_of_libraries_are_not_printed(shell: Run, tmp_path: Path) -> None:
     """Numbers so large that their squares overflow; numpy would warn."""
     rows = "".join(f"{k / 100},{(-1) ** k * 1e300},{k}\n" for k in range(200))
