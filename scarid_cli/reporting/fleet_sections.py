@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from scarid_cli.printable import printable
 from scarid_cli.reporting.fleet import FINE, FleetRobot, Log
 from scarid_cli.reporting.fleet_history import History
-from scarid_cli.reporting.naming import printable
 from scarid_cli.reporting.parts import NONE, Section
 
 WORDS = ("failed", "changed", "verdict not good", "check not ok", "nothing found")
