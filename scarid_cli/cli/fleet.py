@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,12 +31,8 @@ def of_fleet(
     page, plain, printed = (job.side_text(path) for path in (html, markdown, place))
     robots = _read(job, Path(folder))
     found = sections(robots)
-    if page and html:
-        from scarid_cli.reporting import fleet_page
-
-        base = os.path.relpath(folder, "." if html == "-" else Path(html).parent)
-        tsv = Path(folder, "fleet.tsv").is_file()
-        page.write(fleet_page.html(title, robots, base.replace(os.sep, "/"), tsv=tsv))
+    if page:
+        page.write(_page(title, robots, folder, page.path))
     if plain:
         plain.write(text.markdown(title, found))
     if printed:
@@ -43,6 +40,15 @@ def of_fleet(
     elif "-" not in (html, markdown):
         sys.stdout.write(text.terminal(found))
         sys.stdout.flush()
+
+
+def _page(title: str, robots: Sequence[FleetRobot], folder: str, path: str) -> str:
+    """The page that goes to this path, from which its links lead to the folder."""
+    from scarid_cli.reporting import fleet_page
+
+    base = os.path.relpath(folder, "." if path == "-" else Path(path).parent)
+    tsv = Path(folder, "fleet.tsv").is_file()
+    return fleet_page.html(title, robots, base.replace(os.sep, "/"), tsv=tsv)
 
 
 def _read(job: Job, folder: Path) -> tuple[FleetRobot, ...]:

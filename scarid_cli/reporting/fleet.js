@@ -120,7 +120,7 @@
   const rank = (names, name) => (name === null ? null : names.indexOf(name));
   const columns = [
     { title: "Robot", key: (i) => robots[logs.robot[i]].name, fill: (i) => [robots[logs.robot[i]].name] },
-    { title: "Log", key: (i) => logs.log[i], fill: (i) => [toggle(i), ...nameOf(i)] },
+    { title: "Log", key: (i) => logs.date[i] ?? logs.log[i], fill: (i) => [toggle(i), ...nameOf(i)] },
     { title: "Finding", key: (i) => logs.place[i], fill: (i) => [...marks(i), why(i)] },
     { title: "Check", named: true, key: (i) => rank(CHECKS, logs.check[i]),
       fill: (i) => [logs.check[i] ?? ""] },
@@ -143,6 +143,7 @@
     const robot = robots[logs.robot[i]], list = make("dl");
     const say = (name, ...value) => list.append(make("dt", {}, name), make("dd", {}, ...value));
     for (const [command, text] of logs.notes[i]) say(command, text);
+    say("Place in the robot's logs", `${logs.order[i]} of ${robot.logs}`);
     if (logs.reference[i]) say("Reference", logs.reference[i]);
     if (logs.validated[i].length) say("R² by the reference's parameters", joints(logs.validated[i]));
     if (logs.samples[i]) say("Samples", logs.samples[i].toLocaleString("en"));

@@ -10,7 +10,6 @@ from math import floor, log10
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.io.table import Table
@@ -96,6 +95,5 @@ NUMBERS = ("estimate", "robust_error", "low", "high", "errors")
 def _numbers(rows: pa.Table, column: str) -> Array:
     if column not in rows.column_names:
         return np.full(rows.num_rows, np.nan)
-    # A column in chunks would be converted by pandas, whose import takes longer than the page.
-    values: Array = pc.fill_null(rows.column(column), float("nan")).combine_chunks().to_numpy()
+    values: Array = rows.column(column).combine_chunks().to_numpy(zero_copy_only=False)
     return values

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from scarid_cli import __version__
 from scarid_cli.reporting.fleet import FINE, FleetRobot, Log
@@ -45,40 +46,44 @@ class Card:
     cells: tuple[Cell, ...]
     curves: tuple[Curve, ...]
 
+    @property
+    def found(self) -> int:
+        """The number of logs that need a look."""
+        return len(self.robot.logs) - self.robot.counts[FINE]
+
 
 def html(title: str, robots: Sequence[FleetRobot], base: str, *, tsv: bool) -> str:
     """The whole page; `base` is the path from it to the folder of the fleet.
 
     `tsv` says whether the table is there as fleet.tsv too.
     """
-    cards = [_card(i, robot) for i, robot in enumerate(robots) if robot.needs_look]
-    cards.sort(key=lambda card: (not card.robot.trending, card.robot.counts[FINE]))
-    worst = [(robot, log) for robot in robots for log in robot.logs if log.need < FINE]
-    worst.sort(key=lambda pair: pair[1].place)
-    totals = [sum(counts) for counts in zip(*(robot.counts for robot in robots), strict=True)]
-    return _template("fleet.html").render(
+    template = _environment().get_template("fleet.html")
+    return template.render(
         title=title,
-        version=__version__,
         robots=robots,
-        cards=cards[:CARDS],
-        folded=cards[CARDS:],
-        fine=[robot for robot in robots if not robot.needs_look],
-        trending=[robot.name for robot in robots if robot.trending],
-        totals=totals,
-        words=WORDS,
-        logs=sum(len(robot.logs) for robot in robots),
-        worst=worst[:STATIC],
-        left_out=len(worst) - STATIC,
         data=embedded(robots, base),
         tsv=href(base, "fleet.tsv") if tsv else None,
-        strip=STRIP,
-        heights=HEIGHTS,
-        cards_count=len(cards),
-        note=NOTE,
         href=lambda path: href(base, path),
-        counted=counted,
-        level=level,
+        **_summary(robots),
     )
+
+
+def _summary(robots: Sequence[FleetRobot]) -> dict[str, Any]:
+    """What the page says without its script."""
+    cards = [_card(i, robot) for i, robot in enumerate(robots) if robot.needs_look]
+    cards.sort(key=lambda card: (not card.robot.trending, -card.found))
+    worst = [(robot, log) for robot in robots for log in robot.logs if log.need < FINE]
+    worst.sort(key=lambda pair: pair[1].place)
+    return {
+        "cards": cards[:CARDS],
+        "folded": cards[CARDS:],
+        "fine": [robot for robot in robots if not robot.needs_look],
+        "trending": [robot.name for robot in robots if robot.trending],
+        "totals": [sum(n) for n in zip(*(robot.counts for robot in robots), strict=True)],
+        "logs": sum(len(robot.logs) for robot in robots),
+        "worst": worst[:STATIC],
+        "left_out": len(worst) - STATIC,
+    }
 
 
 def _card(index: int, robot: FleetRobot) -> Card:
@@ -97,7 +102,8 @@ def _card(index: int, robot: FleetRobot) -> Card:
     )
 
 
-def _template(name: str) -> Template:
+def _environment() -> Environment:
+    """The templates, with what does not depend on the fleet."""
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
@@ -105,4 +111,13 @@ def _template(name: str) -> Template:
         lstrip_blocks=True,
         undefined=StrictUndefined,
     )
-    return environment.get_template(name)
+    environment.globals.update(
+        version=__version__,
+        words=WORDS,
+        note=NOTE,
+        strip=STRIP,
+        heights=HEIGHTS,
+        counted=counted,
+        level=level,
+    )
+    return environment

@@ -7,7 +7,6 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from scarid_cli.cli.fleet import of_fleet
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
@@ -33,6 +32,8 @@ def run(
 ) -> None:
     """Print the tables, and write the documents."""
     if fleet:
+        from scarid_cli.cli.fleet import of_fleet
+
         others = {"--repeated": repeated, "--published": published, "--figures": figures}
         _require_alone(files, others)
         of_fleet(job, fleet, title or "Fleet report", html, markdown, place)
