@@ -17,7 +17,7 @@ from scarid_cli.algorithms.processes.resampling import (
     Resampler,
     ResamplerState,
 )
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array, Numbers, median
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import (
     SEGMENT,
@@ -75,9 +75,9 @@ def _with_period(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
             remedy="give a log with a clock",
             column="t",
         )
-    period = float(np.median(every[:FIRST]))
+    period = median(every[:FIRST])
     if len(new):
-        slower = float(np.median(new[:FIRST]))
+        slower = median(new[:FIRST])
         period = slower if slower <= SLOWEST * period else period
     return period, chain(held, table.batches)
 
