@@ -20,7 +20,6 @@ from scarid_cli.printable import printable
 if TYPE_CHECKING:
     import pyarrow as pa
 
-
 EXTENSIONS = {
     ".csv": "csv",
     ".parquet": "parquet",
