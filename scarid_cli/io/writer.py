@@ -16,7 +16,6 @@ from scarid_cli.io.target import Target, is_regular
 if TYPE_CHECKING:
     import pyarrow as pa
 
-
 EXTENSIONS = {
     ".csv": "csv",
     ".parquet": "parquet",
