@@ -3,6 +3,7 @@
 # make test     the whole test suite
 # make docs-test   the code blocks of the documentation, including those that take long
 # make lint     ruff and mypy
+# make faults   inject every kind of fault, and write docs/faults.md (a quarter of an hour)
 # make bench    start-up, time per sample, memory
 # make bench-excitation   optimised excitations of several robots beside random ones (an hour)
 # make bench-experiments  expected errors, sequences of experiments, arms of URDFs (an hour)
@@ -26,7 +27,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-checks bench-changed gauntlet emps docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test faults lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-checks bench-changed gauntlet emps docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -54,6 +55,11 @@ test: $(VENV)/tested  # one thread of linear algebra for each process of the tes
 
 docs-test: $(VENV)/tested
 	SCARID_DOCS=all $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/docs
+
+faults: $(VENV)/tested  # the page is replaced only by a whole one
+	@mkdir -p build
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python tests/faults/campaign.py > build/faults.md; \
+	  status=$$?; test -s build/faults.md && mv build/faults.md docs/faults.md; exit $$status
 
 lint: $(VENV)/tested
 	$(BIN)/ruff check .
