@@ -82,7 +82,10 @@ def split(line: str, separator: str) -> list[str]:
     """The values of a line."""
     if separator == SPACE:
         return line.split()
-    return next(csv.reader([line], delimiter=separator), [])
+    try:
+        return next(csv.reader([line], delimiter=separator), [])
+    except csv.Error:  # a value that is too long, which reading will report
+        return line.split(separator)
 
 
 def is_number(text: str, *, comma: bool) -> bool:
