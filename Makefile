@@ -132,19 +132,23 @@ emps: $(VENV)/tested
 BATCH   := .venv-batch
 PROFILE ?= local
 
-$(BATCH)/installed: $(BUILD_FILES) $(shell find scarid_cli -name '*.py') $(wildcard schemas/*)
+$(BATCH)/installed: $(BUILD_FILES)
 	@test -x $(BATCH)/bin/python || $(PYTHON) -m venv $(BATCH)
-	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install '.[batch]' pytest
+	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[batch]'
+	@touch $@
+
+$(BATCH)/tested: $(BATCH)/installed
+	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install pytest hypothesis
 	@touch $@
 
 batch: $(BATCH)/installed
 	@test -n "$(CONFIG)" || { echo "make batch CONFIG=FILE: which configuration? See docs/batch.md"; exit 2; }
 	$(BATCH)/bin/python workflow/batch.py $(CONFIG) --profile $(PROFILE) $(OPTIONS)
 
-test-batch: $(BATCH)/installed
+test-batch: $(BATCH)/tested
 	$(BATCH)/bin/python -m pytest tests/workflows
 
-test-slurm: $(BATCH)/installed
+test-slurm: $(BATCH)/tested
 	$(BATCH)/bin/python -m pytest tests/slurm
 
 LOGS ?= 1000
