@@ -87,7 +87,7 @@ TEXTS: dict[str, Callable[[int], bytes]] = {
     "a long line": lambda size: b"t,q1\n0," + b"8" * size,
     "wide rows": lambda size: b"\n".join(
         [b",".join(b"c%d" % k for k in range(size // 20))] + [b"1," * (size // 20 - 1) + b"1"] * 2
-    ),  # fmt: skip
+    ),
     "comments": lambda size: b"#x\n" * (size // 3) + b"t,q1\n0,1\n",
 }
 
