@@ -22,6 +22,11 @@ from scarid_cli.cli.declare import declare
     help="Files of the same name in different folders are repetitions of one experiment: print "
     "medians and quartiles.",
 )
+@click.option(
+    "--fleet",
+    metavar="FOLDER",
+    help="The folder that a batch has written: report on its logs and robots, failures first.",
+)
 @options.side_output("--figures", metavar="FOLDER", help="Write each figure as an SVG file.")
 @click.option(
     "--title", default="Identification report", show_default=True, help="Title of the documents."
@@ -35,6 +40,7 @@ def command() -> None:
       scarid report *.parquet --html report.html --markdown report.md
       scarid identify motion.parquet | scarid report
       scarid report --repeated runs/*/p2smd.cross.metrics.parquet
+      scarid report --fleet outcome --html outcome/fleet.html
 
     A file is named METHOD.EXPERIMENT.KIND.EXTENSION: p2smd.direct.metrics.parquet holds the metrics
     of method p2smd in experiment direct. EXPERIMENT and KIND may be left out. Methods appear in the
@@ -42,9 +48,16 @@ def command() -> None:
 
     Prints the tables: estimates with relative standard deviations (the paper's Table 2), errors of
     the running estimates (Table 3), and the quality of the predicted torques in each experiment
-    (Tables 4 and 5). The page adds figures: the logs (Fig. 3), velocities and accelerations
-    (Fig. 4), the largest relative standard deviation of each method (Fig. 5), the estimates over
-    time (Fig. 6), and measured and predicted torques (Figs. 7 and 8).
+    (Tables 4 and 5). The page begins with the best method, by how much it is better, and whether it
+    may be believed; it shows estimates with their 95 % intervals, measured and predicted torques
+    with their residuals, and errors of soft sensors, and its figures can be enlarged. --figures
+    draws the logs (Fig. 3), velocities and accelerations (Fig. 4), the largest relative standard
+    deviation of each method (Fig. 5), the estimates over time (Fig. 6), and measured and predicted
+    torques (Figs. 7 and 8).
+
+    --fleet takes no FILE. It reads fleet.parquet, estimates.parquet and robots.parquet of a batch.
+    Its page is a table of all logs to be searched, filtered and sorted in the browser, with the
+    course of each robot's parameters over the logs.
 
     A priori values are those of the robot named in the metadata. CSV has no metadata; a CSV takes
     the robot of another table with the same parameters.

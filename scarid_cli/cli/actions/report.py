@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from scarid_cli.cli.actions.fleet import report as of_fleet
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
@@ -25,11 +26,16 @@ def run(
     markdown: str | None,
     published: str | None,
     repeated: bool,
+    fleet: str | None,
     figures: str | None,
     title: str,
     place: str | None,
 ) -> None:
     """Print the tables, and write the documents."""
+    if fleet:
+        _refuse_beside_fleet(files, published=published, repeated=repeated, figures=figures)
+        of_fleet(job, fleet, html=html, markdown=markdown, place=place, title=title)
+        return
     paths = files or ("-",)
     _require_distinct(paths, html, markdown)
     page, plain, printed = (job.side_text(path) for path in (html, markdown, place))
@@ -56,6 +62,13 @@ def run(
         sys.stdout.flush()
     if not html and any(not section.rows for section in found):
         job.say("some tables have figures only; draw them with --html FILE")
+
+
+def _refuse_beside_fleet(files: tuple[str, ...], **others: object) -> None:
+    given = [f"--{name}" for name, value in others.items() if value]
+    if files or given:
+        wrong = files[0] if files else given[0]
+        raise UsageFault(f"--fleet takes its tables from one folder; leave out {wrong}")
 
 
 def _reportable(job: Job, paths: Sequence[str]) -> list[Table]:
