@@ -63,7 +63,7 @@ def _details(row: Row, estimates: list[Row], joints: int) -> list[tuple[str, str
         "error": row.get("error"),
         "findings of check": row.get("findings"),
         "reasons of the verdict": row.get("reasons"),
-        "change": row.get("change_reason"),
+        "change": None if row.get("change") == "unchanged" else row.get("change_reason"),
         "compared with": row.get("reference"),
         "parameters that differ": row.get("differing"),
         "R2 by the reference": _r2(row, "r2_validated", joints),
