@@ -6,6 +6,7 @@ import contextlib
 import os
 import signal
 import sys
+import warnings
 from types import FrameType
 
 # numpy starts a thread per processor for a linear algebra that is never large here.
@@ -23,6 +24,7 @@ from scarid_cli.errors import (
     USAGE,
     ScaridError,
 )
+from scarid_cli.printable import printable
 
 TERMINATED = 128 + signal.SIGTERM
 
@@ -77,8 +79,9 @@ def _failed(where: str, error: Exception) -> int:
 
 def _reported(where: str, message: str, status: int) -> int:
     # A message of a library may have line breaks.
+    line = printable(f"{where}: {' '.join(message.split())}")
     with contextlib.suppress(OSError):  # the status says it as well
-        print(f"{where}: {' '.join(message.split())}", file=sys.stderr, flush=True)  # noqa: T201
+        print(line, file=sys.stderr, flush=True)  # noqa: T201
     return status
 
 
@@ -86,6 +89,8 @@ def run() -> None:
     """The entry of the `scarid` command."""
     _mend_streams()
     sys.meta_path.insert(0, WithoutPandas())
+    if not sys.warnoptions:  # python -W, PYTHONWARNINGS
+        warnings.simplefilter("ignore")  # those of libraries are for programmers
     signal.signal(signal.SIGTERM, _terminate)
     status = _flushed(main())
     for number, code in (

@@ -10,6 +10,8 @@ IO_FAILURE = 74
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 
+CORRECT = "correct or remove the row"
+
 
 class ScaridError(Exception):
     """A failure that is reported in one line: where it is, what was found, and what to do."""
@@ -59,8 +61,7 @@ def bad_data(
 
 def bad_row(where: str, found: str, expected: str, row: int, column: str | None = None) -> BadData:
     """Bad data in one row (from 1), which nothing but its source can mend."""
-    remedy = "correct or remove the row"
-    return bad_data(where, found, expected=expected, remedy=remedy, row=row, column=column)
+    return bad_data(where, found, expected=expected, remedy=CORRECT, row=row, column=column)
 
 
 def cut_short(where: str) -> BadData:

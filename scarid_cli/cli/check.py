@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
@@ -12,6 +12,7 @@ from scarid_cli.cli.declare import declare
 @options.table_input
 @options.robot
 @click.option("--strict", is_flag=True, help="Exit with 1 if there are warnings only.")
+@selecting.window
 @options.as_json
 @options.common
 def command() -> None:

@@ -1,7 +1,8 @@
-"""The command line as the history records it."""
+"""The command line of this run, as the history and the messages repeat it."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import click
@@ -9,19 +10,22 @@ import click
 from scarid_cli.cli.options import Unrecorded
 
 
-def command_line(*, without: str = "") -> str:
+def command_line(*, without: Collection[str] = ()) -> str:
     """The command line, in a fixed order, without the options that change nothing in the table.
 
-    One more parameter may be left out, by its name.
+    Other parameters may be left out, by their names.
     """
     context = click.get_current_context()
-    words = [context.info_name or ""]
-    for parameter in context.command.params:
-        name = parameter.name or ""
-        if isinstance(parameter, Unrecorded) or not was_given(name) or name == without:
-            continue
-        words += _words(parameter, context.params[name])
-    return " ".join(["scarid", *words])
+    names = [p.name or "" for p in context.command.params if not isinstance(p, Unrecorded)]
+    start = f"scarid {context.info_name or ''}"
+    return " ".join([start, *given_words([name for name in names if name not in without])])
+
+
+def given_words(names: Collection[str]) -> list[str]:
+    """The words of those of these parameters that are on the command line."""
+    context = click.get_current_context()
+    given = [p for p in context.command.params if p.name in names and was_given(p.name)]
+    return [word for p in given for word in _words(p, context.params[p.name or ""])]
 
 
 def was_given(name: str) -> bool:

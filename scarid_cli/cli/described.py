@@ -1,4 +1,4 @@
-"""Commands whose help ends with the description of every choice of a registry."""
+"""Help that lists every choice of a registry; `scarid methods NAME` describes one."""
 
 from __future__ import annotations
 
@@ -7,27 +7,18 @@ import click
 from scarid_cli.algorithms.choices.registry import Registry
 
 
-def describing(registry: Registry, heading: str, *, brief: bool = False) -> type[click.Command]:
-    """A command class whose help describes the choices of this registry.
+def listed(registry: Registry) -> str:
+    """The names of all choices, for the help of an option."""
+    return ", ".join(registry.names)
 
-    A `brief` help has their first lines only, and names the command that shows the rest.
-    """
+
+def describing(registry: Registry, heading: str) -> type[click.Command]:
+    """A command class whose help ends with a line on each choice of this registry."""
 
     class Described(click.Command):
         def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
-            if brief:
-                with formatter.section(f"{heading} (`scarid methods NAME` describes one)"):
-                    lines = [(n, registry.describe(n).splitlines()[0]) for n in registry.names]
-                    width = max(map(len, registry.names))
-                    for name, line in lines:
-                        formatter.write(f"  {name:<{width}}  {line}\n")
-                return
-            with formatter.section(heading):
-                for name in registry.names:
-                    formatter.write(f"{' ' * formatter.current_indent}{name}\n")
-                    indent = " " * (formatter.current_indent + 2)
-                    for line in registry.describe(name).splitlines():
-                        formatter.write(f"{indent}{line}".rstrip() + "\n")
-                    formatter.write_paragraph()
+            with formatter.section(f"{heading} (`scarid methods NAME` describes one)"):
+                lines = [(name, registry.describe(name).splitlines()[0]) for name in registry.names]
+                formatter.write_dl(lines)
 
     return Described

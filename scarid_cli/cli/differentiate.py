@@ -5,17 +5,19 @@ from __future__ import annotations
 import click
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
-from scarid_cli.cli.described import describing
+from scarid_cli.cli.described import listed
 
 
-@declare("differentiate", describing(DIFFERENTIATORS, "Methods", brief=True))
+@declare("differentiate")
 @options.table_input
 @click.option(
     "--method",
     type=click.Choice(DIFFERENTIATORS.names),
-    help="The method; see below.  [default: the best of --settings, else kalman]",
+    metavar="NAME",
+    help=f"The method: {listed(DIFFERENTIATORS)}. `scarid methods NAME` describes one.  "
+    "[default: the best of --settings, else kalman]",
 )
 @click.option(
     "--set",
@@ -24,25 +26,28 @@ from scarid_cli.cli.described import describing
     metavar="NAME=VALUE[,VALUE...]",
     help="A setting of the method, one value for all joints or one per joint; repeatable.",
 )
-@options.input_file(
-    "--settings", help="Settings that `scarid tune --save` wrote, one value per joint."
-)
-@click.option(
-    "--preset", metavar="NAME", help="Named settings; table1 has those printed in the paper."
-)
+@options.input_file("--settings", help="Settings that `scarid tune --save` wrote.")
+@click.option("--preset", metavar="NAME", help="Named settings; table1 is that of the paper.")
 @click.option(
     "--match/--no-match",
     default=None,
-    help="Pass positions and torques through the dynamics of the derivatives, so that all signals "
-    "of a row belong to the same instant, and mark the settling rows.  [default: --match if the "
-    "table has torques; the paper's procedure is --no-match]",
+    help="Bring all signals of a row to the same instant, and mark the settling rows.  [default: "
+    "--match if the table has torques; the paper's procedure is --no-match]",
 )
 @click.option(
     "--per-joint",
     is_flag=True,
-    help="Allow settings that differ between joints together with --match. A torque contains the "
-    "accelerations of all joints of an arm, so this suits only joints that move independently.",
+    help="Allow settings that differ between joints together with --match, for joints that move "
+    "independently: a torque of an arm contains the accelerations of all joints.",
 )
+@click.option(
+    "--velocity",
+    type=click.Choice(("estimated", "measured")),
+    metavar="ORIGIN",
+    help="`measured` takes the velocities of the log (dq1 or dq1_measured, ...) behind the "
+    "low-pass of the method, and differentiates these.  [default: estimated from the positions]",
+)
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:
@@ -56,15 +61,11 @@ def command() -> None:
       scarid differentiate --method p2smd --set gamma0=25 --set gamma1=20 log.csv
       scarid filter --zero-phase --cutoff 20 log.csv | scarid differentiate --method central
 
-    Adds the columns dq1, dq2, ... and ddq1, ddq2, ... for the positions q1, q2, ... The default
-    settings suit moves that take a second, sampled at 200 Hz with a 16-bit encoder. Those of p2smd,
-    2smd, astd and ed-fir are the paper's Table 1, or the nearest settings that work.
+    Adds the columns dq1, dq2, ... and ddq1, ddq2, ... for the positions q1, q2, ... Velocities
+    that the log has are kept as dq1_measured, ... The default settings suit moves that take a
+    second, sampled at 200 Hz with a 16-bit encoder.
 
-    --match replaces q and tau as well and adds the column settled; identify and validate leave
-    out the rows where it is 0. Linear methods are matched exactly in discrete time, the others
-    through their linearisation or by measured delays; each method says which.
-
-    Causal methods need no later samples. Methods with a fixed lag delay each row, together with its
-    time, by that lag, which the metadata state. Methods of the whole record hold the whole log in
-    memory.
+    --match passes q and tau through the dynamics of the derivatives and adds the column settled;
+    identify and validate leave out the rows where it is 0. Methods with a fixed lag delay each row,
+    together with its time. Methods of the whole record hold the log in memory.
     """

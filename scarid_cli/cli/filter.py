@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
@@ -33,6 +33,7 @@ from scarid_cli.cli.declare import declare
     is_flag=True,
     help="Filter forwards and backwards: no delay, but offline. Holds the whole log in memory.",
 )
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:

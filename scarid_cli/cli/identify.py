@@ -5,13 +5,13 @@ from __future__ import annotations
 import click
 
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 from scarid_cli.cli.described import describing
 
 
-@declare("identify", describing(ESTIMATORS, "Estimators and their settings"))
-@options.table_input
+@declare("identify", describing(ESTIMATORS, "Estimators"))
+@options.table_inputs
 @options.robot
 @click.option(
     "--estimator",
@@ -78,6 +78,7 @@ from scarid_cli.cli.described import describing
     metavar="STATE",
     help="Write the state of the estimation (.npz), to be continued with --from.",
 )
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:
@@ -89,6 +90,7 @@ def command() -> None:
       scarid identify --estimator wls --drop-slow 0.1 --align motion.csv
       scarid identify --estimator ls --robot emps --skip 49 --decimate 10 motion.parquet
       scarid identify --forgetting 0.999,Fv1=0.99 --trace trace.parquet motion.csv
+      scarid identify --robot arm.toml monday.parquet tuesday.parquet
       scarid identify --save state.npz monday.csv; scarid identify --from state.npz tuesday.csv
 
     A measurement, which has positions and torques but no derivatives, is identified by the whole
@@ -96,6 +98,10 @@ def command() -> None:
     positions and torques of all joints pass a smoother of this bandwidth, and the parameters are
     estimated with --estimator wls --align. The pipe of two commands that gives the same parameters
     is reported. The measurement is held in memory.
+
+    Several logs are segments of one estimation: all have the same robot, units and rate, nothing
+    is filtered from one to the next, and a measurement gets one bandwidth and one delay for all.
+    --from-time, --to-time and --rows apply to each of them.
 
     Solves tau = W(q, dq, ddq) theta (paper eq. 25), where W is the robot's regressor. Each estimate
     has two standard errors: one that holds for white residuals, s (diag (W'W)^-1)^1/2 (eq. 32-34),

@@ -28,9 +28,9 @@ class WithImperfections(click.Command):
         )
         for place in PLACES:
             with formatter.section(f"  {place}"):
-                for kind in declared_in(place):
-                    line = f"  {kind.NAME:<{width}}  {kind.unit():<{wide}}  {kind.summary()}"
-                    formatter.write(line + "\n")
+                starts = [f"{k.NAME:<{width}}  {k.unit():<{wide}}" for k in declared_in(place)]
+                meanings = [kind.summary() for kind in declared_in(place)]
+                formatter.write_dl(list(zip(starts, meanings, strict=True)), col_max=60)
 
 
 def imperfections(

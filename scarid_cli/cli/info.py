@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
 @declare("info")
 @options.log_input
+@selecting.window
 @options.as_json
 @options.common
 def command() -> None:

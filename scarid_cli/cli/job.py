@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import os
-import sys
+import stat
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -15,13 +16,17 @@ from scarid_cli import __version__
 from scarid_cli.cli.chain import Place
 from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.robots import another, misfit
+from scarid_cli.cli.selecting import selection_of
 from scarid_cli.cli.terminal import is_terminal, styled
-from scarid_cli.errors import TooShort, UsageFault
+from scarid_cli.errors import CORRECT, TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
+from scarid_cli.io.selection import REFUSE, SPLIT, Lacking, within
+from scarid_cli.io.stated import in_file, stated_robot
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document, Handover, Output, all_or_none, same_place
+from scarid_cli.printable import printable
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -48,6 +53,9 @@ class Job:
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
         self.notes: list[str] = []
+        self._selection = selection_of(options)
+        self._offers = "missing" in options  # whether the command has --missing
+        self._lacking: list[tuple[str, Lacking]] = []
 
     def output(self, path: str, wanted: str | None = None, *, readable: bool = False) -> Output:
         """The output for a table; opened before anything is read, so that mistakes show at once.
@@ -97,13 +105,32 @@ class Job:
         must be regular unless `regular` is false.
         """
         table = self._opened_table(path)
-        return self._reported(checked(table, kind, reads=reads, regular=regular) if kind else table)
+        if not kind:
+            return self._reported(table)
+        if schemas.load(kind).sampled:
+            table = within(table, self._selection)
+        return self._checked(table, kind, reads, regular=regular)
+
+    def _checked(self, table: Table, kind: str, reads: Reads | None, *, regular: bool) -> Table:
+        """The table, whose rows with missing values are treated as --missing says."""
+        lacking = None
+        if self._selection.missing != REFUSE and schemas.load(kind).sampled:
+            lacking = partial(self._without_lacking, table.name)
+        remedy = f"{CORRECT}, or leave such rows out with --missing" if self._offers else CORRECT
+        return self._reported(
+            checked(table, kind, reads=reads, regular=regular, lacking=lacking, remedy=remedy)
+        )
+
+    def _without_lacking(self, name: str, columns: list[str]) -> Lacking:
+        lacking = Lacking(columns, self._selection.missing == SPLIT)
+        self._lacking.append((name, lacking))
+        return lacking
 
     def read_for(
         self,
         path: str,
         kind: str,
-        robot: str | None,
+        robot: str | Robot | None,
         *,
         torques: bool = False,
         reference: bool = False,
@@ -116,11 +143,11 @@ class Job:
         the command can do `without_derivatives`, this is the kind of a table that has none. Values
         and clock of a table `as_recorded` are not checked.
         """
-        opened = self._opened_table(path)
-        if without_derivatives and not schemas.numbered(opened.columns, "dq", "ddq"):
+        opened = within(self._opened_table(path), self._selection)
+        if without_derivatives and not schemas.numbered(opened.columns, "ddq"):
             kind = without_derivatives
         table = conforming(opened, kind)
-        arm = self.robot(robot, table)
+        arm = self.robot(robot, table) if isinstance(robot, str | None) else robot
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
         columns = schemas.of_joints(len(arm.joints), *fields)
@@ -131,7 +158,7 @@ class Job:
             return self._reported(table), arm
         if reference:
             columns += [name for name in table.columns if name.endswith("_ref")]
-        return self._reported(checked(table, kind, reads=lambda _: columns)), arm
+        return self._checked(table, kind, lambda _: columns, regular=True), arm
 
     def robot(self, name: str | None, *tables: Table) -> Robot:
         """The robot of this name, else as the first table states, else as SCARID_ROBOT does.
@@ -140,14 +167,14 @@ class Job:
         """
         from scarid_cli.algorithms.robots.reading import DEFAULT_ROBOT, load
 
-        stated = next((table.meta.robot for table in tables if table.meta.robot), None)
-        found = name or stated or os.environ.get("SCARID_ROBOT")
+        found = name or next(filter(None, map(stated_robot, tables)), None)
+        found = found or os.environ.get("SCARID_ROBOT")
         if not found:
             self.notes.append(
                 f"no robot is stated, {DEFAULT_ROBOT} is assumed (state it with --robot or "
                 "SCARID_ROBOT)"
             )
-        robot = load(found or DEFAULT_ROBOT)
+        robot = load(self.described(found or DEFAULT_ROBOT))
         if remark := another(robot, tables):
             self.notes.append(remark)
         return robot
@@ -155,19 +182,35 @@ class Job:
     def _opened_table(
         self, path: str, through: Callable[[ByteSource], ByteSource] | None = None
     ) -> Table:
-        source = self.opened(path)
-        return open_table(through(source) if through else source)
+        return self._followed(self.opened(path), through)
+
+    def _followed(
+        self, source: ByteSource, through: Callable[[ByteSource], ByteSource] | None = None
+    ) -> Table:
+        """The table in a source, with a progress line where a person waits: not inside a pipe."""
+        table = open_table(through(source) if through else source)
+        hands_over = self.place.following is not None
+        if self.quiet or hands_over or not is_terminal(2) or stat.S_ISFIFO(os.fstat(1).st_mode):
+            return table
+        from scarid_cli.cli.progress import counted
+
+        return replace(table, batches=counted(table.batches, table.length, source.part_read))
 
     def read_source(self, source: ByteSource) -> Table:
         """A table of any kind from bytes that are open already."""
-        return self._reported(open_table(source))
+        return self._reported(within(self._followed(source), self._selection))
 
     def _reported(self, table: Table) -> Table:
-        """The table, reported with --verbose and followed by a progress line on a terminal."""
+        """The table, reported with --verbose."""
         if self._verbose:
             rate = f"{1.0 / table.period:.6g} Hz, " if table.period else ""
             self.say(f"{table.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
-        return _with_progress(table, quiet=self.quiet or self.place.following is not None)
+        return table
+
+    def described(self, robot: str) -> str:
+        """The robot; the history names the file of its description, if it is in one."""
+        known = (source.name for source in self.sources)
+        return self.noted(robot) if in_file(robot) and robot not in known else robot
 
     def noted(self, path: str) -> str:
         """The path of an input that is not a table; the history names it as well."""
@@ -191,6 +234,15 @@ class Job:
         if self.left_out:
             count = len(self.left_out)
             self.say(f"{count} segment{'s' if count > 1 else ''} left out: {self.left_out[0]}")
+        self._say_lacking()
+
+    def _say_lacking(self) -> None:
+        """Report the rows that --missing left out."""
+        for name, lacking in self._lacking:
+            if lacking.count:
+                what = f"{lacking.count:,} row{'s' if lacking.count > 1 else ''}"
+                self.say(f"{name}: left out {what} with missing values")
+        self._lacking.clear()
 
     def recorded(self, table: Table) -> Table:
         """The table with this command, and the digests of its inputs so far, in its history."""
@@ -212,7 +264,7 @@ class Job:
         """
         if not self.quiet:
             start = styled(verdict, verdict, 2) if verdict else ""
-            self.place.say(f"{start}{message.removeprefix(verdict)}")
+            self.place.say(f"{start}{printable(message.removeprefix(verdict))}")
 
 
 @contextlib.contextmanager
@@ -233,15 +285,3 @@ def per_joint(values: Sequence[float], joints: int, option: str) -> list[float]:
     if len(values) not in (1, joints):
         raise UsageFault(f"{option}: {len(values)} values for {joints} joints; give 1 or {joints}")
     return list(values) * (joints // len(values))
-
-
-def _with_progress(table: Table, *, quiet: bool) -> Table:
-    """The table, with a progress line where a person waits: not in the middle of a pipe."""
-    import stat
-    from os import fstat
-
-    if quiet or not sys.stderr.isatty() or stat.S_ISFIFO(fstat(1).st_mode):
-        return table
-    from scarid_cli.cli.progress import counted
-
-    return replace(table, batches=counted(table.batches))

@@ -6,17 +6,23 @@ import shlex
 from dataclasses import replace
 from typing import Any
 
+from click import get_current_context
+
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.command_line import command_line, was_given
+from scarid_cli.cli.command_line import command_line, given_words, was_given
 from scarid_cli.cli.job import Job
+from scarid_cli.cli.options import SELECTION
 from scarid_cli.cli.progress import steps
 from scarid_cli.io.table import Table
 
 
-def motion(job: Job, measurement: Table, robot: Robot, added: list[str]) -> Table:
+def motion(
+    job: Job, measurement: Table, robot: Robot, added: list[str], rates: dict[str, str]
+) -> Table:
     """The motion of a measurement; reports the choice, and the pipe that does the same.
 
-    `added` are the options that identify uses with a measurement and that a pipe must state.
+    `added` are the options that identify uses with a measurement and that a pipe must state, and
+    `rates` those at which files were resampled.
     """
     from scarid_cli.stages.glance import of_measurement
     from scarid_cli.stages.recommended import motion_of  # needed only here
@@ -28,20 +34,30 @@ def motion(job: Job, measurement: Table, robot: Robot, added: list[str]) -> Tabl
     with steps(quiet=job.quiet) as progress:
         found, bandwidth, smoother = motion_of(measurement, robot, progress, job.left_out)
     job.say(f"a measurement, not a motion: {bandwidth.text}")
-    job.say(f"the same as: {_pipe(smoother, added)}")
+    job.say(f"the same as: {_pipe(smoother, added, rates)}")
     return found
 
 
-def _pipe(smoother: Any, added: list[str]) -> str:
-    """The pipe of two commands that gives the same parameters."""
-    from click import get_current_context
-
-    file = str(get_current_context().params["file"])
-    log = "" if file == "-" else f" {shlex.quote(file)}"
+def _pipe(smoother: Any, added: list[str], rates: dict[str, str]) -> str:
+    """The pipe of commands that gives the same parameters; of several logs, one for each."""
     settings = " ".join(f"--set {n}={getattr(smoother, n):.4g}" for n in ("noise", "intensity"))
-    differentiate = f"scarid differentiate --method rts {settings} --format arrow{log}"
-    words = [command_line(without="file"), *(word for word in added if _is_new(word))]
-    return f"{differentiate} | {' '.join(words)}"
+    chosen = given_words(SELECTION)
+
+    def differentiated(file: str) -> str:
+        """The commands before identify, of which the first one reads the rows that are chosen."""
+        name = [] if file == "-" else [shlex.quote(file)]
+        words = ["scarid differentiate --method rts", settings]
+        if file not in rates:
+            return " ".join([*words, *chosen, "--format arrow", *name])
+        first = ["scarid resample --rate", rates[file], *chosen, "--format arrow", *name]
+        return " ".join([*first, "|", *words, "--format arrow"])
+
+    options = [word for word in added if _is_new(word)]
+    identify = " ".join([command_line(without=("files", *SELECTION)), *options])
+    files = [str(file) for file in get_current_context().params["files"]] or ["-"]
+    if len(files) > 1:
+        return " ".join([identify, *(f"<({differentiated(file)})" for file in files)])
+    return f"{differentiated(files[0])} | {identify}"
 
 
 def _is_new(option: str) -> bool:

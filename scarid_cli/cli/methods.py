@@ -14,6 +14,7 @@ from scarid_cli.algorithms.choices.registry import (
     EXCITATIONS,
 )
 from scarid_cli.cli import options
+from scarid_cli.cli.terminal import wrapped
 from scarid_cli.errors import UsageFault
 
 REGISTRIES = {
@@ -44,7 +45,8 @@ def _listed() -> Iterator[str]:
         yield from [""] * bool(number)
         yield option
         for name in registry.names:
-            yield f"  {name:<{width}}  {registry.describe(name).splitlines()[0]}"
+            start = f"  {name:<{width}}  "
+            yield wrapped(start, registry.describe(name).splitlines()[0], len(start))
 
 
 def _described(name: str) -> Iterator[str]:

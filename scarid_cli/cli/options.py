@@ -17,8 +17,9 @@ from scarid_cli.io import FORMATS
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-# The options of `table_output` and `common`: the job deals with them, not the command.
-SHARED = ("output", "format", "no_history", "quiet", "verbose", "debug")
+# The options of `selecting`, `table_output` and `common`: the job deals with them, not the command.
+SELECTION = ("from_time", "to_time", "rows", "missing")
+SHARED = (*SELECTION, "output", "format", "no_history", "quiet", "verbose", "debug")
 
 
 class Unrecorded(click.Option):
@@ -136,7 +137,9 @@ RATE = Number(Range(0.0, 1e7, open=True))  # Hz
 DURATION = Number(Range(0.0, 1e6, open=True))  # s
 
 
-def _all(*decorators: Callable[[F], F]) -> Callable[[F], F]:
+def all_of(*decorators: Callable[[F], F]) -> Callable[[F], F]:
+    """Several declarations as one, in this order."""
+
     def decorate(function: F) -> F:
         for decorator in reversed(decorators):
             function = decorator(function)
@@ -148,6 +151,11 @@ def _all(*decorators: Callable[[F], F]) -> Callable[[F], F]:
 def table_input(function: F) -> F:
     """The table to read: FILE, or standard input."""
     return click.argument("file", default="-", metavar="[FILE]", type=INPUT)(function)
+
+
+def table_inputs(function: F) -> F:
+    """The tables to read: FILEs, or standard input."""
+    return click.argument("files", nargs=-1, metavar="[FILE]...", type=INPUT)(function)
 
 
 def log_input(function: F) -> F:
@@ -182,7 +190,7 @@ table_format: Callable[[F], F] = click.option(
 
 def table_output(function: F) -> F:
     """Where the table goes and in what format."""
-    return _all(
+    return all_of(
         click.option(
             "-o", "--output", cls=Unrecorded, default="-", metavar="FILE",
             help="Write the table to FILE, in the format of its extension "
@@ -204,7 +212,7 @@ def as_json(function: F) -> F:
 
 def common(function: F) -> F:
     """What every command takes."""
-    return _all(
+    return all_of(
         click.option("-q", "--quiet", cls=Unrecorded, is_flag=True, help="Report only errors."),
         click.option("-v", "--verbose", cls=Unrecorded, is_flag=True, help="Report what was read."),
         click.option(
@@ -222,7 +230,7 @@ robot: Callable[[F], F] = click.option(
 
 def treatment(function: F) -> F:
     """How the rows of the regression are treated, by identify, validate and urdf alike."""
-    return _all(
+    return all_of(
         click.option(
             "--skip", type=NUMBERS, metavar="ROWS[,ROWS]",
             help="Leave out this many rows at the start and, if there are two numbers, at the end.",

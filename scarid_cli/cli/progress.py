@@ -24,8 +24,16 @@ def steps(*, quiet: bool, of: str = "settings tried") -> Iterator[Callable[[], N
         yield lambda: advance(1)
 
 
-def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-    """Pass batches on, and show how many rows they had."""
+def counted(
+    batches: Iterator[pa.RecordBatch],
+    length: int | None,
+    part_read: Callable[[], float | None],
+) -> Iterator[pa.RecordBatch]:
+    """Pass batches on, and show how many rows they had.
+
+    The percentage and the remaining time are shown as well, by the number of all rows (`length`) if
+    it is known, else by the part of the input that was read.
+    """
     start = time.monotonic()
     held = 0
     for batch in batches:
@@ -35,19 +43,56 @@ def counted(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
             break
     else:
         return
-    with _line("{task.completed:,.0f} rows", held) as advance:
+
+    def part(rows: int) -> float | None:
+        return rows / length if length else part_read()
+
+    text = "{task.fields[rows]:,} rows"
+    with _bar(text, known=part(held) is not None, since=time.monotonic() - start) as show:
         for batch in batches:
             yield batch
-            advance(batch.num_rows)
+            held += batch.num_rows
+            show(part(held), held)
 
 
 @contextlib.contextmanager
-def _line(text: str, completed: int = 0) -> Iterator[Callable[[int], None]]:
+def _bar(text: str, *, known: bool, since: float) -> Iterator[Callable[[float | None, int], None]]:
+    """A progress line, with a percentage if the end is `known`; `since` [s] it has been running.
+
+    The function takes the part that is done, and the number of rows.
+    """
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = [SpinnerColumn(), TextColumn(text), TimeElapsedColumn()]
+    if known:
+        columns.insert(1, TextColumn("{task.fields[percent]:.0f} %"))
+        columns.append(TextColumn("{task.fields[left]} left"))
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        begun = time.monotonic() - since
+        task = progress.add_task("", total=None, rows=0, percent=0.0, left="?")
+
+        def show(part: float | None, rows: int) -> None:
+            left = (time.monotonic() - begun) * (1.0 / part - 1.0) if part else 0.0
+            progress.update(task, rows=rows, percent=100.0 * (part or 0.0), left=_clock(left))
+
+        yield show
+
+
+def _clock(seconds: float) -> str:
+    """A duration as hours, minutes and seconds."""
+    minutes, second = divmod(round(seconds), 60)
+    hours, minute = divmod(minutes, 60)
+    return f"{hours}:{minute:02}:{second:02}"
+
+
+@contextlib.contextmanager
+def _line(text: str) -> Iterator[Callable[[int], None]]:
     """A progress line with this text, and the function that counts on."""
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     columns = (SpinnerColumn(), TextColumn(text), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=None, completed=completed)
+        task = progress.add_task("", total=None)
         yield lambda count: progress.advance(task, count)

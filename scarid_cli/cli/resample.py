@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
@@ -18,6 +18,7 @@ from scarid_cli.cli.declare import declare
     help="The longest interval to interpolate [s]; a longer one is a gap.  [default: 5 periods of "
     "the log, or one period of the new rate if that is longer]",
 )
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from scarid_cli.cli import options
+from scarid_cli.printable import printable
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.capsules import Capsule
@@ -49,7 +50,7 @@ def check(robot: str, **_rest: Any) -> None:
     from scarid_cli.algorithms.robots.reading import load
 
     for line in described(load(robot)):
-        click.echo(line)
+        click.echo(printable(line))
 
 
 def _contents(log: LogFormat) -> str:

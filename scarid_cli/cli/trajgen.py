@@ -11,7 +11,7 @@ from scarid_cli.cli.described import describing
 from scarid_cli.cli.options import NUMBERS
 
 
-@declare("trajgen", describing(EXCITATIONS, "Excitations and their settings"))
+@declare("trajgen", describing(EXCITATIONS, "Excitations"))
 @options.robot
 @click.option(
     "--excitation",

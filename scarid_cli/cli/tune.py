@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
@@ -16,8 +16,10 @@ from scarid_cli.cli.declare import declare
     "methods",
     multiple=True,
     type=click.Choice(["all", *DIFFERENTIATORS.names]),
-    help="A differentiator to tune, repeatable; `all` stands for every causal one. The first is "
-    "what differentiate --settings uses.  [default: rts and kalman with --robot, else kalman]",
+    metavar="NAME",
+    help="A method of `scarid differentiate` to tune, repeatable; `all` stands for every causal "
+    "one. The first is what differentiate --settings uses.  [default: rts and kalman with --robot, "
+    "else kalman]",
 )
 @click.option(
     "--robot",
@@ -27,15 +29,10 @@ from scarid_cli.cli.declare import declare
     "--robot).",
 )
 @click.option(
-    "--to-time",
-    type=options.NUMBER,
-    metavar="SECONDS",
-    help="Use only the first seconds of the log, as for settings of an online identification.",
-)
-@click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of a search."
 )
 @options.side_output("--save", help="Write the chosen settings, for differentiate --settings.")
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
 @declare("validate")
-@options.table_input
+@options.table_inputs
 @options.input_file(
     "--parameters", required=True, help="The parameter table that `scarid identify` wrote."
 )
 @options.robot
 @options.treatment
 @options.side_output("--predictions", help="Write the measured and the predicted torques.")
+@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:
@@ -26,7 +27,8 @@ def command() -> None:
     Writes for each joint R2 (paper eq. 36), the root-mean-square error (eq. 35), the relative error
     100 |tau - tau_hat| / |tau| in percent, and the number of samples. On the motion that the
     parameters were identified from, this is direct validation; on another motion, it is cross
-    validation. Give the options that select and treat rows as they were given to identify.
+    validation. Several motions count as one. Give the options that select and treat rows as they
+    were given to identify.
 
     The verdict, on standard error and in the metadata, says whether the robot has changed since the
     identification: `unchanged`, `changed` with the cause (another payload or set-up, the friction,

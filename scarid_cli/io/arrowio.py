@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.ipc as ipc
 
-from scarid_cli.errors import BadData, OutputFailure, cut_short
+from scarid_cli.errors import BadData, OutputFailure, ScaridError, cut_short
 from scarid_cli.io.bytesource import CHUNK, STDIN, ByteSource, require_moderate
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
@@ -84,7 +85,8 @@ def read_parquet(source: ByteSource) -> Table:
         raise _unreadable(source.name, error) from None
     require_moderate(source.name, _largest_chunk(file.metadata))
     batches = file.iter_batches(batch_size=READ_ROWS, use_threads=False)
-    return _table(source.name, file.schema_arrow, _counted(batches, source.name, file.metadata))
+    found = _counted(batches, source.name, file.metadata)
+    return replace(_table(source.name, file.schema_arrow, found), length=file.metadata.num_rows)
 
 
 def _largest_chunk(footer: Any) -> int:
@@ -113,7 +115,9 @@ def _small(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
             yield batch.slice(start, READ_ROWS)
 
 
-def _unreadable(name: str, error: Exception) -> BadData:
+def _unreadable(name: str, error: Exception) -> ScaridError:
+    if isinstance(error, OSError) and error.errno:  # the device, and not the content
+        return OutputFailure(f"{name}: {error.strerror}")
     reason = str(error).partition("\n")[0]
     return BadData(f"{name}: not a complete Arrow or Parquet table ({reason}); write it again")
 
@@ -140,11 +144,7 @@ def _sound(name: str, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBa
                 return
             # The offsets of texts point into memory; numbers have none, and cost no time here.
             batch.validate(full=not all(pa.types.is_primitive(f.type) for f in batch.schema))
-        except OSError as error:
-            if error.errno:  # the device, and not the content
-                raise OutputFailure(f"{name}: {error.strerror}") from None
-            raise _unreadable(name, error) from None
-        except pa.ArrowException as error:
+        except (pa.ArrowException, OSError) as error:
             raise _unreadable(name, error) from None
         yield batch
 

@@ -111,6 +111,12 @@ class ByteSource:
         """Whether this is a regular file, rather than a pipe or a terminal."""
         return stat.S_ISREG(os.fstat(self.fd).st_mode)
 
+    def part_read(self) -> float | None:
+        """Which part of a regular file was read in order so far; None for a pipe."""
+        if not stat.S_ISREG(os.fstat(self.fd).st_mode):
+            return None
+        return os.lseek(self.fd, 0, os.SEEK_CUR) / max(os.fstat(self.fd).st_size, 1)
+
     def seekable(self) -> BinaryIO:
         """A seekable file of all the bytes: the source itself, or a temporary copy of a pipe."""
         if self._spool is None:
@@ -120,10 +126,16 @@ class ByteSource:
     def _copied(self) -> BinaryIO:
         import tempfile
 
-        spool = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the source)
-        while data := self.read_some():
-            spool.write(data)
-        spool.seek(0)
+        try:
+            spool = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the source)
+            while data := self.read_some():
+                spool.write(data)
+            spool.seek(0)
+        except OSError as error:
+            raise OutputFailure(
+                f"{self.name}: no temporary copy can be made of it ({error.strerror}); give a file "
+                "in place of a pipe, or set TMPDIR to a folder with more space"
+            ) from None
         return spool
 
     def close(self) -> None:

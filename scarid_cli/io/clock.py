@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import chain
 
 import numpy as np
@@ -10,7 +11,7 @@ import pyarrow as pa
 
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import BadData, bad_data, bad_row
-from scarid_cli.io.table import SEGMENT, Instant, segments_of, steps_of
+from scarid_cli.io.table import SEGMENT, Instant, Table, segments_of, steps_of
 
 # An interval may differ from the period by this fraction, and the mean interval by that one: a
 # derivative would be wrong by as much.
@@ -19,30 +20,39 @@ DRIFT = 0.001
 SHORTEST = 1e-12  # s; squares of the rate of such a clock leave the range of doubles
 
 
-def clocked(
-    batches: Iterator[pa.RecordBatch], name: str, *, regular: bool
-) -> tuple[Iterator[pa.RecordBatch], float]:
-    """The batches, checked to be at the rate of their first two samples, and the period [s]."""
-    batches = _from_two_samples(batches)
+def clocked(table: Table, *, regular: bool) -> Table:
+    """The table, its clock checked to be at the rate of its first two samples.
+
+    The period [s] is put into the metadata. The clock need not be `regular`.
+    """
+    batches = _from_two_samples(table.batches)
     first = next(batches, None)
     at = _first_step(first) if first else None
     if first is None or at is None:
         raise bad_data(
-            name,
+            table.name,
             f"{first.num_rows if first else 0} rows",
             expected="at least 2 samples",
             remedy="give a longer log",
         )
-    batches = chain([first], batches)
+    table = replace(table, batches=chain([first], batches))
     if not regular:
-        return batches, 0.0
+        return table
+    period = _first_period(first, at, table)
+    meta = replace(table.meta, period=period)
+    return replace(table, meta=meta, batches=_regular(table, period))
+
+
+def _first_period(first: pa.RecordBatch, at: int, table: Table) -> float:
+    """The nominal period [s] of the interval after row `at`, counted from 0."""
     start, end = first.column("t")[at].as_py(), first.column("t")[at + 1].as_py()
+    row = table.row(at + 2)
     if not end > start:
-        raise _not_increasing(name, end, start, at + 2)
+        raise _not_increasing(table.name, end, start, row)
     if end - start < SHORTEST:
-        raise bad_row(name, f"an interval of {end - start:g} s", "a clock in seconds", at + 2, "t")
-    period = nominal_period(end - start)
-    return _regular(batches, name, period), period
+        found = f"an interval of {end - start:g} s"
+        raise bad_row(table.name, found, "a clock in seconds", row, "t")
+    return nominal_period(end - start)
 
 
 def nominal_period(interval: float) -> float:
@@ -74,9 +84,7 @@ def _first_step(batch: pa.RecordBatch) -> int | None:
     return int(together[0]) if len(together) else None
 
 
-def _regular(
-    batches: Iterator[pa.RecordBatch], name: str, period: float
-) -> Iterator[pa.RecordBatch]:
+def _regular(table: Table, period: float) -> Iterator[pa.RecordBatch]:
     """Pass batches on; time that does not advance, or not at the nominal rate, is an error.
 
     At a gap (see segments_of) time may advance by any interval.
@@ -84,16 +92,16 @@ def _regular(
     row = gaps = 0
     start = missing = float("nan")
     last: Instant | None = None
-    for batch in batches:
+    for batch in table.batches:
         t = batch.column("t").to_numpy()
         first = last is None
         if first:
             start, missing = float(t[0]), 0.0
         steps, jumps, last = steps_of(batch, last)
-        _check_segments(jumps, name, row + 1)
+        _check_segments(jumps, table, row + 1)
         after_gap = (jumps > 0) & (steps > 0.0)
         inner = np.where(after_gap, period, steps)[first:]
-        _check_steps(inner, t[first:], name, period, row + 1 + first)
+        _check_steps(inner, t[first:], table, period, row + 1 + first)
         missing += float(steps[after_gap].sum())
         gaps += int(after_gap.sum())
         row += batch.num_rows
@@ -101,38 +109,38 @@ def _regular(
     mean = (last[0] - start - missing) / (row - 1 - gaps) if last else period
     if abs(mean - period) > DRIFT * period:
         raise BadData(
-            f"{name}, column t: found a mean interval of {mean:.9g} s over {row} rows, expected "
-            f"{period:.9g} s like the first; put it on a constant rate with `scarid resample "
-            "--rate`"
+            f"{table.name}, column t: found a mean interval of {mean:.9g} s over {row} rows, "
+            f"expected {period:.9g} s like the first; put it on a constant rate with "
+            "`scarid resample --rate`"
         )
 
 
-def _check_segments(jumps: Numbers, name: str, row: int) -> None:
+def _check_segments(jumps: Numbers, table: Table, row: int) -> None:
     if np.any(jumps < 0):
         raise bad_data(
-            name,
+            table.name,
             "a smaller number than in the row before",
             expected="segments to be numbered in order",
             remedy="sort the log",
-            row=row + int(np.argmax(jumps < 0)),
+            row=table.row(row + int(np.argmax(jumps < 0))),
             column=SEGMENT,
         )
 
 
-def _check_steps(steps: Array, t: Array, name: str, period: float, row: int) -> None:
+def _check_steps(steps: Array, t: Array, table: Table, period: float, row: int) -> None:
     with np.errstate(invalid="ignore"):
         bad = ~(np.abs(steps - period) <= JITTER * period)
     if not bad.any():
         return
     at = int(np.argmax(bad))
     if steps[at] <= 0.0:
-        raise _not_increasing(name, t[at], t[at] - steps[at], row + at)
+        raise _not_increasing(table.name, t[at], t[at] - steps[at], table.row(row + at))
     raise bad_data(
-        name,
+        table.name,
         f"an interval of {steps[at]:.6g} s",
         expected=f"{period:.6g} s within {JITTER:.0%}",
         remedy="put it on a constant rate with `scarid resample --rate`",
-        row=row + at,
+        row=table.row(row + at),
         column="t",
     )
 

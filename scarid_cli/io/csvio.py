@@ -11,7 +11,7 @@ from itertools import chain
 import pyarrow as pa
 import pyarrow.csv as pacsv
 
-from scarid_cli.errors import BadData, bad_data, bad_row, cut_short
+from scarid_cli.errors import BadData, bad_data, cut_short
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Metadata, Table
@@ -19,6 +19,8 @@ from scarid_cli.io.table import Metadata, Table
 # CSV has no end mark: a command that fails after its first rows ends its table with this line, so
 # that the next command does not mistake a short table for a complete one.
 CUT = b"# scarid: the table ends here because the stage that wrote it failed\n"
+
+BOM = "\N{ZERO WIDTH NO-BREAK SPACE}"  # at the start of a text of Windows
 
 # Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
 NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
@@ -159,71 +161,36 @@ def _parse(block: bytes, schema: pa.Schema, name: str, row: int) -> list[pa.Reco
     if not block.strip():
         return []
     try:
-        table = pacsv.read_csv(
-            pa.py_buffer(block),
-            read_options=pacsv.ReadOptions(
-                column_names=schema.names, use_threads=False, block_size=len(block) + 1
-            ),
-            parse_options=pacsv.ParseOptions(newlines_in_values=b'"' in block),
-            convert_options=pacsv.ConvertOptions(
-                column_types=schema,
-                null_values=[""],
-                strings_can_be_null=True,
-                quoted_strings_can_be_null=False,
-            ),
-        )
-    except pa.ArrowInvalid as error:
-        raise _fault(block, schema, name, row) or BadData(f"{name}: {error}") from None
+        table = _parsed(block, schema)
+    except pa.ArrowInvalid:
+        from scarid_cli.io.csvfault import Refused  # not needed otherwise
+
+        raise Refused(block, schema, name, row, _parsed).fault() from None
     batches: list[pa.RecordBatch] = table.combine_chunks().to_batches()
     return batches
 
 
-def _fault(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | None:
-    try:
-        return _located(block, schema, name, row)
-    except csv.Error:  # such as a value beyond all bounds, after a quote that nothing closes
-        return BadData(
-            f"{name}: one of the rows from row {row + 1} on is not CSV; is a quote left open?"
-        )
-
-
-def _located(block: bytes, schema: pa.Schema, name: str, row: int) -> BadData | None:
-    """Find the value that pyarrow could not parse, to name its row and column."""
-    reader = csv.reader(io.StringIO(block.decode(errors="replace")))
-    for number, values in enumerate((v for v in reader if v), start=row + 1):
-        if len(values) != len(schema):
-            expected = f"{len(schema)}, one per column of the header"
-            return bad_row(name, f"{len(values)} values", expected, number)
-        for field, value in zip(schema, values, strict=True):
-            if not _fits(field.type, value):
-                kind = "an integer" if pa.types.is_integer(field.type) else "a number"
-                return bad_row(name, repr(value), kind, number, field.name)
-    return None
-
-
-def _fits(kind: pa.DataType, value: str) -> bool:
-    if pa.types.is_string(kind) or not value:
-        return True
-    try:
-        int(value) if pa.types.is_integer(kind) else float(value)
-    except ValueError:
-        return False
-    return True
+def _parsed(block: bytes, schema: pa.Schema) -> pa.Table:
+    return pacsv.read_csv(
+        pa.py_buffer(block),
+        read_options=pacsv.ReadOptions(
+            column_names=schema.names, use_threads=False, block_size=len(block) + 1
+        ),
+        parse_options=pacsv.ParseOptions(newlines_in_values=b'"' in block),
+        convert_options=pacsv.ConvertOptions(
+            column_types=schema,
+            null_values=[""],
+            strings_can_be_null=True,
+            quoted_strings_can_be_null=False,
+        ),
+    )
 
 
 class CsvWriter:
     """Writes the header at once, and each batch as it arrives."""
 
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
-        for field in schema:
-            if not _writable(field.type):
-                raise bad_data(
-                    "the table",
-                    f"type {field.type}",
-                    expected="numbers, text or dates, which CSV can hold",
-                    remedy="write Parquet or Arrow, or leave the column out",
-                    column=field.name,
-                )
+        _require_writable(schema)
         self._write = write
         self._schema = schema
         self._numeric = not any(pa.types.is_string(field.type) for field in schema)
@@ -249,6 +216,33 @@ class CsvWriter:
         columns |= {name: batch.column(name).to_pylist() for name in texts}
         ordered = [columns[name] for name in batch.schema.names]
         return _csv_text(list(zip(*ordered, strict=True)))
+
+
+def _require_writable(schema: pa.Schema) -> None:
+    """Refuse columns whose name or values would not be read back."""
+    for index, field in enumerate(schema):
+        if not _writable(field.type):
+            raise bad_data(
+                "the table",
+                f"type {field.type}",
+                expected="numbers, text or dates, which CSV can hold",
+                remedy="write Parquet or Arrow, or leave the column out",
+                column=field.name,
+            )
+        if not _readable_name(field.name, index) or schema.names.count(field.name) > 1:
+            raise bad_data(
+                "the table",
+                f"the name {field.name!r}",
+                expected="one that a CSV header can hold: a single line, used once, not empty, "
+                "without spaces around it or # before it",
+                remedy="write Parquet or Arrow, or rename it with `scarid convert --map`",
+                column=str(index + 1),
+            )
+
+
+def _readable_name(name: str, index: int) -> bool:
+    marked = index == 0 and name.startswith(("#", BOM))
+    return bool(name) and name == name.strip() and not marked and not set(name) & set("\r\n\0")
 
 
 def _writable(kind: pa.DataType) -> bool:

@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.errors import bad_data, bad_row
+from scarid_cli.errors import CORRECT, bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import ByteSource, unzipped
 from scarid_cli.io.clock import clocked
+from scarid_cli.io.selection import Lacking
 from scarid_cli.io.table import SEGMENT, Table, cast
 
 # From the columns of a table, those whose values a command reads.
@@ -37,22 +38,33 @@ def open_table(source: ByteSource) -> Table:
     return arrowio.read_stream(source)
 
 
-def checked(table: Table, kind: str, *, reads: Reads | None = None, regular: bool = True) -> Table:
+def checked(
+    table: Table,
+    kind: str,
+    *,
+    reads: Reads | None = None,
+    regular: bool = True,
+    lacking: Callable[[list[str]], Lacking] | None = None,
+    remedy: str = CORRECT,
+) -> Table:
     """The table, checked to be of a kind: columns, types and units now, values as they arrive.
 
     The columns that the command `reads` must be numbers, there and finite in every row; by default
-    these are the columns that the kind knows. Other columns pass as they are. The clock of a
-    sampled table must be regular, unless `regular` is false; its period [s] is put into the
-    metadata.
+    these are the columns that the kind knows. Other columns pass as they are. Rows without a value
+    in one of the columns are refused, with this `remedy`, or left out by `lacking`, made for these
+    columns. The clock of a sampled table must be regular, unless `regular` is false; its period [s]
+    is put into the metadata.
     """
     schema = schemas.load(kind)
     table = conforming(table, kind, reads)
-    meta = replace(table.meta, kind=table.meta.kind or kind)
-    batches = _valued(table, _columns_to_check(table, schema, reads))
-    if schema.sampled:
-        batches, period = clocked(batches, table.name, regular=regular)
-        meta = replace(meta, period=period) if regular else meta
-    return replace(table, meta=meta, batches=batches)
+    table = replace(table, meta=replace(table.meta, kind=table.meta.kind or kind))
+    columns = _columns_to_check(table, schema, reads)
+    if lacking:
+        table = lacking(columns).removed(table)
+    batches = _valued(table, columns, remedy)
+    if not schema.sampled:
+        return replace(table, batches=batches)
+    return clocked(replace(table, batches=batches), regular=regular)
 
 
 def conforming(table: Table, kind: str, reads: Reads | None = None) -> Table:
@@ -132,17 +144,17 @@ def _same_type(given: pa.DataType, known: pa.DataType) -> bool:
     return bool(given == known or (pa.types.is_floating(known) and pa.types.is_integer(given)))
 
 
-def _valued(table: Table, columns: list[str]) -> Iterator[pa.RecordBatch]:
+def _valued(table: Table, columns: list[str], remedy: str) -> Iterator[pa.RecordBatch]:
     """Pass batches on; a value of these columns that is missing or not finite is an error."""
     row = 0
     for batch in table.batches:
         for column in columns:
-            _check_values(batch.column(column), table.name, column, row)
+            _check_values(batch.column(column), table, column, row, remedy)
         yield batch
         row += batch.num_rows
 
 
-def _check_values(column: pa.Array, name: str, column_name: str, row: int) -> None:
+def _check_values(column: pa.Array, table: Table, name: str, row: int, remedy: str) -> None:
     bad: int | None = None
     found = "an empty cell"
     if column.null_count:
@@ -154,4 +166,5 @@ def _check_values(column: pa.Array, name: str, column_name: str, row: int) -> No
             found = str(column[bad].as_py())
     if bad is not None:
         expected = "a finite number" if pa.types.is_floating(column.type) else "a value"
-        raise bad_row(name, found, expected, row + bad + 1, column_name)
+        at = table.row(row + bad + 1)
+        raise bad_data(table.name, found, expected=expected, remedy=remedy, row=at, column=name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, field, replace
 from itertools import groupby, pairwise
 from math import isfinite
@@ -44,23 +44,39 @@ class Metadata:
         meta = cls(**{**fields, "history": tuple(fields["history"])})
         texts = all(isinstance(x, str | None) for x in (meta.kind, meta.robot))
         numeric = isinstance(meta.period, int | float | None)
-        entries = all(isinstance(x, dict) for x in meta.history) and isinstance(meta.extra, dict)
+        entries = all(map(_is_entry, meta.history)) and isinstance(meta.extra, dict)
         if not (texts and numeric and entries and (meta.kind or "a").isalpha()):
             raise ValueError("a part of the metadata has another type than it should")
         return meta
+
+
+def _as_counted(row: int) -> int:
+    return row
+
+
+def _is_entry(entry: Any) -> bool:
+    """Whether this is an entry of a history: a command, a version, and digests of its inputs."""
+    if not isinstance(entry, dict) or not isinstance(entry.get("inputs"), dict):
+        return False
+    digested = all(isinstance(x, str | None) for x in entry["inputs"].values())
+    return digested and all(isinstance(entry.get(key), str) for key in ("command", "version"))
 
 
 @dataclass(frozen=True)
 class Table:
     """A stream of record batches with their schema; `name` says where it came from.
 
-    The batches can be iterated once. The unit of a column is in the metadata of its field.
+    The batches can be iterated once. The unit of a column is in the metadata of its field. `row`
+    gives the number in the log of a row of the table, both counted from 1: they differ where rows
+    were left out (io/selection.py). `length` is the number of rows, if the input states it.
     """
 
     name: str
     schema: pa.Schema
     meta: Metadata
     batches: Iterator[pa.RecordBatch]
+    row: Callable[[int], int] = _as_counted
+    length: int | None = None
 
     @property
     def columns(self) -> list[str]:

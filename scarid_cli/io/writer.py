@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from scarid_cli.errors import OutputFailure, UsageFault
 from scarid_cli.io import FORMATS
 from scarid_cli.io.table import Table
+from scarid_cli.printable import printable
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -65,7 +66,7 @@ class Target:
             for name in os.listdir(self._place.parent):  # noqa: PTH208 (no paths are needed)
                 if _abandoned(self._place.with_name(name), f".{self._place.name}."):
                     self._place.with_name(name).unlink()
-                    text = f"scarid: removed {name}, left by a run that was killed"
+                    text = printable(f"scarid: removed {name}, left by a run that was killed")
                     print(text, file=sys.stderr)  # noqa: T201
 
     def _open(self, path: Path, flags: int = 0) -> int:
@@ -167,6 +168,8 @@ def _regular(path: Path) -> bool:
 
 def format_for(path: str, wanted: str | None) -> str:
     """The format to write: as given, else that of the extension, else of the environment."""
+    if Path(path).name.lower() in EXTENSIONS:  # as from -o "$NAME.csv" where NAME is not set
+        raise UsageFault(f"{path}: an extension without a name; give the file a name before it")
     chosen = wanted or EXTENSIONS.get(Path(path).suffix.lower())
     if not chosen and path != "-" and Path(path).suffix and _regular(Path(path)):
         known = " ".join(EXTENSIONS)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from scarid_cli.io.bytesource import STDIN
+from scarid_cli.printable import printable
 
 
 @dataclass(frozen=True)
@@ -55,11 +56,6 @@ def names_of(files: Sequence[str], kinds: Sequence[str]) -> list[Name]:
 def _with_path(name: Name, file: str, *, in_full: bool) -> Name:
     path = file if in_full else str(Path(file).with_name(name.label))
     return replace(name, label=printable(path))
-
-
-def printable(text: str) -> str:
-    """The text with a question mark for each control character, which a terminal would execute."""
-    return "".join(c if c.isprintable() else "?" for c in text)
 
 
 def figures(titles: Sequence[str], drawn: Sequence[Sequence[str]]) -> list[tuple[str, str]]:

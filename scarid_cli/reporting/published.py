@@ -8,8 +8,8 @@ from math import nan
 
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.io.table import Table
+from scarid_cli.printable import printable
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result, Trace
-from scarid_cli.reporting.naming import printable
 from scarid_cli.reporting.parts import NONE, Section
 
 # By method, experiment, quantity and measure.

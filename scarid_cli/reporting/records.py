@@ -13,9 +13,9 @@ from scarid_cli.errors import bad_data, bad_row
 from scarid_cli.io.reader import require
 from scarid_cli.io.schemas import joints_of
 from scarid_cli.io.table import Table, matrix, settled
+from scarid_cli.printable import printable
 from scarid_cli.reporting.curves import Curve
 from scarid_cli.reporting.kinds import Measurement, MotionEstimate, Prediction, Trace
-from scarid_cli.reporting.naming import printable
 from scarid_cli.reporting.source import Source
 
 # A true column and its estimate, or an estimated column and the constant that it should be.

@@ -13,9 +13,11 @@ from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.errors import BadData, UsageFault, bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.reader import checked
+from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
+from scarid_cli.printable import printable
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
-from scarid_cli.reporting.naming import name_of, names_of, printable
+from scarid_cli.reporting.naming import name_of, names_of
 from scarid_cli.reporting.records import measurement, motion, prediction, trace
 from scarid_cli.reporting.source import Source
 
@@ -59,7 +61,7 @@ def collect(tables: Sequence[Table], *, repeated: bool = False) -> list[Result]:
 def _stated_robot(table: Table) -> Robot | None:
     """The robot that the metadata name, if its description is found."""
     try:
-        return reading.load(table.meta.robot) if table.meta.robot else None
+        return reading.load(robot) if (robot := stated_robot(table)) else None
     except (UsageFault, OSError, UnicodeDecodeError):
         return None
 

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from rich.box import Box
 from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 
+from scarid_cli.printable import printable
 from scarid_cli.reporting.parts import GAP, Section, split
 
 TEXT_WIDTH = 100  # characters of running text where there is no terminal
+
+# What Markdown interprets: marks, the end of a link's text, entities, _ at the edge of a word, and
+# the # that ends a heading.
+MARKS = re.compile(r"[\\|*<`~$]|\](?=[(\[:])|&(?=[#\w])|(?<![^\W_])_|_(?![^\W_])|(?<!\S)#")
 
 # One line, under the headers; rich writes it in ASCII where the terminal needs that.
 RULE = Box("\n".join(["    "] * 2 + [" ── "] + ["    "] * 5) + "\n")
@@ -43,7 +50,16 @@ def terminal(sections: Sequence[Section], *, plain: bool = False) -> str:
 
 
 def _with_rows(sections: Sequence[Section]) -> Iterator[Section]:
-    return (section for section in sections if section.rows)
+    """The sections that have a table, which a terminal can show."""
+    for section in sections:
+        if section.rows:
+            yield replace(
+                section,
+                title=printable(section.title),
+                note=printable(section.note),
+                headers=tuple(map(printable, section.headers)),
+                rows=tuple(tuple(map(printable, row)) for row in section.rows),
+            )
 
 
 def _widths(section: Section) -> list[int]:
@@ -68,7 +84,7 @@ def _stripped(text: str) -> str:
 
 def markdown(title: str, sections: Sequence[Section]) -> str:
     """Tables in GitHub-flavoured Markdown, aligned so that the source is readable too."""
-    parts = [f"# {_escaped(title)}\n"]
+    parts = [f"# {_escaped(printable(title))}\n"]
     for section in _with_rows(sections):
         parts.append(f"## {_escaped(section.title)}\n")
         if section.note:
@@ -92,4 +108,4 @@ def _markdown_table(section: Section) -> str:
 
 def _escaped(text: str) -> str:
     """The text with a backslash before each character that Markdown would interpret."""
-    return "".join(f"\\{c}" if c in "\\|*<`" else c for c in text)
+    return MARKS.sub(r"\\\g<0>", text)

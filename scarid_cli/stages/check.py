@@ -26,7 +26,8 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
     time = clock.Clock.of(log.t)
     yield from clock.clock(time)
     yield values.missing(log)
-    yield clock.held(log, time.period)
+    yield clock.held(log)
+    yield clock.slower(log)
     empty = [name for name, x in zip(log.names, log.signals, strict=True) if np.isnan(x).all()]
     if empty:
         yield failed("values", f"no value in {', '.join(empty)}", "log these columns")

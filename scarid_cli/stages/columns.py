@@ -135,7 +135,7 @@ def _rows(table: Table, plan: Plan, schema: pa.Schema, first: int) -> Iterator[p
     """The rows of a record whose first row is row `first` of the table."""
     period = table.period
     running = [Running(task) for task in plan.tasks]
-    waiting = Waiting(table.name, schema, plan.edges, before=first)
+    waiting = Waiting(table, schema, plan.edges, before=first)
     for batch in table.batches:
         for run, x in zip(running, matrix(batch, [t.source for t in plan.tasks]), strict=True):
             run.step(x, period)
@@ -161,7 +161,7 @@ class Waiting:
     rows of the table before this record.
     """
 
-    name: str
+    table: Table
     schema: pa.Schema
     edges: Edges
     before: int = 0
@@ -179,7 +179,7 @@ class Waiting:
         values: dict[str, Array] = {}
         for run in running if rows else ():
             values |= run.take(rows)
-        _check(values, self.name, self.before + self.first)
+        _check(values, self.table, self.before + self.first)
         done = 0
         while done < rows:
             batch = self.batches.popleft()
@@ -195,15 +195,15 @@ class Waiting:
         self.rows -= rows
 
 
-def _check(values: dict[str, Array], name: str, row: int) -> None:
+def _check(values: dict[str, Array], table: Table, row: int) -> None:
     for column, value in values.items():
         if not np.isfinite(value).all():
             bad = int(np.argmin(np.isfinite(value)))
             raise bad_data(
-                name,
+                table.name,
                 f"{value[bad]} as the result",
                 expected="a finite number",
                 remedy="the method diverged at this sampling period: lower its gains",
-                row=row + bad + 1,
+                row=table.row(row + bad + 1),
                 column=column,
             )

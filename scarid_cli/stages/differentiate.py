@@ -20,14 +20,20 @@ from scarid_cli.stages.columns import Edges, Plan, Task, processed
 
 
 def differentiate(
-    table: Table, methods: list[Method], left_out: list[TooShort] | None = None
+    table: Table,
+    methods: list[Method],
+    left_out: list[TooShort] | None = None,
+    *,
+    velocities: bool = False,
 ) -> Table:
     """A motion: the table with columns dq and ddq, given one method for each joint.
 
     In a table with gaps, each segment is differentiated by itself, and the column `settled` is 0
-    in its settling rows. `left_out` receives the reason for each segment that was left out.
+    in its settling rows. `left_out` receives the reason for each segment that was left out. With
+    `velocities` dq is that of the table, and the methods differentiate it.
     """
-    return _motion(table, methods, _plain, left_out, marked=SEGMENT in table.columns)
+    planner = _of_velocities if velocities else _plain
+    return _motion(table, methods, planner, left_out, marked=SEGMENT in table.columns)
 
 
 def matched(
@@ -36,16 +42,20 @@ def matched(
     left_out: list[TooShort] | None = None,
     *,
     per_joint: bool = False,
+    velocities: bool = False,
 ) -> Table:
     """A motion whose positions and torques belong to the same instant as the derivatives.
 
     The column `settled` is 0 in the settling rows at both ends of the record or segment. Methods
-    that tune themselves get one setting for all joints, unless each is tuned `per_joint`.
+    that tune themselves get one setting for all joints, unless each is tuned `per_joint`. With
+    `velocities` dq is that of the table behind the low-pass of the method, and ddq its derivative.
     """
     together = not per_joint and len(set(methods)) == 1
-    return _motion(table, methods, _matching, left_out, marked=True, together=together)
+    planner = _matching_velocities if velocities else _matching
+    return _motion(table, methods, planner, left_out, marked=True, together=together)
 
 
+UNUSED = ""  # the name of an output that is no column
 Planner = Callable[[Table, list[Method]], Plan]
 
 
@@ -72,7 +82,7 @@ def _motion(
         plan = planner(table, methods)
         plan.check(period)
         rows = plan.lag(period)
-        extra |= _passed(methods, period) if planner is _matching else {}
+        extra |= _passed(methods, period, planner)
 
         def planned(segment: Table) -> tuple[Table, Plan]:
             return segment, plan
@@ -95,6 +105,32 @@ def _plain(table: Table, methods: list[Method]) -> Plan:
     return Plan(tasks, _edges(forms, table.period))
 
 
+def _of_velocities(table: Table, methods: list[Method]) -> Plan:
+    """The accelerations from the velocities of the table, which stay as they are."""
+    tasks = [
+        Task(f"dq{i}", _ungated(method), (f"ddq{i}", UNUSED))
+        for i, method in enumerate(methods, start=1)
+    ]
+    return replace(_plain(table, methods), tasks=tasks)
+
+
+def _matching_velocities(table: Table, methods: list[Method]) -> Plan:
+    """As `_matching`, but with the velocities of the table behind the same low-pass."""
+    plan = _matching(table, methods)
+    tasks = [
+        replace(t, outputs=(t.source, UNUSED, UNUSED)) if t.source[0] == "q" else t
+        for t in plan.tasks
+    ]
+    for i, method in enumerate(methods, start=1):
+        tasks.append(Task(f"dq{i}", _ungated(method).matched(), (f"dq{i}", f"ddq{i}", UNUSED)))
+    return replace(plan, tasks=tasks)
+
+
+def _ungated(method: Method) -> Method:
+    """The method without a gate against glitches, whose width is that of the positions' noise."""
+    return method.ungated() if isinstance(method, KalmanMethod) else method
+
+
 def _matching(table: Table, methods: list[Method]) -> Plan:
     forms = [method.matched() for method in methods]
     tasks = []
@@ -105,15 +141,20 @@ def _matching(table: Table, methods: list[Method]) -> Plan:
     return Plan(tasks, _edges(forms, table.period))
 
 
-def _passed(methods: list[Method], period: float) -> dict[str, Any]:
+def _passed(methods: list[Method], period: float, planner: Planner) -> dict[str, Any]:
     """The bandwidth [Hz] of the motion, and the noise of each velocity, as far as they are known.
 
-    The noise is that of the positions which the settings state, within the bandwidth.
+    The noise is that of the positions which the settings state, within the bandwidth; that of
+    measured velocities is not known.
     """
+    if planner not in (_matching, _matching_velocities):
+        return {}
     found = [bandwidth_of(method, period) for method in methods]
     known = [hertz for hertz in found if hertz is not None]
     if len(known) < len(found) or not known:
         return {}
+    if planner is _matching_velocities:
+        return {"bandwidth": min(known)}
     stated = [m.noise if isinstance(m, KalmanMethod) else 0.0 for m in methods]
     noise = [velocity_noise(x, hertz, period) for x, hertz in zip(stated, known, strict=True)]
     return {"bandwidth": min(known), "velocity_noise": noise}

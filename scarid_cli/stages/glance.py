@@ -27,5 +27,5 @@ def of_extremes(q: Array, tau: Array, robot: Robot, period: float) -> list[Findi
 def of_measurement(table: Table, robot: Robot) -> list[Finding]:
     """What is not in order in the values of a measurement in memory."""
     log = log_of(table, len(robot.joints))
-    found = [clock.held(log, table.period), values.saturation(log.tau)]
+    found = [clock.held(log), values.saturation(log.tau)]
     return [finding for finding in found if finding.status != OK]

@@ -1,11 +1,4 @@
-"""Held samples: rows with which a logger repeats the values of a slower sensor.
-
-Only the first row of a run has values of its time; the others are old by up to a period of the
-sensor, which interpolation between the first rows mends. A robot at rest repeats values as well.
-A run is of held samples if the interval that is left without it is no gap, and if at least half of
-the values change together in the row that ends it: encoders of a joint that moves off one after
-another do not.
-"""
+"""Held samples of a log are left out as its rows arrive; see algorithms/processes/holding.py."""
 
 from __future__ import annotations
 
@@ -14,11 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.arrays import Array, Marks, Numbers
+from scarid_cli.algorithms.processes.holding import held_rows
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table, matrix, segments_of
-
-TOGETHER = 0.5  # share of the values that change in the row that ends a run of held samples
 
 
 def measured(table: Table) -> list[str]:
@@ -68,27 +59,3 @@ class Holding:
         elif kept.any():
             yield together.take(pa.array(np.flatnonzero(kept)))
         self._waiting = together.slice(waiting)
-
-
-def repeating(t: Array, values: Array, segments: Numbers) -> Marks:
-    """Which rows repeat all values of the row before, at a later time (rows)."""
-    changed = np.any(np.diff(values, axis=1) != 0.0, axis=0)
-    same: Marks = (np.diff(t) > 0.0) & (np.diff(segments) == 0) & ~changed
-    return np.concatenate(([False], same))
-
-
-def held_rows(t: Array, values: Array, segments: Numbers, limit: float) -> tuple[Marks, int]:
-    """Which rows are held samples, and the number of the row that the undecided rest repeats.
-
-    Times (rows) [s], values (columns, rows). The rest has no end yet.
-    """
-    held = np.zeros(len(t), dtype=np.bool_)
-    waiting = len(t) - 1
-    edges = np.flatnonzero(np.diff(repeating(t, values, segments), append=False))
-    for before, last in edges.reshape(-1, 2).tolist():  # the row before a run, and its last row
-        if last == len(t) - 1:
-            waiting = before if t[last] - t[before] <= limit else last
-        elif t[last + 1] - t[before] <= limit and segments[last] == segments[last + 1]:
-            changed = np.mean(values[:, last + 1] != values[:, last])
-            held[before + 1 : last + 1] = changed >= TOGETHER
-    return held, waiting

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.arrays import Array
+from scarid_cli.algorithms.processes.holding import FIRST, MAX_GAP
+from scarid_cli.arrays import Array, Numbers
 from scarid_cli.io import schemas
 from scarid_cli.io.clock import nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
+from scarid_cli.printable import printable
+
+FEW = 8  # values of a list, or entries of a dictionary, that are shown
 
 
 @dataclass
@@ -133,15 +137,16 @@ def _column(
 def _columns(columns: tuple[Column, ...]) -> Iterator[str]:
     """A line for each column: name, type, unit, extremes, and what it is."""
     ranges = [column.extent.text if column.extent else "" for column in columns]
-    width = max((len(column.name) for column in columns), default=0)
+    names = [printable(column.name) for column in columns]
+    width = max(map(len, names), default=0)
     wide = max(map(len, ranges), default=0)
-    for column, text in zip(columns, ranges, strict=True):
-        start = f"  {column.name:<{width}}  {column.type:<7} {column.unit or '-':<10}"
+    for column, name, text in zip(columns, names, ranges, strict=True):
+        start = f"  {name:<{width}}  {column.type:<7} {column.unit or '-':<10}"
         yield f"{start} {text:<{wide}}  {column.about}".rstrip()
 
 
 def _metadata(key: str, value: Any) -> Iterator[str]:
-    """A value on one line, a list with one line for each item, a matrix by its size only."""
+    """A value on one line, a collection with one line for each item, a matrix by its size only."""
     if isinstance(value, list) and value and isinstance(value[0], list):
         yield f"{key:<9} {len(value)} by {len(value[0])} numbers"
     elif isinstance(value, dict) and "information" in value:
@@ -149,6 +154,11 @@ def _metadata(key: str, value: Any) -> Iterator[str]:
     elif isinstance(value, list):
         yield key
         yield from (f"  {_text(item)}" for item in value)
+    elif isinstance(value, dict) and len(value) > FEW:
+        yield f"{key:<9} {len(value)} entries (--json shows them)"
+    elif isinstance(value, dict) and any(isinstance(item, dict | list) for item in value.values()):
+        yield key
+        yield from (f"  {name}: {_text(item)}" for name, item in value.items())
     else:
         yield f"{key:<9} {_text(value)}"
 
@@ -156,6 +166,8 @@ def _metadata(key: str, value: Any) -> Iterator[str]:
 def _text(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{name} {_text(item)}" for name, item in value.items())
+    if isinstance(value, list):
+        return " ".join(map(_text, value)) if len(value) <= FEW else f"{len(value)} values"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
@@ -163,7 +175,9 @@ def _text(value: Any) -> str:
 class Sampling:
     """The sampling of a table: the first and last time, the first interval, and the gaps [s].
 
-    `gaps` is their number, and `missing` the time that they take in all.
+    A gap is where a segment begins, or where time advances by more than MAX_GAP periods. `gaps` is
+    their number, and `missing` the time that they take in all. The first intervals wait until their
+    median, the period, is known.
     """
 
     start: float
@@ -171,6 +185,29 @@ class Sampling:
     interval: float | None = None
     gaps: int = 0
     missing: float = 0.0
+    period: float = 0.0
+    waiting: list[float] = field(default_factory=list)
+
+    def add(self, steps: Array, jumps: Numbers, end: float) -> None:
+        """Count on by the intervals [s] to the next rows, at which segments may begin."""
+        self.end = end
+        self.gaps += int(np.count_nonzero(jumps))
+        self.missing += float(steps[jumps != 0].sum())
+        within = steps[jumps == 0].tolist()
+        if self.interval is None and within:
+            self.interval = within[0]
+        self.waiting += within
+        if self.period or sum(step > 0.0 for step in self.waiting) >= FIRST:
+            self.settle()
+
+    def settle(self) -> None:
+        """Count the gaps among the intervals that wait."""
+        forward = [step for step in self.waiting if step > 0.0]
+        self.period = self.period or float(np.median(forward[:FIRST] or [0.0]))
+        long = [step for step in forward if step > MAX_GAP * self.period]
+        self.gaps += len(long)
+        self.missing += sum(long)
+        self.waiting.clear()
 
     def document(self, rows: int) -> dict[str, Any]:
         """The sampling as JSON holds it; the period [s] is None if time does not increase."""
@@ -216,17 +253,17 @@ def _read(table: Table, extents: dict[str, Extent]) -> tuple[int, Sampling | Non
         rows += batch.num_rows
         for name, extent in extents.items():
             extent.add(matrix(batch, [name])[0])
-        if not timed or not batch.num_rows:
+        if not timed:
             continue
         first = last is None
-        steps, jumps, last = steps_of(batch.select(["t", SEGMENT] if marked else ["t"]), last)
-        if clock is None:
-            start = batch.column("t")[0].as_py()
-            clock = Sampling(start, start)
-        within = steps[jumps == 0][first:]
-        if clock.interval is None and len(within):
-            clock.interval = float(within[0])
-        clock.gaps += int(np.count_nonzero(jumps))
-        clock.missing += float(steps[jumps != 0].sum())
-        clock.end = last[0]
+        batch = batch.select(["t", SEGMENT] if marked else ["t"])
+        known = np.isfinite(matrix(batch, ["t"])[0])
+        if not known.any():
+            continue
+        batch = batch if known.all() else batch.filter(pa.array(known))
+        steps, jumps, last = steps_of(batch, last)
+        clock = clock or Sampling(batch.column("t")[0].as_py(), 0.0)
+        clock.add(steps[first:], jumps[first:], last[0])
+    if clock:
+        clock.settle()
     return rows, clock

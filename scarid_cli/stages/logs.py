@@ -7,12 +7,16 @@ import numpy as np
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix
+from scarid_cli.stages.holding import measured
 
 
 def log_of(table: Table, joints: int) -> Log:
     """The log of a table, with nan for what is missing."""
     names = ["t", *of_joints(joints, "q{i}", "tau{i}")]
+    others = [name for name in measured(table) if name not in names]
+    names += others
     parts = [matrix(batch, names) for batch in table.batches]
     whole = np.concatenate(parts, axis=1) if parts else np.empty((len(names), 0))
     whole = np.where(np.isfinite(whole), whole, np.nan)
-    return Log(whole[0], whole[1 : joints + 1], whole[joints + 1 :])
+    t, q, tau, rest = np.split(whole, [1, joints + 1, 2 * joints + 1])
+    return Log(t[0], q, tau, rest if others else None)

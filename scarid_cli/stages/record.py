@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-import pyarrow as pa
 
 from scarid_cli.algorithms.tuning.likelihood import noise_of
 from scarid_cli.algorithms.tuning.lowpassed import Segment
@@ -51,20 +49,3 @@ class Record:
             q, tau = part[: self.joints], part[self.joints :]
             found.append(Segment(q, tau, np.array([noise_of(x) for x in q])))
         return found
-
-
-def until(table: Table, seconds: float) -> Table:
-    """The first seconds of a table; what comes after is not read."""
-    return replace(table, batches=_until(table.batches, seconds))
-
-
-def _until(batches: Iterator[pa.RecordBatch], seconds: float) -> Iterator[pa.RecordBatch]:
-    start: float | None = None
-    for batch in batches:
-        t = matrix(batch, ["t"])[0]
-        start = float(t[0]) if start is None else start
-        rows = int(np.searchsorted(t, start + seconds))
-        if rows:
-            yield batch.slice(0, rows)
-        if rows < batch.num_rows:
-            return

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.processes.holding import FIRST, MAX_GAP, intervals, sensor_period
 from scarid_cli.algorithms.processes.resampling import (
     Clock,
     Decimator,
@@ -29,12 +30,10 @@ from scarid_cli.io.table import (
     steps_of,
     with_columns,
 )
-from scarid_cli.stages.holding import Holding, measured, repeating
+from scarid_cli.stages.holding import Holding, measured
+from scarid_cli.stages.slower import Filling, slower_groups
 
 SLOWER = 0.05  # fraction of the log's period by which the new period must be longer to low-pass
-SLOWEST = 25.0  # periods of the log per value of a slower sensor, whose samples it holds
-FIRST = 32  # intervals, whose median is taken as the period of the log
-MAX_GAP = 5.0  # periods of the log; a longer interval is a gap, unless the new period is as long
 
 
 def resample(
@@ -48,7 +47,8 @@ def resample(
     Numbers are interpolated linearly, and low-passed if the new period is longer than that of the
     log; other columns keep the value of the previous row. An interval longer than `max_gap` [s]
     (by default MAX_GAP periods) is a gap, after which the column `segment` is one higher. Held
-    samples of a slower sensor are left out first (stages/holding.py).
+    samples of a slower sensor are left out first (algorithms/processes/holding.py), and those of
+    one group of signals only are interpolated (algorithms/processes/filling.py).
     """
     fields = [field for field in table.schema if field.name != SEGMENT]
     schema = pa.schema([*fields, pa.field(SEGMENT, pa.int64())])
@@ -75,22 +75,15 @@ def _with_period(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
             remedy="give a log with a clock",
             column="t",
         )
-    period = float(np.median(every[:FIRST]))
-    if len(new):
-        slower = float(np.median(new[:FIRST]))
-        period = slower if slower <= SLOWEST * period else period
-    return period, chain(held, table.batches)
+    return sensor_period(every, new), chain(held, table.batches)
 
 
 def _intervals(batches: list[pa.RecordBatch], columns: list[str]) -> tuple[Array, Array]:
     """The positive intervals [s] between all rows, and between those with new values."""
     parts = [matrix(batch, ["t", *columns]) for batch in batches]
     t, *values = np.concatenate(parts, axis=1)
-    every = new = np.diff(t)
-    if columns and len(t):
-        segments = np.concatenate([segments_of(batch) for batch in batches])
-        new = np.diff(t[~repeating(t, np.array(values), segments)])
-    return every[every > 0.0], new[new > 0.0]
+    segments = np.concatenate([segments_of(batch) for batch in batches])
+    return intervals(t, np.array(values), segments)
 
 
 def _ordered(table: Table) -> Iterator[pa.RecordBatch]:
@@ -100,20 +93,20 @@ def _ordered(table: Table) -> Iterator[pa.RecordBatch]:
     for batch in table.batches:
         if batch.num_rows:
             steps, _, last = steps_of(batch, last)
-            _check(steps, table.name, row)
+            _check(steps, table, row)
         row += batch.num_rows
         yield batch
 
 
-def _check(steps: Array, name: str, row: int) -> None:
+def _check(steps: Array, table: Table, row: int) -> None:
     if np.any(steps < 0.0):
         at = int(np.argmax(steps < 0.0))
         raise bad_data(
-            name,
+            table.name,
             f"time that goes back by {-steps[at]:.6g} s",
             expected="time to increase from row to row",
             remedy="sort the log",
-            row=row + at + 1,
+            row=table.row(row + at + 1),
             column="t",
         )
 
@@ -125,14 +118,19 @@ def _rows(
     max_gap: float | None,
     report: Callable[[Clock], None],
 ) -> Iterator[pa.RecordBatch]:
+    slower, table = slower_groups(table)
     own, batches = _with_period(table)
     limit = max_gap or max(MAX_GAP * own, period)
     splitting, holding = Splitting(limit), Holding(measured(table), limit)
+    fillings = [Filling(group, max(limit, MAX_GAP * group.interval)) for group in slower]
     factor = max(1, int(np.ceil(period / own - SLOWER)))
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]
     interpolation = Interpolation(Resampler(period / factor), schema, numbers)
     decimation = Decimation(Decimator(factor), schema, numbers, period) if factor > 1 else None
-    for batch in holding.rows(batches):
+    rows = holding.rows(batches)
+    for filling in fillings:
+        rows = filling.rows(rows)
+    for batch in rows:
         for begins, piece in splitting.pieces(batch):
             if begins and decimation:
                 yield from decimation.finish()
@@ -143,7 +141,8 @@ def _rows(
                 yield found
     if decimation:
         yield from decimation.finish()
-    report(replace(splitting.clock, held=holding.count))
+    filled = tuple((f.slower.name, f.slower.interval, f.count) for f in fillings if f.count)
+    report(replace(splitting.clock, held=holding.count, filled=filled))
 
 
 class Splitting:

@@ -210,7 +210,14 @@ def test_unknown_columns_are_typed_by_their_first_row(scarid: Run, tmp_path: Pat
 def test_metadata_survive_their_json(
     robot: str | None, period: float | None, command: str, extra: dict[str, float]
 ) -> None:
-    meta = Metadata("motion", 1, robot, period, ({"command": command},), extra)
+    meta = Metadata(
+        "motion",
+        1,
+        robot,
+        period,
+        ({"command": command, "version": "1", "inputs": {"a": None}},),
+        extra,
+    )
     assert Metadata.from_json(meta.to_json()) == meta
 
 

@@ -126,10 +126,31 @@ def test_an_action_takes_the_options_that_its_command_declares(name: str) -> Non
     ("command", "registry"),
     [("differentiate", DIFFERENTIATORS), ("identify", ESTIMATORS), ("trajgen", EXCITATIONS)],
 )
-def test_the_help_describes_every_choice(command: str, registry: Registry, scarid: Run) -> None:
-    text = scarid(command, "--help").out
+def test_every_choice_is_listed_and_described(
+    command: str, registry: Registry, scarid: Run
+) -> None:
+    text, found = scarid(command, "--help").out, scarid("methods").out
     for name in registry.names:
-        assert registry.describe(name).splitlines()[0] in text
+        assert re.search(rf"\b{name}\b", text)
+        assert registry.describe(name).splitlines()[0] in found
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_follows_the_width_of_the_window(
+    name: str, scarid: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Examples apart, which are shown as they are typed."""
+    monkeypatch.setenv("COLUMNS", "90")
+    for line in scarid(name, "--help").out.splitlines():
+        typed = line.strip().startswith(("scarid ", "computed-torque "))
+        assert len(line) <= 90 or typed, line
+
+
+def test_the_help_of_differentiate_is_one_page(
+    scarid: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    assert len(scarid("differentiate", "--help").out.splitlines()) <= 80
 
 
 def test_the_readme_names_every_command() -> None:

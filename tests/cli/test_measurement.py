@@ -54,6 +54,17 @@ def test_a_measurement_may_come_through_a_pipe(shell: Run) -> None:
     assert shell(f"cat $SAMPLES/scara2.csv | {pipe(piped.err)}").out == once.out
 
 
+def test_torques_of_a_slower_sensor_are_interpolated_as_by_resample(shell: Run) -> None:
+    simulated = shell(
+        "scarid trajgen --seed 5 --duration 10 | scarid simulate --with torque-rate=50 -o held.csv"
+    )
+    assert simulated.status == 0, simulated.err
+    once = shell("scarid identify --robot scara2 held.csv")
+    assert "held.csv: torques are new every 20 ms only, rows every 5 ms" in once.err
+    assert pipe(once.err).startswith("scarid resample --rate 200 --format arrow held.csv | ")
+    assert shell(pipe(once.err)).out == once.out
+
+
 def test_a_measurement_is_identified_by_the_recommended_procedure(log: Path, scarid: Run) -> None:
     result = scarid("identify", log)
     assert "cut-off" in result.err

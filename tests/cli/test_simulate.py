@@ -27,13 +27,15 @@ def simulate(scarid: Run, reference: Path) -> Run:
     return lambda *words: scarid("simulate", "--truth", *words, reference)
 
 
-def test_the_help_has_a_line_for_every_imperfection(scarid: Run) -> None:
+def test_the_help_has_a_line_for_every_imperfection(
+    scarid: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "120")
     lines = scarid("simulate", "--help").out.splitlines()
     for name, kind in IMPERFECTIONS.items():
         (line,) = [line for line in lines if line.split()[:1] == [name]]
         assert line.endswith(kind.summary())
         assert kind.unit() in line
-        assert len(line) <= 100, line
 
 
 def test_imperfections_of_no_size_change_no_byte(simulate: Run) -> None:

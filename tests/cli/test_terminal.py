@@ -6,9 +6,13 @@ import os
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
+
+from scarid_cli.cli import progress
 
 SCARID = str(Path(sys.executable).with_name("scarid"))
 COLOUR = re.compile(r"\x1b\[[\d;]*m")
@@ -74,3 +78,30 @@ def test_colours_are_left_out_where_they_are_not_wanted(
 ) -> None:
     shown = on_terminal("check", "--robot", "scara2", log, **environment)
     assert "\x1b[3" not in shown
+
+
+@pytest.mark.parametrize(
+    ("length", "part", "shown"),
+    [
+        (400, None, ["100 rows", " 25 %", "left"]),  # a Parquet file states its rows
+        (None, 0.5, ["100 rows", " 50 %", "left"]),  # the part of a file that was read
+        (None, None, ["100 rows"]),  # a pipe
+    ],
+)
+def test_progress_has_a_percentage_where_the_length_is_known(
+    length: int | None,
+    part: float | None,
+    shown: list[str],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")  # takes a pipe for a terminal
+    monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.setattr(progress, "SHOWN_AFTER", -1.0)
+    batch = pa.RecordBatch.from_pydict({"t": [0.0] * 50})
+    for rows, _ in enumerate(progress.counted(iter([batch] * 3), length, lambda: part), start=1):
+        if rows == 3:
+            time.sleep(0.3)  # it is drawn ten times a second
+    text = COLOUR.sub("", capsys.readouterr().err)
+    assert all(words in text for words in shown)
+    assert ("%" in text) == (length is not None or part is not None)

@@ -57,6 +57,21 @@ def seven_axes(centre: str = "0.01 0.02 0.1") -> str:
     return "".join([*parts, "</robot>"])
 
 
+def long_chain(joints: int) -> str:
+    """The URDF of a chain of equal links, whose axes point along x, y and z in turn."""
+    parts = ['<robot name="chain"><link name="l0"/>']
+    for i in range(1, joints + 1):
+        axis = " ".join("1" if i % 3 == k else "0" for k in range(3))
+        parts.append(
+            f'<joint name="j{i}" type="revolute"><parent link="l{i - 1}"/><child link="l{i}"/>'
+            f'<origin xyz="0.2 0 0.1" rpy="0.1 0 0.2"/><axis xyz="{axis}"/>'
+            '<limit lower="-3" upper="3" effort="9" velocity="9"/></joint>'
+            f'<link name="l{i}"><inertial><origin xyz="0.1 0 0"/><mass value="1"/>'
+            '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
+        )
+    return "".join([*parts, "</robot>"])
+
+
 def sines(joints: int, samples: int, amplitude: float, seed: int) -> Array:
     """Position, velocity and acceleration (3, joints, samples): three sines per joint, 50 Hz."""
     rng = np.random.default_rng(seed)

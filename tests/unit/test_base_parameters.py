@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from unit.arms import URDF, described_arm
+from unit.arms import URDF, described_arm, long_chain
 
 from scarid_cli.algorithms.robots.base import independent
 from scarid_cli.algorithms.robots.coupled import CoupledInertia
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.terms import JointMotion, StandardTerm
+from scarid_cli.arrays import Array
 from scarid_cli.cli.robot import described
 from scarid_cli.errors import UsageFault
 
@@ -76,6 +77,57 @@ def test_dependent_columns_are_counted_to_those_before_them() -> None:
     assert kept == [0, 2, 4]
     np.testing.assert_allclose(parts[:, 3], [2.0, -0.5, 0.0], atol=1e-12)
     np.testing.assert_allclose(W[:, kept] @ parts[:, [1, 3]], W[:, [1, 3]], atol=1e-12)
+
+
+def one_by_one(W: Array) -> list[int]:
+    """The columns that are independent of those before them, each tried by itself."""
+    kept: list[int] = []
+    basis = np.empty((len(W), 0))
+    for i, column in enumerate(W.T):
+        rest = column / (np.linalg.norm(column) or 1.0)
+        for _ in range(2):
+            rest = rest - basis @ (basis.T @ rest)
+        if np.linalg.norm(rest) > 1e-8:
+            basis = np.column_stack((basis, rest / np.linalg.norm(rest)))
+            kept.append(i)
+    return kept
+
+
+def test_columns_projected_together_are_those_projected_one_by_one() -> None:
+    rng = np.random.default_rng(3)
+    W = rng.standard_normal((400, 150)) * rng.uniform(1e-3, 1e3, 150)
+    for i in (0, 7, 31, 32, 33, 64, 90, 149):
+        W[:, i] = W[:, :i] @ rng.standard_normal(i)  # the first is zero
+    kept, parts = independent(W)
+    assert kept == one_by_one(W)
+    assert len(kept) == 142
+    np.testing.assert_allclose(W[:, kept] @ parts[:, 90], W[:, 90], rtol=1e-7)
+
+
+def test_the_base_parameters_of_forty_joints_give_the_torques_of_all(tmp_path: Path) -> None:
+    """Against Pinocchio's inverse dynamics, with the masses and inertias of the URDF."""
+    path = tmp_path / "chain.urdf"
+    path.write_text(long_chain(40))
+    robot = load(str(path))
+    model = pinocchio.buildModelFromUrdf(str(path))
+    data = model.createData()
+    q, dq, ddq = 0.1 * np.random.default_rng(1).standard_normal((3, 40, 3))
+    W = robot.regressor(q, dq, ddq)
+    torques = robot.torques(W, robot.apriori)
+    for k in range(3):
+        expected = pinocchio.rnea(model, data, q[:, k], dq[:, k], ddq[:, k])
+        np.testing.assert_allclose(torques[:, k], expected, rtol=1e-6, atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["urdf", "toml"])
+def test_a_robot_of_a_thousand_joints_is_refused(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / f"chain.{kind}"
+    joint = "[[joint]]\ntype = 'revolute'\n"
+    parameter = "[[parameter]]\nname='a'\nunit=''\napriori=0\nterm='viscous'\njoint=1\n"
+    lines = f"title = 'chain'\n{joint * 1000}{parameter}"
+    path.write_text(long_chain(1000) if kind == "urdf" else lines)
+    with pytest.raises(UsageFault, match="1000 moving joints; at most 100"):
+        load(str(path))
 
 
 @pytest.mark.parametrize(

@@ -8,14 +8,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from stages.tables import collected, table
 
-from scarid_cli.algorithms.checks import clock, values
+from scarid_cli.algorithms.checks import values
 from scarid_cli.algorithms.checks.finding import FAILED, STATUSES, worst
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.motion import bandwidth
 from scarid_cli.algorithms.checks.movement import repeated_after, smallest_step
+from scarid_cli.algorithms.processes.holding import held_in
+from scarid_cli.algorithms.processes.resampling import Clock
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.stages.check import check
+from scarid_cli.stages.resample import resample
 
 SCARA = load("scara2")
 
@@ -94,9 +98,24 @@ def test_a_sine_and_noise_are_not_clipped_and_a_limited_one_is() -> None:
     assert values.clipped(limited) == np.count_nonzero(x <= -0.9)
 
 
-def test_held_rows_are_those_that_repeat_for_less_than_a_standstill() -> None:
-    x = np.sin(0.05 * np.arange(1000.0))
+def test_a_log_is_checked_for_held_samples_by_the_rule_of_resample() -> None:
+    """The rows that `resample` leaves out, and no others: not the rest of a robot."""
+    t, x = 0.01 * np.arange(1000.0), np.sin(0.05 * np.arange(1000.0))
     x[100:104] = x[100]
     x[500:600] = x[500]  # a second at rest
-    held = clock.held_rows(x[None, :], 0.01)
+    log = Log(t, x[None, :], np.cos(x)[None, :])
+    held, period = held_in(log.t, log.sensed)
     assert np.flatnonzero(held).tolist() == [101, 102, 103]
+    assert period == pytest.approx(0.01)
+    clocks: list[Clock] = []
+    collected(resample(table({"t": t, "q1": x, "tau1": np.cos(x)}), 100.0, report=clocks.append))
+    assert clocks[0].held == 3
+
+
+@pytest.mark.parametrize("joints", [1, 5])
+def test_encoders_that_step_one_after_another_are_not_held(joints: int) -> None:
+    """Neither here nor in `resample`: fewer than half of the values change at the end of a run."""
+    t = np.arange(4000) * 1e-3
+    q = np.array([np.floor(t / 0.005 + i / 5.0) * 1e-4 for i in range(joints)])
+    held, _ = held_in(t, q)
+    assert not held.any()

@@ -9,7 +9,7 @@ import pytest
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.filters.butterworth import Butterworth
-from scarid_cli.algorithms.processes.delays import delays, lateness, reference
+from scarid_cli.algorithms.processes.delays import delays, lateness, later, reference
 from scarid_cli.algorithms.processes.matching import over, settling_rows
 from scarid_cli.algorithms.processes.method import Matching
 from scarid_cli.arrays import Array
@@ -182,6 +182,25 @@ def test_lateness_finds_a_known_delay(late: float) -> None:
     _, _, a = reference(H)
     t = np.arange(len(a)) * H
     assert lateness(np.interp(t - late, t, a), a, H) == pytest.approx(late, abs=2e-4)
+
+
+@pytest.mark.parametrize("late", [0.0, 0.3, 1.0, 7.25, 399.0, 5000.0])
+def test_a_delayed_signal_is_interpolated_and_holds_its_first_sample(late: float) -> None:
+    x = positions(400)
+    t = np.arange(400.0)
+    np.testing.assert_allclose(later(x, late), np.interp(t - late, t, x), rtol=0, atol=1e-13)
+
+
+def test_the_delays_of_a_method_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At a high rate the reference motion has a million samples, and every column asks for them."""
+    method = DIFFERENTIATORS.load("levant")(bound=123.0)
+    runs = []
+    law = type(method).law
+    monkeypatch.setattr(type(method), "law", lambda *given: (runs.append(given), law(*given))[1])
+    for _ in range(3):
+        over(method.matched(), positions(30), H)
+        over(method.matched().torque_filter, positions(30), H)
+    assert len([x for _, x, *_ in runs if len(x) > 30]) == 1
 
 
 @pytest.mark.parametrize(("bits", "tolerance"), [(16, 0.009), (18, 0.004), (24, 0.009)])

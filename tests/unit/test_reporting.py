@@ -28,7 +28,7 @@ from scarid_cli.reporting.parts import Section, number, split
         ("/dev/fd/63", "trace", "63", ""),
         (".hidden.csv", "trace", ".hidden.csv", "hidden"),
         ("<stdin>", "trace", "stdin", ""),
-        ("a\x1b[1m.csv", "trace", "a?[1m", ""),
+        ("a\x1b[1m.csv", "trace", "a\\x1b[1m", ""),
     ],
 )
 def test_a_file_name_states_method_and_experiment(

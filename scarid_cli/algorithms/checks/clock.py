@@ -8,7 +8,9 @@ import numpy as np
 
 from scarid_cli.algorithms.checks.finding import Finding, failed, ok, several, warning
 from scarid_cli.algorithms.checks.log import Log
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.algorithms.processes.filling import reading_interval
+from scarid_cli.algorithms.processes.holding import MAX_GAP, held_in
+from scarid_cli.arrays import Array
 
 # Hz. Friction and inertia are told apart where the velocity changes within tenths of a second, so
 # that a log of fewer rows per second is of no use, and one of more is no log of joints.
@@ -17,8 +19,7 @@ UNITS = ((1e3, "ms"), (1e6, "us"), (1e9, "ns"))  # of a time that is not in seco
 JITTER = 0.01  # of the period: the limit of `differentiate`, as io.clock has it
 ROUNDING = 1e-6  # of the period: the digits of the time
 LATE = 2.5  # periods of two intervals: 2 with a late row, 3 with a missing one
-GAP = 5.0  # periods, as `resample` has it
-HOLD = 0.1  # s: a longer run of equal rows is a robot at rest, not a slower sensor
+GAP = MAX_GAP  # periods
 HELD = 0.001  # of the rows: from one in a thousand on, the velocity has visible steps
 
 
@@ -121,9 +122,9 @@ def _jitter(steps: Array, period: float) -> Finding:
     return warning("jitter", figure, f"`scarid resample --rate {rate:g}` gives a constant rate")
 
 
-def held(log: Log, period: float) -> Finding:
-    """Rows that repeat every value of the row before while the robot moves."""
-    rows = held_rows(log.signals, period)
+def held(log: Log) -> Finding:
+    """Held samples, by the rule by which `resample` leaves them out."""
+    rows, _ = held_in(log.t, log.sensed)
     count = int(np.count_nonzero(rows))
     share = count / max(log.rows, 1)
     figure = f"{several(count, 'row')}, {100.0 * share:.2g} %, with all values of the row before"
@@ -133,11 +134,17 @@ def held(log: Log, period: float) -> Finding:
     return warning("held samples", figure, advice)
 
 
-def held_rows(signals: Array, period: float) -> Numbers:
-    """Whether each row of the signals (signals, rows) repeats the one before, but not at rest."""
-    same = np.zeros(signals.shape[1], dtype=bool)
-    same[1:] = np.all(signals[:, 1:] == signals[:, :-1], axis=0)
-    ends = np.flatnonzero(np.diff(same, prepend=False, append=False)).reshape(-1, 2)
-    for start, end in ends[(ends[:, 1] - ends[:, 0]) * period > HOLD].tolist():
-        same[start:end] = False
-    return same
+def slower(log: Log) -> Finding:
+    """Positions or torques of a sensor that is slower than the rows, by the rule of `resample`."""
+    held, period = held_in(log.t, log.sensed)
+    t = log.t[~held]
+    found = {
+        name: interval
+        for name, values in (("positions", log.q), ("torques", log.tau))
+        if (interval := reading_interval(t, values[:, ~held]))
+    }
+    if not found:
+        return ok("slower sensors", "none")
+    figure = " and ".join(f"{name} are new every {1e3 * x:.3g} ms" for name, x in found.items())
+    advice = f"`scarid resample --rate {1.0 / period:.6g}` interpolates between their readings"
+    return warning("slower sensors", f"{figure} only, rows every {1e3 * period:.3g} ms", advice)

@@ -6,19 +6,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array, Marks, Numbers
 
 
 @dataclass(frozen=True)
 class Log:
     """Time t (rows) [s], positions q and torques tau (joints, rows) [rad or m, N m or N].
 
-    Values that are missing are nan.
+    Values that are missing are nan. `others` (columns, rows) are further values that sensors fill,
+    if there are any.
     """
 
     t: Array
     q: Array
     tau: Array
+    others: Array | None = None
 
     @property
     def rows(self) -> int:
@@ -34,13 +36,19 @@ class Log:
         return np.concatenate((self.q, self.tau))
 
     @property
+    def sensed(self) -> Array:
+        """All values that sensors fill (columns, rows)."""
+        return self.signals if self.others is None else np.concatenate((self.signals, self.others))
+
+    @property
     def names(self) -> list[str]:
         """The columns of the signals."""
         return [f"{name}{i}" for name in ("q", "tau") for i in range(1, self.joints + 1)]
 
-    def part(self, rows: Numbers) -> Log:
+    def part(self, rows: Numbers | Marks) -> Log:
         """These rows only (indices, or whether each row is kept)."""
-        return Log(self.t[rows], self.q[:, rows], self.tau[:, rows])
+        others = None if self.others is None else self.others[:, rows]
+        return Log(self.t[rows], self.q[:, rows], self.tau[:, rows], others)
 
     def scaled(self, *, t: float = 1.0, q: Array | float = 1.0) -> Log:
         """The log with time and positions multiplied by factors (positions by one per joint)."""

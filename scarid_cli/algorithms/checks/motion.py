@@ -11,12 +11,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from scarid_cli.algorithms.checks.clock import GAP, JITTER, held_rows
+from scarid_cli.algorithms.checks.clock import GAP, JITTER
 from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.algorithms.processes.holding import held_in
 from scarid_cli.algorithms.tuning.likelihood import noise_of
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
 from scarid_cli.algorithms.tuning.scatter import HIGHEST, LOWEST
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array, Marks
 
 FEWEST = 64  # rows of a segment from which a spectrum has a few points in each octave
 POWER = 0.95  # of the power of the velocity lies below the bandwidth of a motion
@@ -40,8 +41,13 @@ class Motion:
 
     @classmethod
     def of(cls, log: Log, period: float) -> Motion | None:
-        """The motion of a log with this period [s]; None if no part of it is long enough."""
-        segments = tuple(_segments(log, period))
+        """The motion of a log with this period [s]; None if no part of it is long enough.
+
+        Where the log holds the samples of slower sensors, the period is theirs.
+        """
+        held, slower = held_in(log.t, log.sensed)
+        period = slower if held.any() else period
+        segments = tuple(_segments(log.part(usable(log, held)), period))
         if not segments:
             return None
         longest = max(segments, key=lambda segment: segment.q.shape[1])
@@ -71,24 +77,22 @@ def _delayed(segment: Segment, rows: int) -> Segment:
     return replace(segment, q=q[:, first:last], tau=tau[:, first + rows : last + rows])
 
 
-def usable(log: Log, period: float) -> Numbers:
-    """Whether a row is complete, not held, and later than all rows before it."""
-    whole = np.isfinite(log.t) & np.all(np.isfinite(log.signals), axis=0)
-    whole &= ~held_rows(log.signals, period)
+def usable(log: Log, held: Marks) -> Marks:
+    """Whether a row is complete, not `held`, and later than all rows before it (rows)."""
+    whole = np.isfinite(log.t) & np.all(np.isfinite(log.signals), axis=0) & ~held
     latest = np.maximum.accumulate(np.where(whole, log.t, -np.inf))
     whole[1:] &= log.t[1:] > latest[:-1]
     return np.asarray(whole)
 
 
-def _segments(log: Log, period: float) -> list[Segment]:
-    kept = log.part(usable(log, period))
+def _segments(kept: Log, period: float) -> list[Segment]:
     gaps = np.flatnonzero(np.diff(kept.t) > GAP * period) + 1
     found = []
     for start, end in pairwise([0, *gaps.tolist(), kept.rows]):
         t, signals = kept.t[start:end], kept.signals[:, start:end]
         if len(t) >= FEWEST:
             signals = _regular(t, signals, period)
-            q, tau = signals[: log.joints], signals[log.joints :]
+            q, tau = signals[: kept.joints], signals[kept.joints :]
             found.append(Segment(q, tau, np.array([noise_of(x) for x in q])))
     return found
 

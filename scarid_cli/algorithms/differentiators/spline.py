@@ -35,6 +35,7 @@ class Differentiator(RecordMethod):
 
     MATCHING = Matching.SECOND_ORDER
     TUNES_ITSELF = True
+    FOLLOWS_NOISE = True
 
     def check(self) -> None:
         require_not_negative(self, "noise")

@@ -13,6 +13,7 @@ from scarid_cli.algorithms.processes.process import Process
 
 HALF_POWER = np.sqrt(0.5)  # -3 dB
 FINENESS = 16  # points of the spectrum for each that the pulse response has by itself
+POINTS = 1 << 21  # of the spectrum, of which longer responses have fewer for each of their own
 LINEAR = (Matching.EXACT, Matching.SECOND_ORDER, Matching.LINEARISED)
 
 
@@ -36,13 +37,14 @@ def lowpass_bandwidth(process: Process, h: float) -> float:
     half = 8 + 4 * sum(settling_rows(process, h))
     pulse = np.zeros(2 * half)
     pulse[half] = 1.0
-    gain = np.abs(np.fft.rfft(over(process, pulse, h)[0], FINENESS * len(pulse)))
+    points = len(pulse) * min(max(POINTS // len(pulse), 1), FINENESS)
+    gain = np.abs(np.fft.rfft(over(process, pulse, h)[0], points))
     below = np.flatnonzero(gain < HALF_POWER * gain[0])
     if not len(below):
         return 0.5 / h
     k = int(below[0])
     share = (gain[k - 1] - HALF_POWER * gain[0]) / (gain[k - 1] - gain[k])
-    return float((k - 1 + share) / (FINENESS * len(pulse) * h))
+    return float((k - 1 + share) / (points * h))
 
 
 def velocity_noise(noise: float, bandwidth: float, h: float) -> float:

@@ -6,6 +6,7 @@ See docs/theory.md, section "Phase matching".
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -102,6 +103,7 @@ class AccelerationDelay(Causal):
         return after, (late,)
 
 
+@cache  # each column asks for them, and at a high rate they take a while
 def delays(method: MeasuredMethod, h: float) -> tuple[float, float]:
     """The delays [s] of velocity and acceleration on the reference motion of the method.
 
@@ -155,11 +157,20 @@ def excess(move: Polynomial, order: int, bound: float) -> float:
 
 def lateness(estimate: Array, truth: Array, h: float) -> float:
     """The delay [s], from 0 to 0.2 s, after which the truth is nearest to the estimate."""
-    t = np.arange(len(truth)) * h
     grid = np.linspace(0.0, 0.2, 81)
-    errors = [np.sum((estimate - np.interp(t - d, t, truth)) ** 2) for d in grid]
+    errors = [np.sum((estimate - later(truth, d / h)) ** 2) for d in grid]
     at = int(np.argmin(errors))
     if not 0 < at < len(grid) - 1:
         return float(grid[at])
     left, here, right = errors[at - 1 : at + 2]
     return float(grid[at] + 0.5 * grid[1] * (left - right) / (left - 2.0 * here + right))
+
+
+def later(x: Array, delay: float) -> Array:
+    """The samples x after a delay [samples], linearly interpolated; the first one is held."""
+    whole = min(int(delay), len(x) - 1)
+    late = np.empty_like(x)
+    late[: whole + 1] = x[0]
+    here, before = x[1 : len(x) - whole], x[: len(x) - whole - 1]
+    late[whole + 1 :] = here + (delay - whole) * (before - here)
+    return late

@@ -61,6 +61,18 @@ class Method(Validated, Process):
     # Whether the method is a Kalman filter or smoother, whose settings have a likelihood.
     HAS_LIKELIHOOD: ClassVar[bool] = False
 
+    # Whether the smoothing is found from the noise of the positions, anew in each column.
+    FOLLOWS_NOISE: ClassVar[bool] = False
+
+    @property
+    def suits_velocities(self) -> bool:
+        """Whether measured velocities can pass it with the settings for positions.
+
+        It must be linear: a low-pass and its differences, whatever passes.
+        """
+        nonlinear = self.MATCHING in (Matching.LINEARISED, Matching.MEASURED)
+        return not nonlinear and not self.FOLLOWS_NOISE
+
     @property
     def is_fitted(self) -> bool:
         """Whether the settings are known without a record."""

@@ -23,8 +23,10 @@ class Clock:
     """Statistics of a log's clock: the number of intervals, their sums and the longest [s].
 
     `held` counts the rows left out because they repeat all measured values, `repeated` those whose
-    time repeats. `gaps` counts the intervals that split the record and `missing` is their sum [s];
-    the other numbers are without them.
+    time repeats. `filled` are the groups of signals of a slower sensor, each with the interval
+    between its readings [s] and the number of rows that were interpolated. `gaps` counts the
+    intervals that split the record and `missing` is their sum [s]; the other numbers are without
+    them.
     """
 
     intervals: int = 0
@@ -35,6 +37,7 @@ class Clock:
     gaps: int = 0
     missing: float = 0.0
     held: int = 0
+    filled: tuple[tuple[str, float, int], ...] = ()
 
     def after(self, steps: Array) -> Clock:
         """The statistics after more intervals [s]; an interval of 0 s repeats a row."""

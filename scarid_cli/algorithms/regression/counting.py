@@ -92,8 +92,10 @@ class LeftOut:
     def text(self) -> str:
         """Which shares of the rows were left out."""
         near = [(self.reversal, "near reversals"), (self.standstill, "near standstill")]
-        rows = max(self.rows, 1)
-        return " and ".join(f"{100.0 * n / rows:.1f} % of the rows {why}" for n, why in near if n)
+        shares = [(100.0 * n / max(self.rows, 1), why) for n, why in near]
+        return " and ".join(
+            f"{share:.1f} % of the rows {why}" for share, why in shares if share >= 0.05
+        )
 
     def add(self, moving: Numbers, away: Numbers) -> None:
         """Count rows (joints, samples) that are `moving`, and those `away` from a reversal."""

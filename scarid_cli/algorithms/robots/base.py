@@ -16,10 +16,13 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 
 RANDOM_STATES = 400
+ROWS = 4000  # of the regressor at least, with fewer states for robots with many joints
 STATE_RANGE = 3.0  # rad or m, and per s and s2
 DEPENDENT = 1e-8  # rest of a column of unit length that counts as none
 ZERO_COLUMN = 1e-12  # times the longest column: a column that is rounding alone
 ROUNDING = 1e-12
+MARGIN = 4  # rows per parameter at least
+TOGETHER = 32  # columns that are projected at once, as products of matrices are faster
 ABSENT = 1e-6  # factor of a parameter that is not part of a combination
 
 
@@ -27,7 +30,9 @@ def with_base_parameters(robot: Robot) -> Robot:
     """The robot with its base parameters only, each with the combination that it stands for."""
     rng = np.random.default_rng(0)
     motion = rng.uniform(-STATE_RANGE, STATE_RANGE, (3, len(robot.joints), RANDOM_STATES))
-    W = robot.regressor(*motion).reshape(-1, len(robot.parameters))
+    joints = len(robot.joints)
+    states = min(RANDOM_STATES, -(-max(ROWS, MARGIN * len(robot.parameters)) // joints))
+    W = robot.regressor(*motion[:, :, :states]).reshape(-1, len(robot.parameters))
     kept, parts = independent(W)
     parameters = []
     for row, i in enumerate(kept):
@@ -54,18 +59,29 @@ def independent(W: Array) -> tuple[list[int], Array]:
     W_dropped = W_kept B; it is zero for columns that are kept or always zero.
     """
     lengths = np.linalg.norm(W, axis=0)
-    basis = np.empty((len(W), 0))
+    columns = np.flatnonzero(lengths > ZERO_COLUMN * lengths.max(initial=0.0))
+    basis = np.empty((len(W), len(columns)), order="F")
     kept: list[int] = []
-    for i, length in enumerate(lengths):
-        if not length > ZERO_COLUMN * lengths.max():
-            continue
-        rest = W[:, i] / length
-        for _ in range(2):  # twice, for the digits that the first projection loses
-            rest = rest - basis @ (basis.T @ rest)
-        size = float(np.linalg.norm(rest))
-        if size > DEPENDENT:
-            basis = np.column_stack((basis, rest / size))
-            kept.append(i)
-    parts: Array = np.asarray(np.linalg.lstsq(W[:, kept], W, rcond=None)[0], dtype=np.float64)
+    for start in range(0, len(columns), TOGETHER):
+        numbers = columns[start : start + TOGETHER]
+        rests = _rest(W[:, numbers] / lengths[numbers], basis[:, : len(kept)])
+        first = len(kept)
+        for i, own in zip(numbers.tolist(), rests.T, strict=True):
+            rest = _rest(own, basis[:, first : len(kept)])
+            size = float(np.linalg.norm(rest))
+            if size > DEPENDENT:
+                basis[:, len(kept)] = rest / size
+                kept.append(i)
+    # In the basis of the kept columns, the equations are as few as these are.
+    small = basis[:, : len(kept)].T @ W
+    rounding = np.finfo(np.float64).eps * len(W)
+    parts: Array = np.asarray(np.linalg.lstsq(small[:, kept], small, rounding)[0], dtype=np.float64)
     parts[:, kept] = 0.0
     return kept, parts
+
+
+def _rest(columns: Array, basis: Array) -> Array:
+    """What the columns are beside their projection on the basis."""
+    for _ in range(2):  # twice, for the digits that the first projection loses
+        columns = columns - basis @ (basis.T @ columns)
+    return columns

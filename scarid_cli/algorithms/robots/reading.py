@@ -30,32 +30,39 @@ def built_in() -> list[str]:
 
 def load(name: str) -> Robot:
     """A built-in robot by name, or one described in a TOML file or a URDF."""
-    if name.endswith(".urdf"):
-        from scarid_cli.algorithms.robots.arms import arm
-
-        return arm(name, {"title": name, "urdf": name}, Path())
-    path = Path(name) if name.endswith(".toml") else ROBOTS / f"{name}.toml"
-    if not path.exists():
-        if name.endswith(".toml"):
-            raise UsageFault(f"{name}: no such file")
-        raise UsageFault(
-            f"unknown robot {name!r}; choose {', '.join(built_in())}, or a .toml or .urdf file"
-        )
     try:
-        document = tomllib.loads(path.read_text("utf-8"))
-        if "urdf" in document:
-            from scarid_cli.algorithms.robots.arms import arm  # needs an XML parser
-
-            return arm(name, document, path.parent)
-        return _robot(name, document)
+        return _loaded(name)
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
         raise UsageFault(f"{name}: not a robot description: {' '.join(reason.split())}") from None
 
 
+def _loaded(name: str) -> Robot:
+    if name.endswith(".urdf"):
+        return _arm(name, {"title": name, "urdf": name}, Path())
+    known = built_in()
+    if not name.endswith(".toml") and name not in known:
+        choice = ", ".join(known)
+        raise UsageFault(f"unknown robot {name!r}; choose {choice}, or a .toml or .urdf file")
+    path = ROBOTS / f"{name}.toml" if name in known else Path(name)
+    if not path.exists():
+        raise UsageFault(f"{name}: no such file")
+    document = tomllib.loads(path.read_text("utf-8"))
+    if "urdf" in document:
+        return _arm(name, document, path.parent)
+    return _robot(name, document)
+
+
+def _arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
+    from scarid_cli.algorithms.robots.arms import arm  # needs an XML parser
+
+    return arm(name, document, folder)
+
+
 def _robot(name: str, document: dict[str, Any]) -> Robot:
     values.only("a robot", document, KEYS)
     joints = tuple(joint_of(entry) for entry in values.tables("joint", document["joint"]))
+    values.moderate(len(joints))
     terms = values.tables("parameter", document["parameter"])
     parameters = tuple(_parameter(entry, len(joints)) for entry in terms)
     if not joints or not parameters:

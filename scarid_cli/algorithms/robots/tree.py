@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -9,9 +12,11 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+from scarid_cli.algorithms.robots import values
 from scarid_cli.errors import UsageFault
 
 ENDLESS = 1e9  # rad: urdfdom does not read inf
+ERROR = "Error:"  # that begins what urdfdom prints
 MASSLESS = 1e-6  # kg: some URDFs give their frames a token mass
 
 
@@ -43,17 +48,52 @@ def read(path: str) -> Tree:
         tree = ElementTree.fromstring(Path(path).read_text("utf-8"))
         _turn_endless_joints_into_angles(tree)
         _drop_shapes(tree)
-        model = pinocchio.buildModelFromXML(ElementTree.tostring(tree, encoding="unicode"))
+        model = _model(pinocchio, ElementTree.tostring(tree, encoding="unicode"))
+        values.moderate(model.njoints - 1)
         mimics = {j.get("name", ""): m for j in tree.findall("joint") for m in j.findall("mimic")}
         drivers = {name: mimic.get("joint", "") for name, mimic in mimics.items()}
         offsets = {name: float(mimic.get("offset", "0")) for name, mimic in mimics.items()}
+        tips = list(_massless_tips(tree))
+        _require_axes(tree)
     except (RuntimeError, SyntaxError, ValueError) as error:
         raise UsageFault(f"{path}: not a URDF: {' '.join(str(error).split())}") from None
     if not model.nq or model.nq != model.nv:
         raise UsageFault(f"{path}: only revolute, continuous and prismatic joints are supported")
-    tips = _massless_tips(tree)
     frames = {name: model.frames[model.getFrameId(name)].parentJoint for name in tips}
     return Tree(model, drivers, offsets, frames)
+
+
+def _model(pinocchio: Any, text: str) -> Any:
+    """Pinocchio's model. A value that its parser cannot read is a ValueError with its reason.
+
+    The parser tells that on standard error only, and leaves out what it could not read, such as
+    the inertia of a link.
+    """
+    with _heard() as lines:
+        try:
+            model, reason = pinocchio.buildModelFromXML(text), None
+        except (RuntimeError, ValueError) as error:
+            model, reason = None, str(error)
+    told = [line.removeprefix(ERROR).strip() for line in lines if line.startswith(ERROR)]
+    if told or reason:
+        raise ValueError(told[0] if told else reason)
+    return model
+
+
+@contextlib.contextmanager
+def _heard() -> Iterator[list[str]]:
+    """The lines that libraries print on standard error within the block; known after it."""
+    lines: list[str] = []
+    own = os.dup(2)
+    with tempfile.TemporaryFile() as file:
+        os.dup2(file.fileno(), 2)
+        try:
+            yield lines
+        finally:
+            os.dup2(own, 2)
+            os.close(own)
+        file.seek(0)
+        lines += file.read().decode(errors="replace").splitlines()
 
 
 def _turn_endless_joints_into_angles(tree: ElementTree.Element) -> None:
@@ -69,8 +109,19 @@ def _turn_endless_joints_into_angles(tree: ElementTree.Element) -> None:
                 limit.set(key, limit.get(key, "0"))
 
 
+def _require_axes(tree: ElementTree.Element) -> None:
+    """Refuses an axis without a direction, about which nothing would turn."""
+    for joint in tree.findall("joint"):
+        axis = joint.find("axis")
+        moves = joint.get("type") in ("revolute", "prismatic")
+        if moves and axis is not None and not any(map(float, axis.get("xyz", "1").split())):
+            raise ValueError(f"the axis of joint {joint.get('name')} is 0 0 0")
+
+
 def _drop_shapes(tree: ElementTree.Element) -> None:
     """Drops what is not needed here; Pinocchio complains about shapes that it does not know."""
+    for material in tree.findall("material"):
+        tree.remove(material)
     for own in tree.findall("link"):
         for shape in (*own.findall("visual"), *own.findall("collision")):
             own.remove(shape)

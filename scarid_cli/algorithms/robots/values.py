@@ -6,6 +6,14 @@ from collections.abc import Collection
 from math import isfinite
 from typing import Any
 
+MOST_JOINTS = 100  # that a robot may have: beyond, its regressor takes minutes and gigabytes
+
+
+def moderate(joints: int) -> None:
+    """Refuse a robot with more than MOST_JOINTS joints."""
+    if joints > MOST_JOINTS:
+        raise ValueError(f"it has {joints} moving joints; at most {MOST_JOINTS} are supported")
+
 
 def text(key: str, value: Any) -> str:
     """A string that is not empty."""

@@ -77,7 +77,11 @@ def _wide(effect: Effect, scatter: Array) -> Marks:
 
 def percents(parts: Iterable[float]) -> str:
     """Parts of one, as percents with two digits: `0.31, 2.5 %`."""
-    return f"{', '.join(f'{100.0 * part:.2g}' for part in parts)} %"
+    return f"{', '.join(_two_digits(100.0 * part) for part in parts)} %"
+
+
+def _two_digits(x: float) -> str:
+    return f"{x:.2g}" if x < 99.5 else f"{x:.0f}"
 
 
 def listed(names: Sequence[str], most: int = 8) -> str:

@@ -153,7 +153,7 @@ def _vague(evidence: Evidence) -> list[str]:
     """Joints whose torque is not known, or not predicted within its noise."""
     found, width = evidence.diagnostics.consequences, _width(evidence)
     reasons = [
-        f"the log determines the torque of joint {i} only within {100.0 * width * error:.2g} %"
+        f"the log determines the torque of joint {i} only within {percents([width * error])}"
         if np.isfinite(error)
         else f"the uncertainty of the torque of joint {i} is not known"
         for i, error in enumerate(found.noise, start=1)

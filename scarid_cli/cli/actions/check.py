@@ -12,6 +12,7 @@ from scarid_cli.algorithms.checks.finding import FAILED, STATUSES, WARNING, Find
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.terminal import styled, wrapped
 from scarid_cli.errors import BAD_DATA, OK, WARNED
+from scarid_cli.printable import printable
 from scarid_cli.stages import check as stage
 from scarid_cli.stages.logs import log_of
 
@@ -34,8 +35,9 @@ def _print(findings: list[Finding]) -> None:
     width = max(len(finding.name) for finding in findings)
     for finding in findings:
         start = f"{styled(f'{finding.status:<7}', finding.status)}  {finding.name:<{width}}  "
-        click.echo(wrapped(start, finding.figure, 11 + width))
+        click.echo(wrapped(start, printable(finding.figure), 11 + width))
         if finding.advice:
-            click.echo(wrapped(" " * (11 + width), f"-> {finding.advice}", 14 + width))
+            advice = printable(f"-> {finding.advice}")
+            click.echo(wrapped(" " * (11 + width), advice, 14 + width))
     counts = Counter(finding.status for finding in findings)
     click.echo(", ".join(f"{counts[status]} {status}" for status in STATUSES))

@@ -42,7 +42,8 @@ def run(
     _require_valid(rate, separator, decimal_comma=decimal_comma)
     pairs = renamings(mappings)
     given = [pair(text, "--unit") for text in units]
-    arm, order = _robot(robot), tuple(joints.split(",")) if joints else ()
+    arm = _robot(job.described(robot)) if robot else None
+    order = tuple(joints.split(",")) if joints else ()
     source = job.opened(file)
     extension = bag_extension(file, source)
     if extension is None:
@@ -76,9 +77,7 @@ def _notation(separator: str, header: str, *, decimal_comma: bool) -> Notation |
     return Notation(mark, decimal_comma, tuple(header.split(",")) if header else ())
 
 
-def _robot(name: str | None) -> Robot | None:
-    if not name:
-        return None
+def _robot(name: str) -> Robot:
     from scarid_cli.algorithms.robots.reading import load  # its reader is not needed otherwise
 
     return load(name)

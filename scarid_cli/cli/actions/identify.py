@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,9 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
+from scarid_cli.cli.evened import Evened
 from scarid_cli.cli.job import Job
+from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import motion
 from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
@@ -32,7 +35,7 @@ ONLINE, OFFLINE = "rls", "wls"  # what a motion, and a measurement, are identifi
 def run(
     job: Job,
     *,
-    file: str,
+    files: tuple[str, ...],
     robot: str | None,
     estimator: str | None,
     initial: str | None,
@@ -53,15 +56,17 @@ def run(
     if initial and not method.INITIAL:
         raise UsageFault(f"--initial: {name} has no initial parameters; leave the option out")
     side, place = job.side_table(trace), job.side_text(save)
-    table, arm = _read(job, file, robot, method)
+    evened = Evened(job)
+    reading = partial(_read, job, method, evened)
+    table, arm = read_logs(job, files, robot, reading, skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
-    if not method.FOLLOWS and not numbered(table.columns, "dq"):
+    if not method.FOLLOWS and not numbered(table.columns, "ddq"):
         row_by_row = bool(trace or resumed or save)
         if not (estimator or values or given["forgetting"] or initial or row_by_row):
             name, method = OFFLINE, ESTIMATORS.load(OFFLINE)
         if given["align"] is None and method.ALIGNS and not row_by_row:
             treatment = replace(treatment, align=True)
-        table = motion(job, table, arm, _options(name, treatment))
+        table = motion(job, table, arm, _options(name, treatment), evened.rates)
     given["all_rows"] |= method.FOLLOWS
     reach = Reach(len(arm.joints))
     table = reach.watched(table)
@@ -105,9 +110,11 @@ def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
     return REQUIRED
 
 
-def _read(job: Job, file: str, robot: str | None, method: Any) -> tuple[Table, Robot]:
+def _read(
+    job: Job, method: Any, evened: Evened, file: str, robot: str | Robot | None
+) -> tuple[Table, Robot]:
     """The motion or measurement, or whatever else the estimator reads, and the robot."""
-    return job.read_for(
+    table, arm = job.read_for(
         file,
         "trajectory" if method.FOLLOWS else "motion",
         robot,
@@ -115,6 +122,9 @@ def _read(job: Job, file: str, robot: str | None, method: Any) -> tuple[Table, R
         reference=method.REFERENCE,
         without_derivatives=None if method.FOLLOWS else "measurement",
     )
+    if method.FOLLOWS or numbered(table.columns, "ddq"):
+        return table, arm
+    return evened.table(file, table), arm
 
 
 def _options(name: str, treatment: Treatment) -> list[str]:

@@ -10,6 +10,7 @@ from scarid_cli.cli.job import Job
 from scarid_cli.cli.terminal import wrapped
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bags import bag_extension
+from scarid_cli.printable import printable
 from scarid_cli.stages.info import described
 
 
@@ -30,4 +31,4 @@ def run(job: Job, *, file: str, as_json: bool) -> None:
             raise UsageFault(f"{file}: --json describes tables, not recordings; leave it out")
         lines = topic_lines(file, source, extension)
     for line in lines:
-        click.echo(wrapped("", line, 0, hanging=10))
+        click.echo(wrapped("", printable(line), 0, hanging=10))

@@ -29,4 +29,6 @@ def summary_line(clock: Clock) -> str:
     if clock.held:
         held = "1 held sample" if clock.held == 1 else f"{clock.held:,} held samples"
         line += f"; left out {held} (rows that repeat all measured values)"
+    for name, interval, count in clock.filled:
+        line += f"; {name} are new every {1e3 * interval:.3g} ms only, interpolated {count:,} rows"
     return line

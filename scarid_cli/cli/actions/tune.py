@@ -22,7 +22,6 @@ def run(
     file: str,
     methods: tuple[str, ...],
     robot: str | None,
-    to_time: float | None,
     seed: int,
     save: str | None,
 ) -> None:
@@ -34,8 +33,7 @@ def run(
     arm = job.robot(robot, log) if robot else None
     joints = _joints(table, arm)
     names = _names(methods or (FOR_ROBOT if arm else FOR_POSITIONS))
-    used = record.until(table, to_time) if to_time else table
-    held = record.Record.of(used, joints, torques=arm is not None)
+    held = record.Record.of(table, joints, torques=arm is not None)
     with steps(quiet=job.quiet) as progress:
         if arm:
             found = bandwidth.bandwidth(held, arm, progress)

@@ -30,7 +30,7 @@ def run(
     rows = given["smooth_sign"] or given["all_rows"] or given["bandwidth"]
     if not motion and (treatment != Treatment() or rows):
         raise UsageFault("options for the rows of a motion need --motion FILE")
-    arm = load(robot)
+    arm = load(job.described(robot))
     if not arm.body:
         raise UsageFault(f"{robot}: has no URDF to write parameters into")
     text = Path(arm.body.path).read_text("utf-8")

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import pyarrow as pa
 
+from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job
+from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import UsageFault
+from scarid_cli.io.stated import stated_robot
+from scarid_cli.io.table import Table
 from scarid_cli.stages import validate as stage
 from scarid_cli.stages.changes import known
 from scarid_cli.stages.estimates import errors_of
@@ -19,7 +24,7 @@ from scarid_cli.stages.parameters import identified
 def run(
     job: Job,
     *,
-    file: str,
+    files: tuple[str, ...],
     parameters: str,
     robot: str | None,
     predictions: str | None,
@@ -31,7 +36,8 @@ def run(
         raise UsageFault("--predictions needs every row and cannot be combined with --decimate")
     side = job.side_table(predictions)
     stored = job.read(parameters, "parameters")
-    table, arm = job.read_for(file, "motion", robot or stored.meta.robot, torques=True)
+    stated = robot or stated_robot(stored)
+    table, arm = read_logs(job, files, stated, partial(_read, job), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
     treatment = for_motion(table.meta, treatment, given)
     batches = list(stored.batches)
@@ -54,3 +60,8 @@ def run(
         job.say(f"{change['verdict']}: {change['reason']}", change["verdict"])
     if before.remark:
         job.say(before.remark)
+
+
+def _read(job: Job, file: str, robot: str | Robot | None) -> tuple[Table, Robot]:
+    """A motion with torques, and the robot."""
+    return job.read_for(file, "motion", robot, torques=True)
