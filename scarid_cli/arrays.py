@@ -6,3 +6,13 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.int64]
 Marks = npt.NDArray[np.bool_]
+
+
+def median(values: Array) -> float:
+    """The median of a vector, as numpy's, which would import numpy.ma; nan if a value is nan."""
+    ordered = np.sort(values)
+    if not len(ordered) or np.isnan(ordered[-1]):
+        return float("nan")
+    middle = len(ordered) // 2
+    low = ordered[middle - 1 + len(ordered) % 2]
+    return float((low + ordered[middle]) / 2.0)

@@ -20,7 +20,7 @@ from scarid_cli.algorithms.changes.wording import Verdict, of_change, of_wiring
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alignment import shifted
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, median
 from scarid_cli.io.table import Table
 from scarid_cli.stages.parameters import EVIDENCE, Identified
 
@@ -108,7 +108,7 @@ def _alike(now: LogEvidence, errors: Array, robot: Robot) -> LogEvidence:
     own = np.diag(inverse(now.information[:p, :p]))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = own / errors**2
-    size = float(np.median(ratios[np.isfinite(ratios) & (ratios > 0.0)]))
+    size = median(ratios[np.isfinite(ratios) & (ratios > 0.0)])
     information = size * now.information
     unknown = [p, *range(p + 1 + joints, p + 1 + 2 * joints)]
     information[unknown] = information[:, unknown] = 0.0

@@ -15,7 +15,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.outcome import Outcome
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, median
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, table_of
@@ -186,7 +186,7 @@ def _widened(diagnostics: Diagnostics) -> float | None:
         return None
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = diagnostics.errors / diagnostics.covariance.errors
-    return _or_none(float(np.median(ratios)))
+    return _or_none(median(ratios))
 
 
 def _effects(diagnostics: Diagnostics) -> dict[str, Any]:

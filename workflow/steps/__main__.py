@@ -18,6 +18,8 @@ from steps.reference import reference
 from steps.tune import tune
 from steps.validate import validate
 
+from scarid_cli.__main__ import WithoutPandas
+
 OF_GROUPS = {"identify": identify, "validate": validate}
 OF_ROBOTS = {"tune": tune, "reference": reference}
 STEPS: dict[str, Callable[..., None]] = {**OF_GROUPS, **OF_ROBOTS}
@@ -58,6 +60,7 @@ def main(step: str, config: str, *words: str) -> None:
 
 
 if __name__ == "__main__":
+    sys.meta_path.insert(0, WithoutPandas())  # which Snakemake brings along
     try:
         main(*sys.argv[1:])
     except PlanError as error:

@@ -94,7 +94,7 @@ def read(path: str) -> Plan:
     robots = given.get("robots")
     if not isinstance(robots, dict) or not robots:
         raise PlanError(f"{path}: no robots; describe each one in a table [robots.NAME]")
-    group, pages = given.get("group", 20), given.get("pages", "all")
+    group, pages = given.get("group", 50), given.get("pages", "all")
     if not isinstance(group, int) or group < 1:
         raise PlanError(f"{path}: group = {group!r}: give the number of logs of a job")
     if pages not in PAGES:

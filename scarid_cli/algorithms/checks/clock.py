@@ -10,7 +10,7 @@ from scarid_cli.algorithms.checks.finding import Finding, failed, ok, several, w
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.processes.filling import reading_interval
 from scarid_cli.algorithms.processes.holding import MAX_GAP, held_in
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, median
 
 # Hz. Friction and inertia are told apart where the velocity changes within tenths of a second, so
 # that a log of fewer rows per second is of no use, and one of more is no log of joints.
@@ -34,7 +34,7 @@ class Clock:
     def of(cls, t: Array) -> Clock:
         steps = np.diff(t[np.isfinite(t)])
         forward = steps[steps > 0.0]
-        return cls(steps, float(np.median(forward)) if len(forward) else 0.0)
+        return cls(steps, median(forward) if len(forward) else 0.0)
 
     @property
     def rate(self) -> float:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scarid_cli.arrays import Array, Marks, Numbers
+from scarid_cli.arrays import Array, Marks, Numbers, median
 
 TOGETHER = 0.5  # share of the values that change in the row that ends a run of held samples
 SLOWEST = 25.0  # periods of the log per value of a slower sensor, whose samples it holds
@@ -24,9 +24,9 @@ def sensor_period(every: Array, new: Array) -> float:
 
     It is that of the log, unless the sensors are slower and the log holds their samples.
     """
-    period = float(np.median(every[:FIRST]))
+    period = median(every[:FIRST])
     if len(new):
-        slower = float(np.median(new[:FIRST]))
+        slower = median(new[:FIRST])
         period = slower if slower <= SLOWEST * period else period
     return period
 
@@ -47,7 +47,7 @@ def held_in(t: Array, values: Array) -> tuple[Marks, float]:
     segments = np.zeros(len(t), dtype=np.int64)
     every, new = intervals(t, values, segments)
     if len(values) < 2 or not len(every):
-        return np.zeros(len(t), dtype=np.bool_), float(np.median(every)) if len(every) else 0.0
+        return np.zeros(len(t), dtype=np.bool_), median(every) if len(every) else 0.0
     period = sensor_period(every, new)
     held, waiting = held_rows(t, values, segments, MAX_GAP * period)
     held[waiting + 1 :] = held.any()  # what ends a log with held samples is taken for some as well

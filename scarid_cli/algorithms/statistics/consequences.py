@@ -14,7 +14,7 @@ import numpy as np
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.jackknife import regular
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, median
 
 PARTS = 10  # of the record, each left out once
 POSES = 50  # of the record, at which the inertia is computed
@@ -101,7 +101,7 @@ def _inertia(model: Model, estimates: Array, covariance: Array, poses: Array) ->
         rows = (model.regressor(q, rest, ddq) - still)[:, j]
         errors = np.sqrt(np.maximum(np.einsum("si,ik,sk->s", rows, covariance, rows), 0.0))
         with np.errstate(divide="ignore", invalid="ignore"):
-            found.append(float(np.median(errors / np.abs(rows @ estimates))))
+            found.append(median(errors / np.abs(rows @ estimates)))
     return np.array(found)
 
 

@@ -28,7 +28,7 @@ from scarid_cli.algorithms.statistics.jackknife import (
     jackknife_of_blocks,
 )
 from scarid_cli.algorithms.statistics.residuals import JointResidual, residuals
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, median
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def _matrix(fit: Fit, scatter: Array, shifts: list[Array]) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = scatter**2 / np.diag(classical)
     ratios = ratios[np.isfinite(ratios) & (ratios > 0.0)]
-    sized = classical * (np.median(ratios) if len(ratios) else 1.0)
+    sized = classical * (median(ratios) if len(ratios) else 1.0)
     for shift in shifts:
         sized = sized + np.outer(shift, shift) if np.isfinite(shift).all() else sized
     return np.asarray(sized)

@@ -18,7 +18,7 @@ from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, median
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ def _noise(problem: Problem, diagnostics: Diagnostics, rows: float) -> Noise:
     """How much larger the variances are than those for white residuals, as a median."""
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = (diagnostics.scatter / problem.found.fit.standard_errors()) ** 2
-    return Noise(rows, float(np.median(ratios[: problem.own])), diagnostics.blocks)
+    return Noise(rows, median(ratios[: problem.own]), diagnostics.blocks)
 
 
 def _excitation(problem: Problem) -> Array:

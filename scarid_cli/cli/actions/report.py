@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from scarid_cli.cli.actions.fleet import report as of_fleet
+from scarid_cli.cli.fleets import report as of_fleet
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table

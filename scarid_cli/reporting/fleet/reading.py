@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scarid_cli.io.table import Table
-from scarid_cli.reporting.naming import printable
+from scarid_cli.printable import printable
 
 Row = dict[str, Any]
 
