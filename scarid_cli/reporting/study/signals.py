@@ -34,7 +34,7 @@ def torques(view: View, results: Sequence[Metrics | Prediction]) -> Iterator[Cha
         note = overview[0].section.note
         yield Chapter("Torque prediction", "Torques", note, words, tuple(overview))
     for group in grouped(results, lambda r: (r.joints, r.name.experiment)):
-        section = torque_section(group, view.colours)
+        section = _ranked(view, torque_section(group, view.colours), metrics)
         blocks: list[Block] = [Grid(section)] if section.rows else []
         predicted = sorted(of_kind(group, Prediction), key=view.place)
         if overview and blocks and predicted:
