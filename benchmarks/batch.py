@@ -140,12 +140,12 @@ def by_commands(config: Path, count: int, joined: str) -> None:
 def growth(counts: list[int]) -> None:
     """What a log costs in batches of different sizes, in one process and by Snakemake."""
     print(
-        "\nBatches of four robots, logs of 4,000 rows, 100 a job: seconds a log, wall and processor"
+        "\nBatches of four robots, logs of 4,000 rows, 250 a job: seconds a log, wall and processor"
     )
     print("   logs  one process   Snakemake    part of all cores' throughput (by processor time)")
     cores = os.cpu_count() or 1
     for count in counts:
-        config = fleet(BUILD / f"fleet{count}", count, group=100, pages="none")
+        config = fleet(BUILD / f"fleet{count}", count, group=250, pages="none")
         fresh(config)
         wall, cpu = spent(lambda config=config: in_one_process(config))
         fresh(config)
@@ -234,7 +234,7 @@ def killed(config: Path, seed: int) -> None:
 
 def outcome(config: Path) -> dict[str, bytes]:
     out = config.parent / "outcome"
-    paths = (path for path in out.rglob("*") if path.is_file() and "work" not in path.parts)
+    paths = (path for path in out.rglob("*") if path.is_file() and "jobs" not in path.parts)
     return {str(path): path.read_bytes() for path in paths if path.name != ".lock"}
 
 

@@ -25,11 +25,12 @@ from scarid_cli.cli.declare import declare
 @click.option(
     "--fleet",
     metavar="FOLDER",
-    help="The folder that a batch has written: report on its logs and robots, failures first.",
+    help="Report the outcome of a batch, which is in FOLDER, in place of FILEs: one row per log.",
 )
 @options.side_output("--figures", metavar="FOLDER", help="Write each figure as an SVG file.")
 @click.option(
-    "--title", default="Identification report", show_default=True, help="Title of the documents."
+    "--title",
+    help="Title of the documents.  [default: Identification report, with --fleet Fleet report]",
 )
 @options.common
 def command() -> None:
@@ -55,12 +56,12 @@ def command() -> None:
     deviation of each method (Fig. 5), the estimates over time (Fig. 6), and measured and predicted
     torques (Figs. 7 and 8).
 
-    --fleet takes no FILE. It reads fleet.parquet, estimates.parquet and robots.parquet of a batch.
-    Its page is a table of all logs to be searched, filtered and sorted in the browser, with the
-    course of each robot's parameters over the logs.
-
     A priori values are those of the robot named in the metadata. CSV has no metadata; a CSV takes
     the robot of another table with the same parameters.
+
+    --fleet prints which robots and logs of a batch need a look. Its page has a row for each log,
+    the failures first, which a browser sorts and filters without a network, with links to the pages
+    of the logs.
 
     --html - or --markdown - writes that document to standard output in place of the tables. Tables
     of any length are read in bounded memory.

@@ -27,5 +27,5 @@ def in_one_process(config: Path) -> subprocess.CompletedProcess[str]:
 def outcome(folder: Path) -> dict[str, bytes]:
     """All that a batch in this folder leaves for the user, by its path."""
     out = folder / "outcome"
-    paths = (path for path in out.rglob("*") if path.is_file() and "work" not in path.parts)
+    paths = (path for path in out.rglob("*") if path.is_file() and "jobs" not in path.parts)
     return {str(path.relative_to(out)): path.read_bytes() for path in paths if path.name != ".lock"}

@@ -41,7 +41,7 @@ def test_a_batch_that_is_killed_goes_on_and_ends_in_the_same_bytes(
     assert in_one_process(config).returncode == 0
     expected = outcome(config.parent)
     subprocess.run(["rm", "-r", str(config.parent / "outcome")], check=True)
-    work = config.parent / "outcome" / "work"
+    work = config.parent / "outcome" / "jobs"
     for steps in ("identify", "validate"):
         batch = started(config)
         deadline = time.monotonic() + 300

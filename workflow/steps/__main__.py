@@ -41,7 +41,7 @@ WHOLE = {"collect": collect, "all": everything}
 @contextlib.contextmanager
 def locked(plan: Plan, *words: str) -> Iterator[None]:
     """Wait for the same job of an earlier run, which may go on after its Snakemake was killed."""
-    place = plan.out / "work" / "locks" / ".".join(words)
+    place = plan.out / "jobs" / "locks" / ".".join(words)
     place.parent.mkdir(parents=True, exist_ok=True)
     with place.open("w") as file:
         with contextlib.suppress(OSError):  # a file system without locks

@@ -32,7 +32,7 @@ def cleared(plan: Plan, robot: Robot, log: Log, step: str) -> Path:
 
 def work(plan: Plan, robot: Robot, group: str, what: str) -> Path:
     """The folder of a group's tables of one kind, which do not stay."""
-    return plan.out / "work" / robot.name / f"{group}.{what}"
+    return plan.out / "jobs" / robot.name / f"{group}.{what}"
 
 
 def table(folder: Path, log: Log) -> Path:
@@ -44,7 +44,7 @@ def table(folder: Path, log: Log) -> Path:
 
 def results(plan: Plan, robot: Robot, step: str, group: str = "") -> Path:
     """The results of a step, as JSON: a list with an entry for each log, or one entry."""
-    return plan.out / "work" / robot.name / f"{group + '.' if group else ''}{step}.json"
+    return plan.out / "jobs" / robot.name / f"{group + '.' if group else ''}{step}.json"
 
 
 def write(path: Path, found: Any) -> None:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from scarid_cli.cli.fleets import report as of_fleet
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
@@ -28,14 +27,18 @@ def run(
     repeated: bool,
     fleet: str | None,
     figures: str | None,
-    title: str,
+    title: str | None,
     place: str | None,
 ) -> None:
     """Print the tables, and write the documents."""
     if fleet:
-        _refuse_beside_fleet(files, published=published, repeated=repeated, figures=figures)
-        of_fleet(job, fleet, html=html, markdown=markdown, place=place, title=title)
+        from scarid_cli.cli.fleet import of_fleet
+
+        others = {"--repeated": repeated, "--published": published, "--figures": figures}
+        _require_alone(files, others)
+        of_fleet(job, fleet, title or "Fleet report", html, markdown, place)
         return
+    title = title or "Identification report"
     paths = files or ("-",)
     _require_distinct(paths, html, markdown)
     page, plain, printed = (job.side_text(path) for path in (html, markdown, place))
@@ -64,13 +67,6 @@ def run(
         job.say("some tables have figures only; draw them with --html FILE")
 
 
-def _refuse_beside_fleet(files: tuple[str, ...], **others: object) -> None:
-    given = [f"--{name}" for name, value in others.items() if value]
-    if files or given:
-        wrong = files[0] if files else given[0]
-        raise UsageFault(f"--fleet takes its tables from one folder; leave out {wrong}")
-
-
 def _reportable(job: Job, paths: Sequence[str]) -> list[Table]:
     """The tables; of several, those that have no place in a report are skipped with a note."""
     tables, skipped = [], []
@@ -83,6 +79,14 @@ def _reportable(job: Job, paths: Sequence[str]) -> list[Table]:
         raise skipped[0]
     job.notes += [f"skipped: {reason}" for reason in skipped]
     return tables
+
+
+def _require_alone(files: Sequence[str], others: Mapping[str, object]) -> None:
+    """Refuse what a report of a fleet has no use for."""
+    if files:
+        raise UsageFault(f"--fleet reads its own folder; leave {files[0]} out")
+    if given := next((option for option, value in others.items() if value), None):
+        raise UsageFault(f"{given} has no meaning with --fleet; leave it out")
 
 
 def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | None) -> None:
@@ -99,6 +103,5 @@ def _save(job: Job, folder: Path, found: list[Section]) -> None:
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     from scarid_cli.reporting.figures import drawn
 
-    folder.mkdir(parents=True, exist_ok=True)
     for name, document in naming.figures([section.title for section in found], drawn(found)):
-        job.text(str(folder / name)).write(document)
+        job.figure(str(folder / name)).write(document)
