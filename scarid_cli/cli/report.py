@@ -49,9 +49,12 @@ def command() -> None:
 
     Prints the tables: estimates with relative standard deviations (the paper's Table 2), errors of
     the running estimates (Table 3), and the quality of the predicted torques in each experiment
-    (Tables 4 and 5). The page adds figures: the logs (Fig. 3), velocities and accelerations
-    (Fig. 4), the largest relative standard deviation of each method (Fig. 5), the estimates over
-    time (Fig. 6), and measured and predicted torques (Figs. 7 and 8).
+    (Tables 4 and 5). The page begins with the best method, by how much it is better, and whether it
+    may be believed; it shows estimates with their 95 % intervals, measured and predicted torques
+    with their residuals, and errors of soft sensors, and its figures can be enlarged. --figures
+    draws the logs (Fig. 3), velocities and accelerations (Fig. 4), the largest relative standard
+    deviation of each method (Fig. 5), the estimates over time (Fig. 6), and measured and predicted
+    torques (Figs. 7 and 8).
 
     A priori values are those of the robot named in the metadata. CSV has no metadata; a CSV takes
     the robot of another table with the same parameters.

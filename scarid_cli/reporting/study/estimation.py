@@ -46,13 +46,9 @@ def methods(view: View) -> Iterator[Chapter]:
             Fold(f"The other {len(rows) - FEW} identifications", (Methods(tuple(rows[FEW:])),))
         )
     note = "Whether the estimates of each method can be relied on, and why; the best first."
-    yield Chapter(
-        "Verdicts",
-        "Verdicts",
-        note,
-        ("verdict", "known within 30 %", "matched", "soft sensor"),
-        tuple(blocks),
-    )
+    said = " ".join(reason for standing in ranked for reason in standing.reasons)
+    words = [word for word in ("known within 30 %", "matched", "soft sensor") if word in said]
+    yield Chapter("Verdicts", "Verdicts", note, ("verdict", *words), tuple(blocks))
 
 
 def parameters(view: View, results: Sequence[Parameters]) -> Iterator[Chapter]:
@@ -67,12 +63,22 @@ def parameters(view: View, results: Sequence[Parameters]) -> Iterator[Chapter]:
         )
         title = titled("Parameters", group[0].name.experiment)
         robot = f"Robot {group[0].robot_name}. " if group[0].robot_name else ""
-        words = ("95 % interval", "a priori", "published", "condition number")
         if i:
             good = sum(r.extra.get("verdict") == GOOD for r in group)
             robot += f"{len(group)} identifications; the verdict on {good or 'none'} is good. "
             blocks = (Fold("Show the estimates", blocks),)
-        yield Chapter(title, title, robot, words, blocks)
+        yield Chapter(title, title, robot, tuple(_words(group)), blocks)
+
+
+def _words(group: Sequence[Parameters]) -> Iterator[str]:
+    """The words that the chapter of these estimates uses."""
+    yield "95 % interval"
+    if group[0].robot:
+        yield "a priori"
+    if any(r.name.published for r in group):
+        yield "published"
+    if any("condition_number" in r.extra for r in group):
+        yield "condition number"
 
 
 def same_parameters(result: Parameters | Trace) -> tuple[tuple[str, ...], str | None, str]:

@@ -56,7 +56,8 @@ def opening(ranking: Ranking, colours: dict[str, int]) -> Opening:
 def _headline(ranking: Ranking) -> str:
     best, count = ranking.best.name, len(ranking.standings)
     if count == 1:
-        return f"{best}: {ranking.best.grade}" if ranking.best.grade else best
+        grade = ranking.best.grade
+        return f"The estimates of {best} are {grade}" if grade else f"The estimates of {best}"
     return f"{best} is the best of {count} identifications"
 
 
@@ -84,7 +85,7 @@ def _known(best: Standing) -> str:
 
 def _belief(best: Standing) -> str:
     if not best.grade:
-        return ""
+        return "The tables state no verdict; a CSV file cannot carry one."
     reasons = "; ".join(best.reasons[:1])
     belief = BELIEF.get(best.grade, "No: the log does not determine the parameters")
     return f"{belief}: {reasons}." if reasons else f"{belief}."

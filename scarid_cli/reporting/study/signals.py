@@ -9,7 +9,7 @@ import numpy as np
 
 from scarid_cli.arrays import Array
 from scarid_cli.reporting.kinds import Measurement, Metrics, MotionEstimate, Prediction
-from scarid_cli.reporting.parts import Panel, Panels, Series, number
+from scarid_cli.reporting.parts import Panel, Panels, Section, Series, number
 from scarid_cli.reporting.signals import logs as logs_section
 from scarid_cli.reporting.signals import soft_sensors as sensors_section
 from scarid_cli.reporting.study.blocks import Block, Chapter, Figure, Fold, Grid, Key, figure
@@ -28,19 +28,25 @@ TAIL = 0.2  # % of the samples at either end that an axis may clip
 def torques(view: View, results: Sequence[Metrics | Prediction]) -> Iterator[Chapter]:
     """How well torques are predicted: all experiments side by side, then each one."""
     metrics = of_kind(results, Metrics)
-    overview = [Grid(section) for section in experiments(metrics)]
+    overview = [Grid(_ranked(view, section, metrics)) for section in experiments(metrics)]
     words = ("relative error", "R2", "residual", *map(experiment_of, results))
     if overview:
         note = overview[0].section.note
         yield Chapter("Torque prediction", "Torques", note, words, tuple(overview))
     for group in grouped(results, lambda r: (r.joints, r.name.experiment)):
-        section = torque_section(group, view.colours)
+        section = _ranked(view, torque_section(group, view.colours), metrics)
         blocks: list[Block] = [Grid(section)] if section.rows else []
         predicted = sorted(of_kind(group, Prediction), key=view.place)
         if overview and blocks and predicted:
             blocks = [Fold("Table of this experiment", tuple(blocks))]
         blocks = [*_predictions(view, predicted, metrics), *blocks]
         yield Chapter(section.title, section.title, "", words, tuple(blocks))
+
+
+def _ranked(view: View, section: Section, metrics: Sequence[Metrics]) -> Section:
+    """The section with the best method first, and published values below all others."""
+    places = {r.name.shown: (r.name.published, view.place(r)) for r in metrics}
+    return replace(section, rows=tuple(sorted(section.rows, key=lambda row: places[row[0]])))
 
 
 def _predictions(
