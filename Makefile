@@ -1,8 +1,11 @@
 # make paper    the paper's identification procedure, from excitation to build/paper/report.html
 # make paper-montecarlo SEEDS=50   the same over many seeds: medians, quartiles, rankings
 # make test     the whole test suite
+# make fuzz     the tests with generated inputs, 5000 of them each (FUZZ=...), and others each time
+# make mutants  whether the tests notice a changed operator: 200 changes (two hours)
 # make docs-test   the code blocks of the documentation, including those that take long
 # make lint     ruff and mypy
+# make faults   inject every kind of fault, and write docs/faults.md (a quarter of an hour)
 # make bench    start-up, time per sample, memory
 # make bench-excitation   optimised excitations of several robots beside random ones (an hour)
 # make bench-experiments  expected errors, sequences of experiments, arms of URDFs (an hour)
@@ -30,7 +33,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -58,6 +61,22 @@ test: $(VENV)/tested  # one thread of linear algebra for each process of the tes
 
 docs-test: $(VENV)/tested
 	SCARID_DOCS=all $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/docs
+
+FUZZ := 5000
+fuzz: $(VENV)/tested
+	SCARID_FUZZ=$(FUZZ) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/fuzz
+
+$(VENV)/mutable: $(VENV)/tested
+	$(PIP) install --editable '.[mutants]'
+	@touch $@
+
+mutants: $(VENV)/mutable  # goes on where it was stopped; after changes: rm -r build/mutants
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python benchmarks/mutants.py
+
+faults: $(VENV)/tested  # the page is replaced only by a whole one
+	@mkdir -p build
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python tests/faults/campaign.py > build/faults.md; \
+	  status=$$?; test -s build/faults.md && mv build/faults.md docs/faults.md; exit $$status
 
 lint: $(VENV)/tested
 	$(BIN)/ruff check .

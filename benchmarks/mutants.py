@@ -32,7 +32,7 @@ FOLDER = ROOT / "build" / "mutants"
 
 # Changes that once passed all tests: a file, its text, and the changed text.
 FORMER = (
-    ("scarid_cli/io/reader.py", "found, expected, row + bad + 1", "found, expected, row + bad"),
+    ("scarid_cli/io/reader.py", "table.row(row + bad + 1)", "table.row(row + bad)"),
     ("scarid_cli/io/reader.py", "row += batch.num_rows", "row -= batch.num_rows"),
     (
         "scarid_cli/cli/actions/filter.py",
@@ -50,9 +50,9 @@ FORMER = (
 class Study:
     """The sample of changes, and the tree in which they are made."""
 
-    folder: Path
     tree: Path
     reached: reached.Reached
+    breadth: dict[str, int]
 
     def sample(self, count: int, seed: int) -> list[Mutation]:
         """The former changes, and so many others, of each kind in turn."""
@@ -88,8 +88,8 @@ class Study:
         found = set().union(*(self.reached.by(mutation.file, line) for line in lines or ()))
         if lines is None:
             found = self.reached.module(mutation.file)
-        breadth = self.reached.breadth()
-        return sorted(found, key=lambda name: (self.reached.taken[name] + 0.05) * breadth[name])
+        taken, breadth = self.reached.taken, self.breadth
+        return sorted(found, key=lambda name: (taken[name] + 0.05) * breadth[name])
 
 
 def main() -> None:
@@ -97,18 +97,12 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200, help="changes, beside former ones")
     parser.add_argument("--seed", type=int, default=16)
     parser.add_argument("--folder", type=Path, default=FOLDER)
+    parser.add_argument("--seconds", type=float, default=300.0, help="of tests for a change")
     parser.add_argument("--again", action="store_true", help="try the survivors once more")
     given = parser.parse_args()
     folder = given.folder.resolve()
-    tree = folder / "tree"
-    if not (folder / "passed.json").exists():
-        _copy(tree)
-        shutil.copytree(tree / "scarid_cli", folder / "original" / "scarid_cli")
-        reached.record(folder, tree)
-    # A run that was killed may have left a change.
-    shutil.copytree(folder / "original", tree, dirs_exist_ok=True)
-    study = Study(folder, tree, reached.read(folder, tree))
-    trials = Trials(tree, study.reached.taken)
+    study = _prepared(folder)
+    trials = Trials(study.tree, study.reached.taken, given.seconds)
     if trials.outcome("", study.control(), list(study.reached.taken)[::500]).result != "survived":
         raise SystemExit(f"tests fail without any change: see {folder / 'log'}")
     results = folder / "outcomes.jsonl"
@@ -120,8 +114,23 @@ def main() -> None:
             with results.open("a") as file:
                 file.write(json.dumps(asdict(outcome)) + "\n")
             print(f"{outcome.result:<9} {outcome.seconds:5.0f} s  {_line(outcome)}", flush=True)
-    (folder / "mutants.md").write_text(_page(list(known.values())))
-    print(_page(list(known.values())))
+    page = _page(list(known.values()))
+    (folder / "mutants.md").write_text(page)
+    print(page)
+
+
+def _prepared(folder: Path) -> Study:
+    """A copy of the tree, and which tests reach its lines; recorded if that was not done yet."""
+    tree, original = folder / "tree", folder / "original"
+    if not (folder / "passed.json").exists():
+        _copy(tree)
+        shutil.rmtree(original, ignore_errors=True)
+        shutil.copytree(tree / "scarid_cli", original / "scarid_cli")
+        reached.record(folder, tree)
+    # A run that was killed may have left a change.
+    shutil.copytree(original, tree, dirs_exist_ok=True)
+    found = reached.read(folder, tree)
+    return Study(tree, found, found.breadth())
 
 
 def _name(mutation: Mutation) -> str:

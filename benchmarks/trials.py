@@ -17,7 +17,6 @@ import pytest
 from mutations import Mutation
 
 FEW = 2  # tests of one function in the first round: its other cases are likely to agree
-MOST = 300.0  # s of tests for one change, as they took when they were recorded
 PATIENCE = 10.0  # times as long as recorded, and two minutes: then the change makes them hang
 LIBRARIES = ("numpy", "pyarrow.csv", "pyarrow.parquet", "scipy.signal", "scipy.optimize")
 NOTICED = ("noticed", "hangs", "no import")
@@ -40,9 +39,10 @@ class Outcome:
 class Trials:
     """Runs tests in forks of this process, which has imported what they need of libraries."""
 
-    def __init__(self, tree: Path, taken: dict[str, float]) -> None:
+    def __init__(self, tree: Path, taken: dict[str, float], most: float) -> None:
         self._tree = tree
         self._taken = taken
+        self._most = most  # s of tests for one change, as they took when they were recorded
         paths = (str(tree), str(tree / "benchmarks"))
         os.environ.update(PYTHONPATH=os.pathsep.join(paths), PYTHONDONTWRITEBYTECODE="1")
         sys.path[:0] = paths
@@ -79,7 +79,7 @@ class Trials:
         first, rest, spent = [], [], 0.0
         for name in tests:
             spent += self._taken[name]
-            if spent > MOST and (first or rest):
+            if spent > self._most and (first or rest):
                 break
             seen[function := name.partition("[")[0]] += 1
             (first if seen[function] <= FEW else rest).append(name)
@@ -95,14 +95,11 @@ class Trials:
         status = _waited(child, limit)
         if status is None:
             return "hangs", ""
-        failed = [
-            x
-            for x in log.read_text(errors="replace").splitlines()
-            if x.startswith(("FAILED", "ERROR"))
-        ]
+        lines = log.read_text(errors="replace").splitlines()
+        failed = [line for line in lines if line.startswith(("FAILED", "ERROR"))]
         by = failed[0].split(" - ")[0].partition(" ")[2] if failed else ""
         code = os.waitstatus_to_exitcode(status)
-        if code == pytest.ExitCode.USAGE_ERROR:
+        if code == pytest.ExitCode.USAGE_ERROR and not any("ERROR collecting" in x for x in lines):
             raise RuntimeError(f"the tests are not there: {log.read_text()}")
         results = {pytest.ExitCode.OK: "survived", pytest.ExitCode.TESTS_FAILED: "noticed"}
         return results.get(code, "no import"), by

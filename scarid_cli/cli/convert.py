@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from scarid_cli.cli import options
+from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 
 
@@ -79,6 +79,7 @@ from scarid_cli.cli.declare import declare
 @click.option(
     "--header", metavar="NAMES", default="", help="The column names of a log without a header."
 )
+@selecting.window
 @options.table_output
 @options.common
 def command() -> None:
@@ -87,6 +88,7 @@ def command() -> None:
     \b
       scarid convert log.csv -o log.parquet
       scarid convert log.parquet | head
+      scarid convert --from-time 1 --to-time 4 log.csv -o part.parquet
       scarid convert --map 'q1=joint_1_pos,tau1=effort_1' --unit 'q*=deg' robot.csv -o log.parquet
       scarid convert --separator ';' --decimal-comma --header t,q1,tau1 export.txt
       scarid convert positions.txt --beside torques.txt --map 'q*=positions,tau*=torques' --rate 500

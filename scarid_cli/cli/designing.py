@@ -47,7 +47,13 @@ def asked(job: Job, robot: Robot, given: dict[str, Any]) -> Asked:
     elif before:
         own = before.noise
     known = before.information if before else np.zeros((count, count))
-    return Asked(own if (own > 0.0).all() else None, known)
+    noise = own if (own > 0.0).all() else None
+    if given["expected"] and noise is None:
+        raise UsageFault(
+            f"--expected needs the torque noise, which {robot.name} does not state; give "
+            "--torque-noise"
+        )
+    return Asked(noise, known)
 
 
 @dataclass(frozen=True)

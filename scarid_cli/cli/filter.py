@@ -42,7 +42,7 @@ def command() -> None:
     \b
       scarid filter --cutoff 20 log.csv | scarid differentiate
       scarid filter --natural-frequency 2 -c 'tau*' log.parquet -o filtered.parquet
-      scarid filter --zero-phase --cutoff 100 -c q1 log.csv
+      scarid filter --zero-phase --cutoff 40 -c q1 log.csv
 
     The filter is a Butterworth filter (paper section 3.2), causal and streaming unless --zero-phase
     is given. A causal filter delays what it filters, so filter positions and torques alike. A

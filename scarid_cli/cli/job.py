@@ -25,7 +25,8 @@ from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
 from scarid_cli.io.selection import REFUSE, SPLIT, Lacking, within
 from scarid_cli.io.stated import in_file, stated_robot
 from scarid_cli.io.table import Table
-from scarid_cli.io.writer import Document, Handover, Output, all_or_none, same_place
+from scarid_cli.io.target import same_place
+from scarid_cli.io.writer import Document, Handover, InFolder, Output, all_or_none
 from scarid_cli.printable import printable
 
 if TYPE_CHECKING:
@@ -76,6 +77,10 @@ class Job:
         """The output for a document beside the tables, which is opened early as well."""
         return self._new(path, lambda: Document(path))
 
+    def figure(self, path: str) -> Document:
+        """The output for a document in a folder that is made if need be."""
+        return self._new(path, lambda: InFolder(path))
+
     def side_table(self, path: str | None) -> Output | None:
         """The table of a side output, if it was asked for."""
         return self.output(path) if path else None
@@ -108,7 +113,7 @@ class Job:
         if not kind:
             return self._reported(table)
         if schemas.load(kind).sampled:
-            table = within(table, self._selection)
+            table = self.within(table)
         return self._checked(table, kind, reads, regular=regular)
 
     def _checked(self, table: Table, kind: str, reads: Reads | None, *, regular: bool) -> Table:
@@ -143,7 +148,7 @@ class Job:
         the command can do `without_derivatives`, this is the kind of a table that has none. Values
         and clock of a table `as_recorded` are not checked.
         """
-        opened = within(self._opened_table(path), self._selection)
+        opened = self.within(self._opened_table(path))
         if without_derivatives and not schemas.numbered(opened.columns, "ddq"):
             kind = without_derivatives
         table = conforming(opened, kind)
@@ -151,7 +156,7 @@ class Job:
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
         columns = schemas.of_joints(len(arm.joints), *fields)
-        require(table, columns, f"this one for robot {arm.name} (another: --robot)")
+        require(table, columns, f"this column for robot {arm.name} (another: --robot)")
         if remark := misfit(table, arm, columns):
             self.notes.append(remark)
         if as_recorded:
@@ -198,7 +203,11 @@ class Job:
 
     def read_source(self, source: ByteSource) -> Table:
         """A table of any kind from bytes that are open already."""
-        return self._reported(within(self._followed(source), self._selection))
+        return self._reported(self._followed(source))
+
+    def within(self, table: Table) -> Table:
+        """The rows of a log that --from-time, --to-time and --rows choose."""
+        return within(table, self._selection)
 
     def _reported(self, table: Table) -> Table:
         """The table, reported with --verbose."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import shlex
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +15,7 @@ from scarid_cli.cli.command_line import command_line, given_words, was_given
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.options import SELECTION
 from scarid_cli.cli.progress import steps
+from scarid_cli.errors import BadData
 from scarid_cli.io.table import Table
 
 
@@ -31,11 +34,24 @@ def motion(
     for finding in of_measurement(replace(measurement, batches=iter(batches)), robot):
         job.say(f"warning: {finding.text}")
     measurement = replace(measurement, batches=iter(batches))
-    with steps(quiet=job.quiet) as progress:
+    with steps(quiet=job.quiet) as progress, _explained(measurement):
         found, bandwidth, smoother = motion_of(measurement, robot, progress, job.left_out)
     job.say(f"a measurement, not a motion: {bandwidth.text}")
     job.say(f"the same as: {_pipe(smoother, added, rates)}")
     return found
+
+
+@contextlib.contextmanager
+def _explained(measurement: Table) -> Iterator[None]:
+    """A log that cannot be used because its time is not in seconds is refused for this reason."""
+    from scarid_cli.stages.glance import of_rate
+
+    try:
+        yield
+    except BadData:
+        if finding := of_rate(measurement.period):
+            raise BadData(f"{measurement.name}: {finding.text}") from None
+        raise
 
 
 def _pipe(smoother: Any, added: list[str], rates: dict[str, str]) -> str:

@@ -133,7 +133,7 @@ ROBOT = InputFile(endings=(".toml", ".urdf"))  # or the name of a robot
 NUMBERS = Numbers()
 NUMBER = Number(POSITIVE)
 # Beyond these a command would run for hours, or need more memory than there is.
-RATE = Number(Range(0.0, 1e7, open=True))  # Hz
+RATE = Number(Range(1e-9, 1e7, open=True))  # Hz
 DURATION = Number(Range(0.0, 1e6, open=True))  # s
 
 

@@ -49,6 +49,7 @@ def counted(
 
     text = "{task.fields[rows]:,} rows"
     with _bar(text, known=part(held) is not None, since=time.monotonic() - start) as show:
+        show(part(held), held)
         for batch in batches:
             yield batch
             held += batch.num_rows

@@ -43,8 +43,7 @@ def read_recording(
         )
     _say(job, main, topic, given=bool(wanted))
     table, notes = recorded(source.name, main, other, choice.join)
-    for note in notes:
-        job.say(note)
+    job.notes += notes
     return table
 
 
@@ -87,7 +86,7 @@ def _say(job: Job, main: Series, topic: Topic, *, given: bool) -> None:
         if given
         else (f"joints in the order of the first message: {joints} (another: --robot or --joints)")
     )
-    job.say(f"{topic.name} ({topic.type}), {_messages(topic.messages)}, {order}")
+    job.notes.append(f"{topic.name} ({topic.type}), {_messages(topic.messages)}, {order}")
 
 
 def _messages(count: int) -> str:

@@ -22,9 +22,15 @@ from scarid_cli.cli.declare import declare
     help="Files of the same name in different folders are repetitions of one experiment: print "
     "medians and quartiles.",
 )
+@click.option(
+    "--fleet",
+    metavar="FOLDER",
+    help="Report the outcome of a batch, which is in FOLDER, in place of FILEs: one row per log.",
+)
 @options.side_output("--figures", metavar="FOLDER", help="Write each figure as an SVG file.")
 @click.option(
-    "--title", default="Identification report", show_default=True, help="Title of the documents."
+    "--title",
+    help="Title of the documents.  [default: Identification report, with --fleet Fleet report]",
 )
 @options.common
 def command() -> None:
@@ -35,6 +41,7 @@ def command() -> None:
       scarid report *.parquet --html report.html --markdown report.md
       scarid identify motion.parquet | scarid report
       scarid report --repeated runs/*/p2smd.cross.metrics.parquet
+      scarid report --fleet outcome --html outcome/fleet.html
 
     A file is named METHOD.EXPERIMENT.KIND.EXTENSION: p2smd.direct.metrics.parquet holds the metrics
     of method p2smd in experiment direct. EXPERIMENT and KIND may be left out. Methods appear in the
@@ -48,6 +55,10 @@ def command() -> None:
 
     A priori values are those of the robot named in the metadata. CSV has no metadata; a CSV takes
     the robot of another table with the same parameters.
+
+    --fleet prints which robots and logs of a batch need a look. Its page has a row for each log,
+    the failures first, which a browser sorts and filters without a network, with links to the pages
+    of the logs.
 
     --html - or --markdown - writes that document to standard output in place of the tables. Tables
     of any length are read in bounded memory.

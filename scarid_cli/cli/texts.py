@@ -54,7 +54,7 @@ def _read(
     if notation.plain:
         return job.read_source(source)
     if not (given and given.separator):
-        job.say(f"{source.name}: read with {notation.text}")
+        job.notes.append(f"{source.name}: read with {notation.text}")
     return job.read_source(TranslatedCsv(source, notation))
 
 
@@ -76,7 +76,7 @@ def columns_of(
         return Columns({**own, **names}, [*known, *units], found.name)
     inside = units_in_names([c for c in table.columns if c not in described.values()], names)
     for old, (new, unit) in inside.items():
-        job.say(f"column {old!r} becomes {new}, from {unit} as its name says")
+        job.notes.append(f"column {old!r} becomes {new}, from {unit} as its name says")
     return Columns({**{new: old for old, (new, _) in inside.items()}, **names},
                    [*inside.values(), *units])  # fmt: skip
 
@@ -90,9 +90,9 @@ def _with_torques(found: Recognised, robot: Robot | None) -> dict[str, str]:
 
 def _tell(job: Job, found: Recognised, columns: dict[str, str]) -> None:
     joints = f", joints {', '.join(found.joints)}" if found.joints else ""
-    job.say(f"columns of {found.name}{joints}")
+    job.notes.append(f"columns of {found.name}{joints}")
     if any(new.startswith("current") for new in columns):
-        job.say(
+        job.notes.append(
             "currents stay currents [A]: --robot FILE makes them torques, if its description has "
             'torques = "current" in [log] and a torque_constant for each joint (docs/robots.md)'
         )

@@ -149,7 +149,8 @@ def command() -> None:
       scarid trajgen --robot emps --duration 30 --segment 1 4 | scarid simulate --robot emps
       scarid trajgen --via points.csv --rate 500
       scarid trajgen --robot arm.urdf --ddq-max 5 --home 0,-0.5 -o reference.csv
-      scarid trajgen --robot arm.toml --optimise --expected errors.csv -o reference.parquet
+      scarid trajgen --robot arm.toml --optimise -o reference.parquet
+      scarid trajgen --robot scara2 --seed 1 --expected errors.csv -o reference.parquet
       scarid trajgen --robot arm.toml --optimise --after parameters.parquet -o next.parquet
 
     The motion starts and ends at rest at the home position and stays within the limits on position,

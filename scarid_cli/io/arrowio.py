@@ -10,15 +10,18 @@ import pyarrow as pa
 import pyarrow.ipc as ipc
 
 from scarid_cli.errors import BadData, OutputFailure, ScaridError, cut_short
-from scarid_cli.io.bytesource import CHUNK, STDIN, ByteSource, require_moderate
+from scarid_cli.io.bytesource import STDIN, ByteSource, require_moderate
+from scarid_cli.io.parts import parts
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
+from scarid_cli.io.weight import Blocks, Weighed
 
+COPIES = 4  # of a group of rows that are in memory while it is written
 END_OF_STREAM = b"\xff\xff\xff\xff\x00\x00\x00\x00"
 # Rows of a Parquet row group or of a block of an Arrow file. They are fixed so that the bytes of a
 # file do not depend on how its rows arrived.
 GROUP_ROWS = 1 << 16
-READ_ROWS = 1 << 13
+GROUP = 1 << 26  # bytes of the numbers of a group at most; wide tables have fewer rows in each
 
 
 def read_stream(source: ByteSource) -> Table:
@@ -26,7 +29,7 @@ def read_stream(source: ByteSource) -> Table:
     if isinstance(source, Handed):
         return source.table
     try:
-        reader = ipc.open_stream(pa.PythonFile(source, mode="r"))
+        reader = ipc.open_stream(pa.PythonFile(Weighed(source), mode="r"))
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source.name, error) from None
 
@@ -61,39 +64,33 @@ class Handed(ByteSource):
 
 def read_file(source: ByteSource) -> Table:
     """A table from an Arrow IPC file."""
+    file = source.seekable()
+    blocks = Blocks.of(source.name, file)
+    blocks.require_moderate(blocks.dictionaries)
     try:
-        reader = ipc.open_file(pa.PythonFile(source.seekable(), mode="r"))
+        reader = ipc.open_file(pa.PythonFile(file, mode="r"))
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source.name, error) from None
-    batches = (reader.get_batch(i) for i in range(reader.num_record_batches))
-    return _table(source.name, reader.schema, _small(batches))
+
+    def batches() -> Iterator[pa.RecordBatch]:
+        for i, block in enumerate(blocks.records):
+            blocks.require_moderate([block])
+            yield reader.get_batch(i)
+
+    return _table(source.name, reader.schema, batches())
 
 
 def read_parquet(source: ByteSource) -> Table:
     """A table from Parquet."""
-    import pyarrow.parquet as pq
+    from scarid_cli.io import pages
 
     try:
-        # Buffered, or a row group of another writer (a million rows) would be read whole.
-        file = pq.ParquetFile(
-            source.seekable(),
-            pre_buffer=False,
-            buffer_size=CHUNK,
-            page_checksum_verification=True,
-        )
+        file = pages.opened(source.seekable(), source.name)
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source.name, error) from None
-    require_moderate(source.name, _largest_chunk(file.metadata))
-    batches = file.iter_batches(batch_size=READ_ROWS, use_threads=False)
+    batches = file.iter_batches(batch_size=pages.rows_at_once(file), use_threads=False)
     found = _counted(batches, source.name, file.metadata)
     return replace(_table(source.name, file.schema_arrow, found), length=file.metadata.num_rows)
-
-
-def _largest_chunk(footer: Any) -> int:
-    """The bytes of the largest column of a row group: what a page of it may unfold to."""
-    groups = (footer.row_group(i) for i in range(footer.num_row_groups))
-    sizes = (g.column(i).total_uncompressed_size for g in groups for i in range(g.num_columns))
-    return max(sizes, default=0)
 
 
 def _counted(batches: Iterator[pa.RecordBatch], name: str, footer: Any) -> Iterator[pa.RecordBatch]:
@@ -107,12 +104,6 @@ def _counted(batches: Iterator[pa.RecordBatch], name: str, footer: Any) -> Itera
             f"{name}: found {rows} rows, expected {footer.num_rows} as the end of the file states; "
             "the file is damaged, write it again"
         )
-
-
-def _small(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-    for batch in batches:
-        for start in range(0, batch.num_rows, READ_ROWS):
-            yield batch.slice(start, READ_ROWS)
 
 
 def _unreadable(name: str, error: Exception) -> ScaridError:
@@ -136,7 +127,7 @@ def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> T
 
 
 def _sound(name: str, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-    """The batches, each with buffers that can be read; damage found on the way is BadData."""
+    """The batches in parts, with buffers that can be read; damage found on the way is BadData."""
     while True:
         try:
             batch = next(batches, None)
@@ -146,7 +137,7 @@ def _sound(name: str, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBa
             batch.validate(full=not all(pa.types.is_primitive(f.type) for f in batch.schema))
         except (pa.ArrowException, OSError) as error:
             raise _unreadable(name, error) from None
-        yield batch
+        yield from parts(batch, name)
 
 
 def _plain(field: pa.Field) -> pa.Field:
@@ -238,15 +229,17 @@ class _GroupWriter(_Writer):
         super().__init__(write, schema)
         self._held: list[pa.RecordBatch] = []
         self._rows = 0
+        self._group = min(GROUP_ROWS, max(1, GROUP // (8 * max(1, len(schema)))))
 
     def write(self, batch: pa.RecordBatch) -> None:
         self._held.append(batch.replace_schema_metadata(self._schema.metadata))
         self._rows += batch.num_rows
-        while self._rows >= GROUP_ROWS:
+        require_moderate("the output", COPIES * sum(held.nbytes for held in self._held))
+        while self._rows >= self._group:
             table = pa.Table.from_batches(self._held, self._schema)
-            self._put(table.slice(0, GROUP_ROWS))
-            self._held = table.slice(GROUP_ROWS).to_batches()
-            self._rows -= GROUP_ROWS
+            self._put(table.slice(0, self._group))
+            self._held = table.slice(self._group).to_batches()
+            self._rows -= self._group
 
     def close(self) -> None:
         if self._rows:

@@ -12,6 +12,7 @@ STDIN = "<stdin>"
 CHUNK = 1 << 20
 GZIP, GZIP_BITS = b"\x1f\x8b", 31  # its first bytes, and the format as zlib knows it
 MAX_BATCH = 1 << 29  # bytes
+ROWS = 8  # a single row may take this part of it
 
 
 def max_batch() -> int:
@@ -31,6 +32,16 @@ def require_moderate(name: str, size: int) -> None:
             f"{name}: a part of it takes {size / 1e6:.0f} MB of memory, more than "
             f"{max_batch() / 1e6:.0f} MB; write it in smaller groups of rows, or set "
             "SCARID_MAX_BATCH to more megabytes"
+        )
+
+
+def require_moderate_row(name: str, size: int) -> None:
+    """Refuse an input of which a row would take so many bytes: it is held in several forms."""
+    if size > max_batch() // ROWS:
+        raise BadData(
+            f"{name}: a row of it takes {size / 1e6:.0f} MB of memory, more than "
+            f"{max_batch() / ROWS / 1e6:.0f} MB; correct it, or set SCARID_MAX_BATCH to more "
+            "megabytes"
         )
 
 
@@ -74,11 +85,12 @@ class ByteSource:
 
     def peek_lines(self, count: int) -> bytes:
         """At least the next lines (fewer only at the end), without consuming them."""
-        while self._ahead.count(b"\n") < count:
-            data = self._fetch(CHUNK)
-            if not data:
-                break
-            self._ahead += data
+        parts, lines, size = [self._ahead], self._ahead.count(b"\n"), len(self._ahead)
+        while lines < count and (data := self._fetch(CHUNK)):
+            parts.append(data)
+            lines, size = lines + data.count(b"\n"), size + len(data)
+            require_moderate_row(self.name, size // (lines + 1))
+        self._ahead = b"".join(parts)
         return self._ahead
 
     def drop_comments(self, marks: bytes) -> None:
@@ -191,13 +203,14 @@ class Unzipped(Wrapped):
 
     def _fetch(self, size: int) -> bytes:
         while True:
-            data = self._member.unused_data or self.source.read_some(size)
+            rest = self._member.unconsumed_tail or self._member.unused_data
+            data = rest or self.source.read_some(size)
             if not data and not self._member.eof:
                 raise BadData(f"{self.name}: a gzip file that was cut short; copy it again")
             if self._member.eof and data:  # files that were joined
                 self._member = self._zlib.decompressobj(GZIP_BITS)
             try:
-                found = self._member.decompress(data)
+                found = self._member.decompress(data, size)  # a little can unfold to gigabytes
             except self._zlib.error as error:
                 raise BadData(f"{self.name}: a broken gzip file ({error}); copy it again") from None
             if found or not data:

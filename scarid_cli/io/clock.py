@@ -111,7 +111,7 @@ def _regular(table: Table, period: float) -> Iterator[pa.RecordBatch]:
         raise BadData(
             f"{table.name}, column t: found a mean interval of {mean:.9g} s over {row} rows, "
             f"expected {period:.9g} s like the first; put it on a constant rate with "
-            "`scarid resample --rate`"
+            f"`scarid resample --rate {1.0 / period:.4g}`"
         )
 
 
@@ -139,7 +139,7 @@ def _check_steps(steps: Array, t: Array, table: Table, period: float, row: int) 
         table.name,
         f"an interval of {steps[at]:.6g} s",
         expected=f"{period:.6g} s within {JITTER:.0%}",
-        remedy="put it on a constant rate with `scarid resample --rate`",
+        remedy=f"put it on a constant rate with `scarid resample --rate {1.0 / period:.4g}`",
         row=table.row(row + at),
         column="t",
     )

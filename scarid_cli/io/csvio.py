@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.csv as pacsv
 
 from scarid_cli.errors import BadData, bad_data, cut_short
-from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.bytesource import ByteSource, require_moderate_row
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Metadata, Table
 
@@ -35,14 +35,18 @@ def read_csv(source: ByteSource) -> Table:
     try:
         return _table(source)
     except csv.Error:
-        raise BadData(f"{source.name}: neither CSV nor Parquet nor Arrow; is it a table?") from None
+        raise _not_a_table(source.name) from None
+
+
+def _not_a_table(name: str) -> BadData:
+    return BadData(f"{name}: neither CSV nor Parquet nor Arrow; is it a table?")
 
 
 def _table(source: ByteSource) -> Table:
     lines = _complete_lines(source)
     first = next(lines, b"")
     while not (header_end := _header_end(first)) and (more := next(lines, None)):
-        first += more
+        first = more
     if not header_end:
         raise bad_data(
             source.name,
@@ -66,13 +70,15 @@ def _complete_lines(source: ByteSource) -> Iterator[bytes]:
     tells whether it ends within quotes.
     """
     held: list[bytes] = []
-    inside = False
+    inside, size = False, 0
     while data := source.read_some():
         end = _last_row_end(data, inside=inside)
         if end:
             yield b"".join([*held, data[:end]])
             held, inside, data = [], False, data[end:]
         held.append(data)
+        size = len(data) if end else size + len(data)
+        require_moderate_row(source.name, size)
         inside ^= bool(data.count(b'"') % 2)
     if rest := b"".join(held):
         yield rest + b"\n"
@@ -90,18 +96,22 @@ def _last_row_end(data: bytes, *, inside: bool) -> int:
 
 
 def _header_end(block: bytes) -> int:
-    """Where the rows begin, after leading comments and the header; 0 if that has not arrived."""
-    if not block.strip():
-        return 0
+    """Where the rows begin, after the header; 0 if that has not arrived.
+
+    Comments and empty lines may precede it.
+    """
     start = 0
-    while block.startswith(b"#", start):
-        start = block.find(b"\n", start) + 1
-        if start == len(block):
-            return 0
-    return block.find(b"\n", start) + 1
+    while end := block.find(b"\n", start) + 1:
+        line = block[start:end].removeprefix(BOM.encode())
+        if line.strip() and not line.startswith(b"#"):
+            return end
+        start = end
+    return 0
 
 
 def _header(block: bytes, end: int, name: str) -> list[str]:
+    if b"\0" in block[:end]:
+        raise _not_a_table(name)
     text = block[:end].decode("utf-8-sig", errors="replace")
     line = text.rstrip("\r\n").rpartition("\n")[2]
     names = [column.strip() for column in next(csv.reader([line]), [])]
@@ -110,9 +120,16 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
             name,
             f"the single column {names[0]!r}",
             expected="columns separated by commas",
-            remedy="convert it first with `scarid convert --separator CHAR`",
+            remedy="convert it first: `scarid convert` finds the separator",
         )
-    for column in names:
+    if names and all(NUMERIC.match(column) for column in names):
+        raise bad_data(
+            name,
+            f"{len(names)} numbers in the first line",
+            expected="a header with the names of the columns",
+            remedy="name them with `scarid convert --header t,q1,...`",
+        )
+    for column in names if len(set(names)) < len(names) or not all(names) else ():
         if not column or names.count(column) > 1:
             found = f"{names.count(column)} columns of this name" if column else "no name"
             raise bad_data(
@@ -181,7 +198,7 @@ def _parsed(block: bytes, schema: pa.Schema) -> pa.Table:
             column_types=schema,
             null_values=[""],
             strings_can_be_null=True,
-            quoted_strings_can_be_null=False,
+            quoted_strings_can_be_null=_one_of_numbers(schema),
         ),
     )
 
@@ -257,7 +274,17 @@ def _numbers(batch: pa.RecordBatch) -> bytes:
     buffer = pa.BufferOutputStream()
     options = pacsv.WriteOptions(include_header=False, quoting_style="none")
     pacsv.write_csv(batch, buffer, options)
-    return bytes(memoryview(buffer.getvalue()))
+    text = bytes(memoryview(buffer.getvalue()))
+    if _one_of_numbers(batch.schema) and batch.column(0).null_count:
+        return b"".join(
+            line if line.strip() else b'""\n' for line in text.splitlines(keepends=True)
+        )
+    return text
+
+
+def _one_of_numbers(schema: pa.Schema) -> bool:
+    """Whether there is a single column, of numbers: an empty cell of it would be an empty line."""
+    return len(schema) == 1 and not pa.types.is_string(schema.field(0).type)
 
 
 def _csv_text(rows: Sequence[Sequence[str]]) -> bytes:

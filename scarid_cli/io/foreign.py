@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import struct
+from os import SEEK_END
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.errors import BadData, OutputFailure, UsageFault, bad_data
-from scarid_cli.io.bytesource import ByteSource, Wrapped, require_moderate
+from scarid_cli.errors import BadData, ScaridError, bad_data
+from scarid_cli.io.bytesource import ByteSource, Wrapped, max_batch, require_moderate
+from scarid_cli.io.matfile import COPIES, TOO_LARGE
 from scarid_cli.io.notation import SPACE, Notation
 from scarid_cli.io.table import Metadata, Table, doubles
 
 ARCHIVES = (".npz", ".mat")
+END_OF_ZIP = struct.Struct("<4s6xH10x")  # the last bytes: a mark, and how many files there are
+MANY = 0xFFFF  # stands for a number that is elsewhere
 COMMENTS = b"#%"  # that begin a line before the header
 
 
@@ -73,7 +78,7 @@ def read_archive(path: str) -> Table:
 def _read(path: str) -> dict[str, Any]:
     try:
         return _npz(path) if path.endswith(".npz") else _mat(path)
-    except (MemoryError, UsageFault, OutputFailure):
+    except (MemoryError, ScaridError):
         raise
     except Exception as error:  # damage shows in whatever a reader does with it
         reason = " ".join(str(error).split()) or type(error).__name__
@@ -82,14 +87,28 @@ def _read(path: str) -> dict[str, Any]:
         ) from None
 
 
-def _npz(path: str) -> dict[str, Any]:
+def require_moderate_archive(path: str) -> None:
+    """Refuse an .npz file whose arrays would take far too much memory, which they do twice."""
     import zipfile
 
     with zipfile.ZipFile(path) as archive:
-        for entry in archive.infolist():
-            require_moderate(path, entry.file_size)
+        require_moderate(path, COPIES * sum(entry.file_size for entry in archive.infolist()))
+        _require_all(path, len(archive.infolist()))
+
+
+def _npz(path: str) -> dict[str, Any]:
+    require_moderate_archive(path)
     with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as arrays:
         return {name: arrays[name] for name in arrays.files}
+
+
+def _require_all(path: str, found: int) -> None:
+    """Refuse an archive whose end states more arrays: a bit can hide one from zipfile."""
+    with Path(path).open("rb") as file:
+        file.seek(-END_OF_ZIP.size, SEEK_END)
+        mark, stated = END_OF_ZIP.unpack(file.read())
+    if mark == b"PK\5\6" and stated not in (found, MANY):
+        raise ValueError(f"it has {found} of {stated} arrays")
 
 
 def _mat(path: str) -> dict[str, Any]:
@@ -98,8 +117,10 @@ def _mat(path: str) -> dict[str, Any]:
     import subprocess
     import sys
 
-    program = [sys.executable, "-m", "scarid_cli.io.matfile", path]
+    program = [sys.executable, "-m", "scarid_cli.io.matfile", path, str(max_batch())]
     done = subprocess.run(program, capture_output=True, check=False)
+    if done.returncode == TOO_LARGE:
+        require_moderate(path, int(done.stdout))
     if done.returncode:
         lines = done.stderr.decode(errors="replace").splitlines()
         raise ValueError(lines[-1] if lines else "its reader crashed")

@@ -17,6 +17,8 @@ SPACE = " "  # any white space between values
 SEPARATORS = (",", ";", "\t", "|", SPACE)
 NAMES = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", SPACE: "white space"}
 ROWS = 3  # lines that are looked at: a header, if there is one, and rows
+MOST_LINES = 10_000  # that are looked at for them, among comments and empty lines
+COMMENT = "#%"  # with which a comment begins
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*\Z")
 
 
@@ -80,7 +82,10 @@ def split(line: str, separator: str) -> list[str]:
     """The values of a line."""
     if separator == SPACE:
         return line.split()
-    return next(csv.reader([line], delimiter=separator), [])
+    try:
+        return next(csv.reader([line], delimiter=separator), [])
+    except csv.Error:  # a value that is too long, which reading will report
+        return line.split(separator)
 
 
 def is_number(text: str, *, comma: bool) -> bool:
@@ -93,11 +98,12 @@ def _first_lines(source: ByteSource) -> tuple[list[str], list[str]]:
     while True:
         block = source.peek_lines(count)
         text = block.decode("utf-8-sig", errors="replace").splitlines()[:count]
-        comments = [line for line in text if line.startswith(("#", "%"))]
-        lines = [line for line in text if line.strip() and line not in comments]
-        if len(lines) >= ROWS or len(text) < count:
-            return comments, lines
-        count += ROWS - len(lines)
+        rows = [i for i, line in enumerate(text) if line.strip() and line[0] not in COMMENT]
+        if len(rows) >= ROWS or len(text) < count or count > MOST_LINES:
+            text = text[: rows[:ROWS][-1] + 1] if len(rows) >= ROWS else text
+            comments = [line for line in text if line.startswith(tuple(COMMENT))]
+            return comments, [text[i] for i in rows[:ROWS]]
+        count *= 2
 
 
 def _looked_at(lines: Sequence[str], name: str) -> Notation:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
@@ -93,12 +94,12 @@ def _columns_to_check(table: Table, schema: schemas.TableSchema, reads: Reads | 
 
 
 def _faults_of_columns(table: Table, schema: schemas.TableSchema) -> Iterator[Fault]:
-    for column in table.columns:
-        if (count := table.columns.count(column)) > 1:
+    for column, count in Counter(table.columns).items():
+        if count > 1:
             yield column, f"{count} columns of this name", "one", "rename or drop one of them"
     missing = schema.missing_from(table.columns)
     if missing:
-        require(table, [missing], f"a {schema.title.lower()} with this one")
+        require(table, [missing], f"a {schema.title.lower()}, which has this column")
     for column in table.columns:
         known, unit = schema.field_of(column), table.unit(column)
         if known and unit and known.units and unit not in known.units:
@@ -136,7 +137,7 @@ def _remedy(column: str) -> str:
         return "estimate it with `scarid differentiate`"
     if column.endswith("_ref"):
         return "make a trajectory with `scarid trajgen`"
-    return "name the columns as the schema does (see docs/tables.md)"
+    return f"rename yours with `scarid convert --map {column}=NAME` (docs/tables.md has all names)"
 
 
 def _same_type(given: pa.DataType, known: pa.DataType) -> bool:

@@ -14,6 +14,7 @@ import pyarrow as pa
 
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import bad_data
+from scarid_cli.io import facts
 
 METADATA_KEY = b"scarid"
 UNIT_KEY = b"unit"
@@ -43,9 +44,10 @@ class Metadata:
         fields = json.loads(document)
         meta = cls(**{**fields, "history": tuple(fields["history"])})
         texts = all(isinstance(x, str | None) for x in (meta.kind, meta.robot))
-        numeric = isinstance(meta.period, int | float | None)
-        entries = all(map(_is_entry, meta.history)) and isinstance(meta.extra, dict)
-        if not (texts and numeric and entries and (meta.kind or "a").isalpha()):
+        entries = all(map(_is_entry, meta.history))
+        values = isinstance(meta.extra, dict) and facts.sound(meta.extra)
+        values = values and facts.period(meta.period) and isinstance(meta.version, int)
+        if not (texts and values and entries and (meta.kind or "a").isalpha()):
             raise ValueError("a part of the metadata has another type than it should")
         return meta
 

@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import os
-import stat
-import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -15,11 +11,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 from scarid_cli.errors import OutputFailure, UsageFault
 from scarid_cli.io import FORMATS
 from scarid_cli.io.table import Table
-from scarid_cli.printable import printable
+from scarid_cli.io.target import Target, is_regular
 
 if TYPE_CHECKING:
     import pyarrow as pa
-
 
 EXTENSIONS = {
     ".csv": "csv",
@@ -29,8 +24,6 @@ EXTENSIONS = {
     ".arrow": "arrow-file",
     ".feather": "arrow-file",
 }
-STDOUT = "<stdout>"
-YOUNG = 60.0  # s
 
 
 class Writer(Protocol):
@@ -39,139 +32,12 @@ class Writer(Protocol):
     def abort(self) -> None: ...
 
 
-class Target:
-    """Where bytes go. A regular file is written under another name and renamed at the end.
-
-    The file that a symbolic link leads to is replaced, not the link, and keeps its mode.
-    """
-
-    def __init__(self, path: str) -> None:
-        self.name = STDOUT if path == "-" else path
-        self._part: Path | None = None
-        self._place = Path(os.path.realpath(path))
-        if path == "-":
-            self._fd = 1
-        elif _is_stdout(path):
-            self._fd = os.dup(1)
-        elif _regular(self._place):
-            self._remove_abandoned()
-            self._part = self._place.with_name(f".{self._place.name}.{os.getpid()}.part")
-            self._fd = self._open(self._part, os.O_CREAT | os.O_TRUNC)
-        else:
-            self._fd = self._open(self._place)
-
-    def _remove_abandoned(self) -> None:
-        """Remove what runs to the same output have left that were killed, and tell it."""
-        with contextlib.suppress(OSError):
-            for name in os.listdir(self._place.parent):  # noqa: PTH208 (no paths are needed)
-                if _abandoned(self._place.with_name(name), f".{self._place.name}."):
-                    self._place.with_name(name).unlink()
-                    text = printable(f"scarid: removed {name}, left by a run that was killed")
-                    print(text, file=sys.stderr)  # noqa: T201
-
-    def _open(self, path: Path, flags: int = 0) -> int:
-        try:
-            return os.open(path, os.O_WRONLY | os.O_CLOEXEC | flags, 0o666)
-        except OSError as error:
-            raise OutputFailure(f"{self.name}: {error.strerror}") from None
-
-    def write(self, data: Any) -> None:
-        view = memoryview(data).cast("B") if len(data) else memoryview(b"")
-        try:
-            while view:
-                view = view[os.write(self._fd, view) :]
-        except BrokenPipeError:
-            raise
-        except OSError as error:
-            raise self._failure(error) from None
-
-    def commit(self) -> None:
-        """Put the file in its place."""
-        try:
-            self._close()
-            if self._part:
-                with contextlib.suppress(FileNotFoundError):
-                    self._part.chmod(stat.S_IMODE(self._place.stat().st_mode))
-                self._part.replace(self._place)
-        except OSError as error:
-            self.discard()
-            raise self._failure(error) from None
-        self._part = None
-
-    def discard(self) -> None:
-        """Leave nothing behind."""
-        with contextlib.suppress(OSError):
-            self._close()
-        if self._part:
-            self._part.unlink(missing_ok=True)
-
-    def _close(self) -> None:
-        if self._fd > 1:
-            fd, self._fd = self._fd, -1
-            os.close(fd)
-
-    def _failure(self, error: OSError) -> OutputFailure:
-        closed = self._fd == 1 and error.errno == errno.EBADF
-        reason = "standard output is closed" if closed else error.strerror
-        left = "nothing was written" if self._part or closed else "the output is incomplete"
-        return OutputFailure(f"{self.name}: {reason}; {left}")
-
-
-def same_place(one: str, other: str) -> bool:
-    """Whether two paths, or - for standard output, are spellings of one place."""
-    return _place_of(one) == _place_of(other)
-
-
-def _place_of(path: str) -> object:
-    """What tells places apart: the file itself if there is one (not its name), else its path."""
-    real = os.path.realpath(path)
-    with contextlib.suppress(OSError):
-        found = os.fstat(1) if path == "-" or _is_stdout(path) else os.stat(real)  # noqa: PTH116
-        if not stat.S_ISCHR(found.st_mode) or path == "-":  # /dev/null takes any number of them
-            return found.st_dev, found.st_ino
-    return object() if Path(real).is_char_device() else real
-
-
-def _is_stdout(path: str) -> bool:
-    return path in ("/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
-
-
-def _abandoned(part: Path, start: str) -> bool:
-    """Whether this is a part of an output of a run that is gone.
-
-    A young part may be that of a run on another machine, whose processes are not known here.
-    """
-    name = part.name
-    number = name.removeprefix(start).removesuffix(".part")
-    if name != f"{start}{number}.part" or not number.isdecimal() or _runs(int(number)):
-        return False
-    return time.time() - part.stat().st_mtime > YOUNG
-
-
-def _runs(process: int) -> bool:
-    """Whether there is a process with this number."""
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except (OSError, OverflowError):
-        pass
-    return True
-
-
-def _regular(path: Path) -> bool:
-    try:
-        return stat.S_ISREG(path.stat().st_mode)
-    except OSError:
-        return True
-
-
 def format_for(path: str, wanted: str | None) -> str:
     """The format to write: as given, else that of the extension, else of the environment."""
     if Path(path).name.lower() in EXTENSIONS:  # as from -o "$NAME.csv" where NAME is not set
         raise UsageFault(f"{path}: an extension without a name; give the file a name before it")
     chosen = wanted or EXTENSIONS.get(Path(path).suffix.lower())
-    if not chosen and path != "-" and Path(path).suffix and _regular(Path(path)):
+    if not chosen and path != "-" and Path(path).suffix and is_regular(Path(path)):
         known = " ".join(EXTENSIONS)
         raise UsageFault(f"{path}: unknown extension; use one of {known}, or give --format")
     chosen = chosen or os.environ.get("SCARID_FORMAT") or "csv"
@@ -217,9 +83,18 @@ class Output:
             self._writer.close()
             self._writer = None
 
-    def commit(self) -> None:
-        """Put the file in its place."""
-        self.target.commit()
+    @property
+    def is_file(self) -> bool:
+        """Whether it goes to a file, which can be taken back."""
+        return self.target.is_file
+
+    def commit(self, *, keep: bool) -> None:
+        """Put the file in its place, and keep what was there before until all is settled."""
+        self.target.commit(keep=keep)
+
+    def settle(self) -> None:
+        """All outputs are complete."""
+        self.target.settle()
 
     def abort(self) -> None:
         """The table is incomplete, and must not look complete."""
@@ -244,8 +119,13 @@ class Handover(Output):
     def finish(self) -> None:
         """The next stage has finished its own output."""
 
-    def commit(self) -> None:
+    @property
+    def is_file(self) -> bool:
         """There is no file."""
+        return False
+
+    def settle(self) -> None:
+        """There is nothing to close."""
 
     def abort(self) -> None:
         """The next stage has aborted its own output."""
@@ -264,12 +144,37 @@ class Document:
     def finish(self) -> None:
         """A document has no end mark."""
 
-    def commit(self) -> None:
-        """Put the file in its place."""
-        self.target.commit()
+    @property
+    def is_file(self) -> bool:
+        """Whether it goes to a file, which can be taken back."""
+        return self.target.is_file
+
+    def commit(self, *, keep: bool) -> None:
+        """Put the file in its place, and keep what was there before until all is settled."""
+        self.target.commit(keep=keep)
+
+    def settle(self) -> None:
+        """All outputs are complete."""
+        self.target.settle()
 
     def abort(self) -> None:
         self.target.discard()
+
+
+class InFolder(Document):
+    """A document in a folder that is made if need be, and does not stay empty."""
+
+    def __init__(self, path: str) -> None:
+        self._folder = Path(path).parent
+        self._made = not self._folder.exists()
+        self._folder.mkdir(parents=True, exist_ok=True)
+        super().__init__(path)
+
+    def abort(self) -> None:
+        super().abort()
+        if self._made:
+            with contextlib.suppress(OSError):  # there is something else in it
+                self._folder.rmdir()
 
 
 def _writer(name: str) -> Any:
@@ -288,14 +193,23 @@ def _writer(name: str) -> Any:
 
 @contextlib.contextmanager
 def all_or_none(outputs: list[Output | Document]) -> Iterator[None]:
-    """Finish all outputs when the block ends, or abort all of them when it fails."""
+    """Finish all outputs when the block ends, or abort all of them when it fails.
+
+    Files come first: they can be taken back, but not the end mark of a table in a pipe.
+    """
     try:
         yield
-        for output in outputs:
+        files = [output for output in outputs if output.is_file]
+        for output in files:
             output.finish()
+        for output in files:
+            output.commit(keep=len(outputs) > 1)
         for output in outputs:
-            output.commit()
+            if output not in files:
+                output.finish()
+        for output in outputs:
+            output.settle()
     except BaseException:
-        for output in outputs:
+        for output in reversed(outputs):
             output.abort()
         raise

@@ -7,6 +7,7 @@ import numpy as np
 from scarid_cli.arrays import Array
 
 POINTS = 2000  # of a curve at most; a multiple of 4
+GAP_STEPS = 5.0  # times the mean step is a gap: the points of a reduced curve lie up to 4 apart
 
 
 class Curve:
@@ -48,3 +49,10 @@ def extremes(points: Array, part: int) -> Array:
     ends.sort(axis=0)
     rows = np.arange(parts.shape[1])
     return np.ascontiguousarray(parts[:, rows[:, None], ends.T].reshape(2, -1))
+
+
+def broken(points: Array) -> Array:
+    """The curve with nan in the gaps of the record, so that no line is drawn across them."""
+    steps = np.diff(points[0])
+    mean = steps.sum() / max(len(steps), 1)
+    return np.insert(points, np.flatnonzero(steps > GAP_STEPS * mean) + 1, np.nan, axis=1)

@@ -126,6 +126,7 @@ def constants(group: Sequence[Parameters]) -> list[Section]:
         rows=tuple(
             (name, *(number(_ratio(x, estimates[name])) for x in row))
             for name, row in moves.items()
+            if name in estimates
         ),
     )
     return [section]

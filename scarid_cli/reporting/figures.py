@@ -10,12 +10,11 @@ from math import ceil, isfinite
 from typing import Any
 
 import matplotlib
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from scarid_cli.arrays import Array
+from scarid_cli.reporting.curves import broken
 from scarid_cli.reporting.parts import Bars, Panels, Plot, Section, Series
 
 # Colours that colour-blind readers can distinguish: Okabe and Ito's palette, but wine (of Tol's
@@ -24,7 +23,6 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8
 DASHES = ("-", "-.", ":", (0, (1, 4)))  # of the first, second, ... turn through the palette
 INK = "#222222"
 BEYOND = 10.0  # times the doubtful value: the axis of bars ends there at the latest
-GAP_STEPS = 5.0  # times the mean step is a gap: the points of a reduced curve lie up to 4 apart
 FIGURE_WIDTH = 6.7  # inches, the width of the text on an A4 page
 
 STYLE = {
@@ -148,13 +146,6 @@ def _panels(plot: Panels) -> Figure:
     figure.align_ylabels()
     _legend(figure, plot)
     return figure
-
-
-def broken(points: Array) -> Array:
-    """The curve with nan in the gaps of the record, so that no line is drawn across them."""
-    steps = np.diff(points[0])
-    mean = steps.sum() / max(len(steps), 1)
-    return np.insert(points, np.flatnonzero(steps > GAP_STEPS * mean) + 1, np.nan, axis=1)
 
 
 def _style(series: Series) -> dict[str, Any]:

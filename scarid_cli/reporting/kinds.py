@@ -42,7 +42,8 @@ class Parameters(_PerParameter):
     """Estimates with their relative standard deviations [%] (eq. 34); nan where unknown.
 
     `robust` holds relative standard errors [%] that are robust to autocorrelated residuals; it is
-    empty where the table has none. `extra` is what the metadata say of the estimation.
+    empty where the table has none. `low` and `high` are the ends of the 95 % intervals in the
+    parameters' units, nan where unknown. `extra` is what the metadata say of the estimation.
     """
 
     estimates: tuple[float, ...]
@@ -50,6 +51,8 @@ class Parameters(_PerParameter):
     extra: dict[str, Any]
     commands: tuple[str, ...] = ()
     robust: tuple[float, ...] = ()
+    low: tuple[float, ...] = ()
+    high: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -69,10 +72,11 @@ class Metrics(_PerJoint):
 
 @dataclass(frozen=True)
 class Prediction(_PerJoint):
-    """Measured and predicted torque of each joint, as curves (2, points)."""
+    """Measured and predicted torque of each joint and their difference, as curves (2, points)."""
 
     measured: tuple[Array, ...]
     predicted: tuple[Array, ...]
+    residuals: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -93,10 +97,12 @@ class MotionEstimate(Result):
     """Estimated and, where the table has them, true velocities and accelerations.
 
     Curves (2, points), joint by joint: dq1, ddq1, dq2, ... `errors` are root-mean-square errors
-    relative to the standard deviation of the true signal [%].
+    relative to the standard deviation of the true signal [%]. `misses` are the curves of estimate
+    minus truth.
     """
 
     columns: tuple[str, ...]
     curves: tuple[Array, ...]
     truths: tuple[Array, ...]
     errors: tuple[float, ...]
+    misses: tuple[Array, ...] = ()

@@ -51,7 +51,7 @@ def _published(result: Result, values: Values) -> Result | None:
     if isinstance(result, Parameters):
         estimates = tuple(of(p, "estimate") for p in result.names)
         known = tuple(of(p, "relative_deviation") for p in result.names)
-        plain = replace(result, name=name, extra={}, robust=())
+        plain = replace(result, name=name, extra={}, robust=(), low=(), high=())
         return replace(plain, estimates=estimates, deviations=known)
     if isinstance(result, Trace):
         errors = tuple(of(p, "rms_error") for p in result.names)

@@ -38,7 +38,7 @@ def _parameters(title: str, rows: Sequence[dict[str, Any]]) -> Section:
         estimate, low, high = numbers
         share = abs(100.0 * error / row["estimate"]) if known and row["estimate"] else None
         size = _rounded(error, places)
-        part = NONE if share is None else f"{share:.2g}"
+        part = NONE if share is None else f"{share:.0f}" if share >= 10.0 else f"{share:.2g}"
         lines.append((row["parameter"], row["unit"] or NONE, estimate, size, part, low, high))
     return Section(title, "", headers, tuple(lines), texts=2)
 

@@ -49,7 +49,8 @@ def prediction(source: Source) -> Prediction:
     measured = [f"tau{i}" for i in joints]
     predicted = [f"tau{i}_pred" for i in joints]
     require(table, predicted, "this one beside each measured torque")
-    curves, _ = _read(table.batches, [*measured, *predicted])
+    pairs = list(zip(measured, predicted, strict=True))
+    curves, _ = _read(table.batches, [*measured, *predicted], pairs, apart=True)
     own = [joint.torque_unit for joint in robot.joints] if robot else []
     return Prediction(
         name=source.name,
@@ -58,6 +59,7 @@ def prediction(source: Source) -> Prediction:
         units=_units(table, measured, own if len(own) == len(joints) else [""] * len(joints)),
         measured=_chosen(curves, measured),
         predicted=_chosen(curves, predicted),
+        residuals=_chosen(curves, [difference(*pair) for pair in pairs]),
     )
 
 
@@ -88,7 +90,8 @@ def motion(source: Source) -> MotionEstimate:
     truths = [f"{column}_true" for column in columns]
     truths = truths if set(truths) <= set(table.columns) else []
     pairs = list(zip(truths, columns, strict=False))
-    curves, qualities = _read(settled(table.batches), [*columns, *truths], pairs)
+    batches = settled(table.batches)
+    curves, qualities = _read(batches, [*columns, *truths], pairs, apart=True)
     return MotionEstimate(
         name=source.name,
         robot=source.robot,
@@ -96,24 +99,40 @@ def motion(source: Source) -> MotionEstimate:
         curves=_chosen(curves, columns),
         truths=_chosen(curves, truths),
         errors=tuple(100.0 * np.sqrt(max(1.0 - quality.r2, 0.0)) for quality in qualities),
+        misses=_chosen(curves, [difference(*pair) for pair in pairs]),
     )
 
 
+def difference(column: str, other: object) -> str:
+    """The name of the curve of a column subtracted from another one."""
+    return f"{other} - {column}"
+
+
 def _read(
-    batches: Iterator[pa.RecordBatch], columns: Sequence[str], pairs: Sequence[Comparison] = ()
+    batches: Iterator[pa.RecordBatch],
+    columns: Sequence[str],
+    pairs: Sequence[Comparison] = (),
+    *,
+    apart: bool = False,
 ) -> tuple[dict[str, Array], list[Quality]]:
-    """Each column as a curve over time, and how well the two of each pair agree."""
+    """Each column as a curve over time, and how well the two of each pair agree.
+
+    With `apart` there is also a curve of the second column of each pair minus the first.
+    """
     curves = {column: Curve() for column in columns}
+    curves |= {difference(*pair): Curve() for pair in pairs if apart}
     sums = [empty() for _ in pairs]
     for batch in batches:
         t, *values = matrix(batch, ["t", *columns])
         signals = dict(zip(columns, values, strict=True))
-        for column, x in signals.items():
-            curves[column].add(t, x)
         for i, (column, other) in enumerate(pairs):
             x = signals[column]
             y = signals[other] if isinstance(other, str) else np.full_like(x, other)
             sums[i] = accumulate(sums[i], x, y)
+            if apart:
+                signals[difference(column, other)] = y - x
+        for column, x in signals.items():
+            curves[column].add(t, x)
     return {column: curve.points() for column, curve in curves.items()}, [*map(Quality.of, sums)]
 
 

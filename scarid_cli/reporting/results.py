@@ -79,6 +79,8 @@ def _parameters(source: Source) -> Parameters:
         extra=table.meta.extra,
         commands=tuple(entry["command"] for entry in table.meta.history),
         robust=_relative(_numbers(rows, "robust_error"), rows["estimate"]),
+        low=_numbers(rows, "low"),
+        high=_numbers(rows, "high"),
     )
 
 

@@ -19,6 +19,7 @@ from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.errors import BadData, UsageFault
+from scarid_cli.io.foreign import require_moderate_archive
 
 KNOWN = {
     kind.__name__: kind
@@ -51,6 +52,7 @@ def saved(checkpoint: Checkpoint, settings: dict[str, Any]) -> bytes:
 def restored(path: str, settings: dict[str, Any]) -> Checkpoint:
     """The checkpoint in a file, which must be that of an estimation with the same settings."""
     try:
+        require_moderate_archive(path)
         with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
             document = json.loads(str(archive["tree"]))
             checkpoint = _unpacked(document["checkpoint"], archive)

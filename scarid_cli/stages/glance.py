@@ -20,8 +20,13 @@ def of_extremes(q: Array, tau: Array, robot: Robot, period: float) -> list[Findi
     """
     log, none = Log(np.zeros(2), q, tau), np.full(len(q), np.nan)
     found = [units.positions(log, robot, np.zeros(len(q)))[0], units.torques(log, robot, none)]
-    found.append(clock.unit(clock.Clock(np.array([period]), period))[0])
-    return [finding for finding in found if finding.status != OK]
+    return [f for f in (*found, of_rate(period)) if f and f.status != OK]
+
+
+def of_rate(period: float) -> Finding | None:
+    """What is not in order in a clock with this period [s], if anything."""
+    finding, _ = clock.unit(clock.Clock(np.array([period]), period))
+    return finding if finding.status != OK else None
 
 
 def of_measurement(table: Table, robot: Robot) -> list[Finding]:

@@ -77,7 +77,8 @@ class Description:
     def lines(self) -> Iterator[str]:
         """Kind, robot, rows, sampling, metadata, columns and history, for a person."""
         meta, schema = self.table.meta, self.schema
-        origin = f"version {meta.version}" if meta.kind else "inferred from its columns"
+        stated = schema and schema.kind == meta.kind
+        origin = f"version {meta.version}" if stated else "inferred from its columns"
         yield f"table     {self.table.name}"
         yield f"kind      {f'{schema.kind} ({origin})' if schema else 'unknown'}"
         yield f"robot     {meta.robot or 'not stated'}"
@@ -114,7 +115,8 @@ class Description:
 def described(table: Table) -> Description:
     """The description of a table, all of whose rows are read."""
     kind = table.meta.kind
-    schema = schemas.load(kind) if kind else schemas.detect(table.columns)
+    known = kind in schemas.KINDS  # a file of another name is not to be opened
+    schema = schemas.load(kind) if kind and known else schemas.detect(table.columns)
     extents = {f.name: Extent() for f in table.schema if _numeric(f.type)}
     rows, sampling = _read(table, extents)
     columns = tuple(_column(table, schema, field, extents) for field in table.schema)
@@ -147,9 +149,9 @@ def _columns(columns: tuple[Column, ...]) -> Iterator[str]:
 
 def _metadata(key: str, value: Any) -> Iterator[str]:
     """A value on one line, a collection with one line for each item, a matrix by its size only."""
-    if isinstance(value, list) and value and isinstance(value[0], list):
+    if isinstance(value, list) and value and all(isinstance(row, list) for row in value):
         yield f"{key:<9} {len(value)} by {len(value[0])} numbers"
-    elif isinstance(value, dict) and "information" in value:
+    elif key == "evidence" and value:
         yield f"{key:<9} of {len(value['score'])} columns in {value['blocks']} blocks"
     elif isinstance(value, list):
         yield key

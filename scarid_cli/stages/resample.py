@@ -19,7 +19,7 @@ from scarid_cli.algorithms.processes.resampling import (
     ResamplerState,
 )
 from scarid_cli.arrays import Array, Numbers
-from scarid_cli.errors import bad_data
+from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.table import (
     SEGMENT,
     Instant,
@@ -33,6 +33,8 @@ from scarid_cli.io.table import (
 from scarid_cli.stages.holding import Holding, measured
 from scarid_cli.stages.slower import Filling, slower_groups
 
+MOST = 1 << 18  # new rows that are made at once, and that lie between two of the log
+SLOWEST_RATE = 100_000  # times slower than the log at most
 SLOWER = 0.05  # fraction of the log's period by which the new period must be longer to low-pass
 
 
@@ -125,6 +127,11 @@ def _rows(
     fillings = [Filling(group, max(limit, MAX_GAP * group.interval)) for group in slower]
     factor = max(1, int(np.ceil(period / own - SLOWER)))
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]
+    if factor > SLOWEST_RATE:
+        raise UsageFault(
+            f"--rate {1.0 / period:g}: {factor:,} times slower than the log of {1.0 / own:.6g} Hz; "
+            f"give at most {SLOWEST_RATE:,} times"
+        )
     interpolation = Interpolation(Resampler(period / factor), schema, numbers)
     decimation = Decimation(Decimator(factor), schema, numbers, period) if factor > 1 else None
     rows = holding.rows(batches)
@@ -134,15 +141,33 @@ def _rows(
         for begins, piece in splitting.pieces(batch):
             if begins and decimation:
                 yield from decimation.finish()
-            found = interpolation.rows(piece, splitting.segment, begins=begins)
-            if found and decimation:
-                found = decimation.rows(found, interpolation.first, interpolation.start)
-            if found:
-                yield found
+            for part in _moderate(piece, period / factor, table.name):
+                found = interpolation.rows(part, splitting.segment, begins=begins)
+                begins = False
+                if found and decimation:
+                    found = decimation.rows(found, interpolation.first, interpolation.start)
+                if found:
+                    yield found
     if decimation:
         yield from decimation.finish()
     filled = tuple((f.slower.name, f.slower.interval, f.count) for f in fillings if f.count)
     report(replace(splitting.clock, held=holding.count, filled=filled))
+
+
+def _moderate(piece: pa.RecordBatch, period: float, name: str) -> Iterator[pa.RecordBatch]:
+    """The piece in parts, each of which gives at most MOST new rows every `period` [s] or so."""
+    t = matrix(piece, ["t"])[0]
+    if np.max(np.diff(t), initial=0.0) > MOST * period:
+        raise bad_data(
+            name,
+            f"an interval of {np.max(np.diff(t)):.6g} s",
+            expected=f"at most {MOST:,} new rows within one",
+            remedy="give a lower --rate, or a shorter --max-gap; is the time in seconds?",
+            column="t",
+        )
+    numbers = np.floor((t - t[0]) / (MOST * period))
+    for start, end in pairwise([0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), len(t)]):
+        yield piece.slice(start, end - start)
 
 
 class Splitting:

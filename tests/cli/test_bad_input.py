@@ -270,3 +270,29 @@ def test_a_loop_that_blows_up_is_an_error_and_not_a_table(scarid: Run, tmp_path:
     assert result.status == 65
     assert "became unstable at t = " in result.err
     assert not output.exists()
+
+
+@pytest.mark.parametrize(
+    ("command", "missing", "remedy"),
+    [
+        ("validate --parameters PARAMETERS", "dq1", "estimate it with `scarid differentiate`"),
+        ("validate --parameters PARAMETERS", "tau1", "name the columns as the schema does"),
+        ("differentiate", "q1", "name the columns as the schema does"),
+        ("simulate", "q1_ref", "make a trajectory with `scarid trajgen`"),
+        ("simulate", "dq1_ref", "make a trajectory with `scarid trajgen`"),
+    ],
+)
+def test_a_column_that_is_missing_is_to_be_made_by_the_command_that_makes_it(
+    command: str, missing: str, remedy: str, scarid: Run, tmp_path: Path, samples: Path
+) -> None:
+    names = ["t", *(f"{x}{i}" for x in ("q", "dq", "ddq", "tau") for i in (1, 2))]
+    names += [f"{x}{i}_ref" for x in ("q", "dq", "ddq") for i in (1, 2)]
+    log = tmp_path / "log.csv"
+    kept = [name for name in names if name != missing]
+    rows = "".join(",".join([str(k / 100)] * len(kept)) + "\n" for k in range(20))
+    log.write_text(",".join(kept) + "\n" + rows)
+    words = command.replace("PARAMETERS", str(samples / "scara2.parameters.csv")).split()
+    result = scarid(*words, log)
+    assert result.status == 65
+    assert f"column {missing}: " in result.err
+    assert remedy in result.err

@@ -12,6 +12,9 @@ import pytest
 from conftest import Result, refused
 from scipy.io import savemat
 
+from scarid_cli.errors import UsageFault
+from scarid_cli.stages.continuation import restored
+
 Run = Callable[..., Result]
 
 T = np.arange(50) / 100.0
@@ -168,6 +171,8 @@ def test_csv_with_a_stray_quote_or_a_long_line_is_read_in_linear_time(
     content = start + tail
 
     class Pieces:
+        name = "log.csv"
+
         def __init__(self) -> None:
             self.left = [Bytes(content[i : i + 4096]) for i in range(0, len(content), 4096)]
 
@@ -233,3 +238,36 @@ def test_a_damaged_state_is_bad_data(scarid: Run, samples: Path, tmp_path: Path)
     for n in np.random.default_rng(0).integers(0, len(content) - 1, 10):
         state.write_bytes(content[:n])
         refused(scarid("identify", motion, "--from", state), 65, "state.npz")
+
+
+@pytest.mark.parametrize("rate", ["1e-9", "0.001", "133", "1e7"])
+@pytest.mark.parametrize("step", [5e6, 1e-12])
+def test_a_clock_in_other_units_is_refused_or_resampled_in_bounded_memory(
+    rate: str, step: float, scarid: Run, tmp_path: Path
+) -> None:
+    """Such as nanoseconds, of which there would be 1e11 rows between two samples."""
+    t = 1.7e18 + step * np.arange(100) if step > 1.0 else step * np.arange(100)
+    pq.write_table(
+        pa.table({"t": t, "q1": np.sin(T[:1] + np.arange(100))}), tmp_path / "log.parquet"
+    )
+    result = scarid(
+        "resample", "-q", "--rate", rate, tmp_path / "log.parquet", "-o", tmp_path / "o.csv"
+    )
+    assert result.status in (0, 2, 65)
+    assert result.err.count("\n") == bool(result.status)
+
+
+def test_a_decimation_by_more_than_there_are_rows_is_refused(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    motion = tmp_path / "motion.parquet"
+    assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
+    refused(scarid("identify", motion, "--decimate", 10**9), 65, "1000000000")
+
+
+def test_a_state_that_is_not_there_is_asked_for(scarid: Run, samples: Path, tmp_path: Path) -> None:
+    with pytest.raises(UsageFault, match="no such file; make one with `scarid identify --save`"):
+        restored(str(tmp_path / "state.npz"), {})
+    motion = tmp_path / "motion.parquet"
+    assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
+    refused(scarid("identify", motion, "--from", tmp_path / "state.npz"), 2, "no such file")

@@ -15,6 +15,8 @@ import pytest
 from conftest import Result, refused
 from unit.arms import URDF
 
+from scarid_cli.__main__ import _flushed
+
 Run = Callable[..., Result]
 
 ROWS = [f"{k / 100},{k},{k * 0.5}" for k in range(100_000)]  # several blocks of the reader
@@ -231,6 +233,18 @@ def test_what_the_reader_of_urdfs_cannot_read_is_one_line_of_ours(
     refused(scarid("robot", "check", robot), 2, f"{robot}: not a URDF", reason)
 
 
+def test_shapes_that_the_reader_of_urdfs_does_not_know_are_no_matter(
+    scarid: Run, tmp_path: Path
+) -> None:
+    shape = "<geometry><cone/></geometry>"
+    more = f"<visual>{shape}</visual><collision>{shape}</collision>"
+    robot = tmp_path / "arm.urdf"
+    text = URDF.replace("TYPE", "revolute").replace('<link name="two">', f'<link name="two">{more}')
+    robot.write_text(text.replace("</robot>", '<material name="m"/></robot>'))
+    result = scarid("robot", "check", robot)
+    assert (result.status, result.err) == (0, "")
+
+
 def test_warnings_of_libraries_are_not_printed(shell: Run, tmp_path: Path) -> None:
     """Numbers so large that their squares overflow; numpy would warn."""
     rows = "".join(f"{k / 100},{(-1) ** k * 1e300},{k}\n" for k in range(200))
@@ -239,3 +253,42 @@ def test_warnings_of_libraries_are_not_printed(shell: Run, tmp_path: Path) -> No
         found = shell(f"scarid {command} log.csv > /dev/null").err
         assert "Warning" not in found
         assert all(line.startswith("scarid ") for line in found.splitlines())
+
+
+def test_a_run_that_fails_leaves_no_descriptor_open(scarid: Run, tmp_path: Path) -> None:
+    descriptors = Path("/proc/self/fd")
+    if not descriptors.is_dir():
+        pytest.skip("this system does not list the descriptors of a process")
+    bad = tmp_path / "bad.csv"
+    bad.write_text("t,q1\n0,1\n0.1,x\n")
+    opened = []
+    for name in ("a.csv", "b.parquet", "c.arrow", "d.arrows") * 2:
+        assert scarid("filter", bad, "-o", tmp_path / name).status == 65
+        opened.append(len(list(descriptors.iterdir())))
+    assert opened[4:] == opened[3:4] * 4  # the first ones open what libraries keep
+
+
+@pytest.mark.parametrize("kind", ["nothing", "\u00c9", "joint"])
+def test_a_kind_that_is_none_opens_no_file(kind: str, scarid: Run, tmp_path: Path) -> None:
+    log = tmp_path / "log.parquet"
+    meta = {b"scarid": f'{{"kind": "{kind}", "history": []}}'.encode()}
+    pq.write_table(pa.table({"t": [0.0, 1.0], "q1": [0.0, 1.0]}).replace_schema_metadata(meta), log)
+    result = scarid("info", log)
+    assert (result.status, result.err) == (0, "")
+    assert "measurement (inferred from its columns)" in result.out
+    refused(scarid("report", log), 65, str(log))
+
+
+@pytest.mark.parametrize(("status", "expected"), [(0, 141), (65, 65), (2, 2)])
+def test_a_reader_that_is_gone_at_the_end_does_not_hide_a_failure(
+    status: int, expected: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Gone:
+        def flush(self) -> None:
+            raise BrokenPipeError
+
+    with monkeypatch.context() as patched:
+        patched.setattr("sys.stdout", Gone())
+        patched.setattr("os.dup2", lambda *_: None)
+        found = _flushed(status)
+    assert found == expected

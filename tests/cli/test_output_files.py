@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from collections.abc import Callable
@@ -64,6 +65,70 @@ def test_the_rest_of_a_killed_run_is_told_and_removed(shell: Run, tmp_path: Path
     assert ".a.csv.999999999.part" in result.err
     assert not abandoned.exists()
     assert all(path.exists() for path in (*others, young))
+
+
+@pytest.mark.parametrize("before", ["what was there before", None])
+@pytest.mark.parametrize("failing", ["renamed", "a pipe that is closed"])
+def test_of_several_outputs_none_is_left_when_the_last_one_fails(
+    before: str | None,
+    failing: str,
+    scarid: Run,
+    samples: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Whatever was there before is there again."""
+    outputs = [tmp_path / name for name in ("p.parquet", "trace.parquet", "state.npz")]
+    for path in outputs:
+        if before:
+            path.write_text(before)
+    renamed = []
+
+    def replace(self: Path, target: Path) -> Path:
+        if self.suffix == ".part":
+            renamed.append(target)
+            if failing == "renamed" and len(renamed) == len(outputs):
+                raise OSError(errno.EACCES, "Permission denied")
+        os.replace(self, target)  # noqa: PTH105
+        return target
+
+    monkeypatch.setattr(Path, "replace", replace)
+    main = "/dev/full" if failing != "renamed" else outputs[0]
+    motion = tmp_path / "motion.parquet"
+    result = scarid("differentiate", samples / "scara2.csv", "-o", motion)
+    assert result.status == 0
+    renamed.clear()
+    words = ("--trace", outputs[1], "--save", outputs[2], "-o", main, "--format", "arrow")
+    result = scarid("identify", "-q", motion, *words)
+    assert result.status == 74
+    assert result.err.count("\n") == 1
+    left = {path.name: path.read_text() for path in tmp_path.iterdir() if path != motion}
+    assert left == ({path.name: before for path in outputs} if before else {})
+
+
+def test_of_several_outputs_nothing_else_is_left(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    motion, state = tmp_path / "motion.parquet", tmp_path / "state.npz"
+    assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
+    for _ in range(2):
+        words = ("--save", state, "-o", tmp_path / "p.csv")
+        assert scarid("identify", motion, *words).status == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"motion.parquet", "state.npz", "p.csv"}
+
+
+def test_a_report_that_fails_leaves_no_folder_of_figures(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("not a folder")
+    words = ("--figures", tmp_path / "none")
+    assert scarid("report", samples / "scara2.parameters.csv", *words).status == 0
+    assert not (tmp_path / "none").exists() or list((tmp_path / "none").iterdir())
+    result = scarid("report", samples / "scara2.csv", "--figures", tmp_path / "file")
+    assert result.status == 74
+    words = ("--figures", tmp_path / "figures", "--html", "/dev/full")
+    assert scarid("report", samples / "scara2.csv", *words).status == 74
+    assert not (tmp_path / "figures").exists()
 
 
 def test_an_output_to_closed_standard_output_by_its_path_is_a_failure(shell: Run) -> None:

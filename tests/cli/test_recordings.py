@@ -109,6 +109,18 @@ def test_efforts_of_a_slower_topic_are_joined(join: str, scarid: Run, tmp_path: 
     assert f"largest_age {1e-3 * age:.6g}" in told
 
 
+@pytest.mark.parametrize("join", ["linear", "hold"])
+def test_efforts_of_another_time_are_not_joined(join: str, scarid: Run, tmp_path: Path) -> None:
+    """They begin when the positions have ended."""
+    positions = [START + k * MILLISECOND for k in range(50)]
+    efforts = [START + (k + 100) * MILLISECOND for k in range(50)]
+    messages = [("/state", at, state(at, ["a"], position=[0.5])) for at in positions]
+    messages += [("/effort", at, state(at, ["a"], effort=[0.5])) for at in efforts]
+    path = write_mcap(tmp_path / "x.mcap", {"/state": STATE, "/effort": STATE}, messages)
+    words = ("convert", path, "--topic", "/state", "--torque-topic", "/effort", "--join", join)
+    refused(scarid(*words), 65, str(path), "recorded at different times", "--torque-topic")
+
+
 def controller_state(when: int) -> dict[str, Any]:
     k = (when - START) / MILLISECOND
     point = {key: [] for key in ("positions", "velocities", "accelerations", "effort")}

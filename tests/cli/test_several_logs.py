@@ -126,7 +126,7 @@ def test_rows_without_a_value_split_a_log_and_are_told(shell: Shell) -> None:
 
 @pytest.mark.parametrize(
     "words",
-    ["resample --rate 100", "filter", "differentiate", "identify", "check", "info"],
+    ["resample --rate 100", "filter", "differentiate", "identify", "check", "info", "convert"],
 )
 def test_a_window_is_the_log_of_its_rows(words: str, scarid: Run, tmp_path: Path) -> None:
     """By time and by number alike, for every command that reads a log."""

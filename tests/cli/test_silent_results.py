@@ -140,6 +140,7 @@ ABSURD = [
     "trajgen --optimise --budget inf",
     *(f"filter --cutoff {x}" for x in ("nan", "inf", "0", "-1")),
     "filter --natural-frequency nan",
+    *(f"filter {x} --cutoff {y}" for x in ("--zero-phase", "-q") for y in ("1e-300", "1e-9")),
     *(f"resample --rate {x}" for x in ("nan", "inf", "0", "1e15")),
     *(f"resample --rate 100 --max-gap {x}" for x in ("nan", "inf")),
     *(f"identify --{x} nan" for x in ("p0", "bandwidth", "smooth-sign", "skip", "decimate")),

@@ -133,7 +133,7 @@ def test_lost_rows_and_jitter_are_for_resample(shell: Run) -> None:
     )
     assert made.status == 0
     failed = shell("scarid differentiate log.csv -o motion.csv")
-    refused(failed, 65, "put it on a constant rate with `scarid resample --rate`")
+    refused(failed, 65, "put it on a constant rate with `scarid resample --rate ")
     mended = shell("scarid resample -q --rate 200 log.csv | scarid differentiate | scarid identify")
     assert mended.status == 0
 

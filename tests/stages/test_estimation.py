@@ -16,6 +16,7 @@ from defaults import PERIOD
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Metadata, Table, doubles
@@ -192,3 +193,15 @@ def test_essential_parameters_are_judged_by_their_own_figures() -> None:
     assert model.theta[SCARA.names.index("L1MY2")] == 0.0
     expected = column(validate(motion(), model, treatment=Treatment(slow=(0.1, 0.1))), "r2")
     np.testing.assert_allclose([joint["r2"] for joint in extra["joints"]], expected, atol=1e-6)
+
+
+@pytest.mark.parametrize(("estimator", "holds"), [("rls", False), ("ls", False), ("irls", True)])
+def test_estimators_that_hold_their_rows_are_judged_by_all_of_them(
+    *, estimator: str, holds: bool
+) -> None:
+    """Others by a subsample of bounded size, and by sums over blocks."""
+    kept: list[Checkpoint] = []
+    solver = ESTIMATORS.load(estimator)()
+    identify(motion(), SCARA, solver, SCARA.apriori, keep=kept.append)
+    assert (kept[-1].blocks is None) == holds
+    assert (kept[-1].subsample.samples > 10**9) == holds

@@ -64,3 +64,16 @@ def test_rest_and_slow_encoders_are_no_held_samples() -> None:
     found = collected(resample(table({"t": t, **steps}), 1000.0, report=clocks.append))
     np.testing.assert_allclose(found["q3"], steps["q3"], atol=1e-12)
     assert [(clock.held, clock.gaps) for clock in clocks] == [(0, 0), (0, 0)]
+
+
+@pytest.mark.parametrize("repeats", [1, 2, 3])
+def test_a_log_that_ends_at_rest_keeps_its_last_rows(repeats: int) -> None:
+    """They repeat the row before, but nothing else in the log does."""
+    t = np.arange(500) * 1e-3
+    moving = np.minimum(t, t[-1 - repeats])
+    clocks: list[Clock] = []
+    columns = {"t": t, "q1": np.sin(3.0 * moving), "tau1": np.cos(5.0 * moving)}
+    found = collected(resample(table(columns), 1000.0, report=clocks.append))
+    np.testing.assert_allclose(found["t"], t)
+    np.testing.assert_allclose(found["q1"], columns["q1"], atol=1e-12)
+    assert clocks[0].held == 0

@@ -89,6 +89,14 @@ def test_the_resolution_is_that_of_the_grid(step: float) -> None:
     assert smallest_step(q) == 0.0
 
 
+@pytest.mark.parametrize(("off", "found"), [(0.03, True), (0.08, False)])
+def test_steps_of_a_grid_are_whole_to_a_twentieth(*, off: float, found: bool) -> None:
+    """Steps of 3 or 4 grid steps, and this much more or less, between some of a single one."""
+    signs = np.resize([1.0, -1.0], 200)
+    steps = np.where(np.arange(200) % 10 == 0, 1.0, np.resize([3.0, 4.0], 200) + off * signs)
+    assert (smallest_step(1e-3 * np.cumsum(steps)) > 0.0) == found
+
+
 def test_a_sine_and_noise_are_not_clipped_and_a_limited_one_is() -> None:
     rng = np.random.default_rng(6)
     x = np.sin(0.01 * np.arange(5000))

@@ -15,6 +15,7 @@ from scarid_cli.algorithms.statistics.comparison import (
 )
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.arrays import Array
+from scarid_cli.stages.compare import _listed
 
 P = 6
 MIX = np.random.default_rng(5).standard_normal((P, P))
@@ -78,3 +79,15 @@ def test_a_trend_is_that_of_weighted_least_squares() -> None:
         )
         assert found.difference[i] == pytest.approx(line[0])
         assert found.errors[i] == pytest.approx(np.sqrt(covariance[0, 0]))
+
+
+@pytest.mark.parametrize("differing", [1, 5, 6])
+def test_a_message_names_up_to_five_parameters_and_says_if_there_are_more(differing: int) -> None:
+    """Each is ten errors apart, and the errors are uncorrelated."""
+    names = [f"p{i}" for i in range(P)]
+    plain = Estimate(np.zeros(P), np.ones(P), FREEDOM, np.eye(P))
+    moved = np.where(np.arange(P) < differing, 20.0, 0.0)
+    pair = comparison(plain, Estimate(moved, np.ones(P), FREEDOM, np.eye(P)))
+    text = _listed(pair, names, ["kg"] * P)
+    assert [name for name in names if f"{name} +20 kg" in text] == names[: min(differing, 5)]
+    assert text.endswith(", ...") == (differing > 5)

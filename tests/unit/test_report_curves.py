@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reports import a_line
 
-from scarid_cli.reporting import figures
+from scarid_cli.reporting import curves
 from scarid_cli.reporting.curves import POINTS, Curve
 
 finite = st.floats(-1e9, 1e9)
@@ -57,6 +57,6 @@ def test_a_reduced_curve_shows_every_spike_in_equal_parts() -> None:
 
 def test_a_curve_has_no_line_across_a_gap() -> None:
     t = np.concatenate((np.arange(50.0), 90.0 + np.arange(50.0)))
-    drawn = figures.broken(np.array([t, np.sin(t)]))
+    drawn = curves.broken(np.array([t, np.sin(t)]))
     assert np.flatnonzero(np.isnan(drawn[0])).tolist() == [50]
     np.testing.assert_array_equal(drawn[0][~np.isnan(drawn[0])], t)

@@ -8,11 +8,12 @@ import numpy as np
 from reports import SCARA, a_line, element_of, evolution, parameters
 
 from scarid_cli.algorithms.statistics.prediction import Quality
-from scarid_cli.reporting import figures, page
+from scarid_cli.reporting import figures
 from scarid_cli.reporting.content import sections
 from scarid_cli.reporting.kinds import Metrics, Parameters, Prediction, Trace
 from scarid_cli.reporting.naming import Name
 from scarid_cli.reporting.parts import GAP, PANELS, Bars, Panels, split
+from scarid_cli.reporting.study.page import PAGE_WIDTH
 
 
 def test_parameters_stand_beside_each_other_with_the_a_priori_values_of_their_robot() -> None:
@@ -133,7 +134,7 @@ def test_three_experiments_of_two_joints_fit_the_page_side_by_side() -> None:
         Metrics(Name("2smd, published", e), None, (1, 2), ("N m",) * 2, (quality,) * 2)
         for e in ("direct", "cross", "common")
     ]
-    parts = split(sections(results)[0], page.PAGE_WIDTH, wrapped=True)
+    parts = split(sections(results)[0], PAGE_WIDTH, wrapped=True)
     assert [len(part.headers) for part in parts] == [7, 7]
     for part in parts:
         columns = zip(part.headers, *part.rows, strict=True)
@@ -141,4 +142,4 @@ def test_three_experiments_of_two_joints_fit_the_page_side_by_side() -> None:
             max(max(map(len, re.split(" (?=\\[)|(?<=:) ", c))) for c in column)
             for column in columns
         ]
-        assert sum(words) + GAP * (len(words) - 1) <= page.PAGE_WIDTH
+        assert sum(words) + GAP * (len(words) - 1) <= PAGE_WIDTH

@@ -15,6 +15,7 @@ from scarid_cli.algorithms.estimators.ekf import forward
 from scarid_cli.algorithms.estimators.ls import Estimator as LeastSquares
 from scarid_cli.algorithms.regression.decimation import decimated
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
+from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, plain, rows_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
@@ -111,6 +112,18 @@ def test_instruments_are_not_attenuated_and_the_hausman_test_rejects() -> None:
     right = estimated(wls.Estimator(), clean)
     other = iv.solved(clean, W + rng.standard_normal(W.shape) * W.std(), right)
     assert iv.hausman(clean, right, other)[1] > 0.01
+
+
+def test_parameters_without_an_instrument_are_named() -> None:
+    """Two of them here; the others have instruments, and are not named."""
+    rng = np.random.default_rng(4)
+    W = smooth(500, P, rng)[:, None, :]
+    rows = plain(W, W @ THETA + 0.1 * rng.standard_normal((500, 1)), H)
+    instruments = W.copy()
+    instruments[:, :, [0, 2]] = 0.0
+    with pytest.raises(NotIdentifiableError) as error:
+        iv.solved(rows, instruments, estimated(wls.Estimator(), rows))
+    assert np.flatnonzero(error.value.direction).tolist() == [0, 2]
 
 
 def test_iv_without_a_reference_is_refused() -> None:

@@ -65,6 +65,14 @@ def test_vibration_lowers_the_cutoff() -> None:
     assert shaken.plateau[1] <= 15.0 < calm.plateau[1]
 
 
+def test_the_search_ends_where_the_scatter_has_doubled() -> None:
+    found = [point.scatter for point in scatter.curve(SCARA, [arm(noise=3e-4)], H)]
+    least = np.minimum.accumulate(found)
+    assert len(found) > scatter.FEWEST
+    assert found[-1] > 2.0 * least[-1]
+    assert np.all(np.array(found)[scatter.FEWEST : -1] <= 2.0 * least[scatter.FEWEST : -1])
+
+
 def test_noise_of_the_positions_lowers_the_cutoff() -> None:
     fine, coarse = (
         scatter.chosen(scatter.curve(SCARA, [arm(noise=x)], H)).cutoff for x in (1e-6, 3e-4)

@@ -26,3 +26,9 @@ def test_the_tail_of_f_does_not_underflow() -> None:
 def test_the_tails_of_t(value: float) -> None:
     expected = np.log(2.0) + scipy.stats.t.logsf(abs(value), 12)
     assert log_tail_t(value, 12) == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_tail_of_f_at_the_ends_of_the_doubles() -> None:
+    """Where the argument of the beta function is 0 or 1 by rounding."""
+    assert log_tail_f(1e308, 39.0, 5.0) == -np.inf
+    assert log_tail_f(5e-324, 1.0, 1000.0) == 0.0

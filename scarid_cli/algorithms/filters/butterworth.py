@@ -18,7 +18,9 @@ from scarid_cli.algorithms.choices.settings import (
 from scarid_cli.algorithms.filters.sections import SectionFilter
 from scarid_cli.algorithms.processes.process import Samples, WholeRecord
 from scarid_cli.arrays import Array
-from scarid_cli.errors import TooShort
+from scarid_cli.errors import TooShort, UsageFault
+
+LOWEST = 1e-6  # cutoff, of the rate: below, rounding takes the place of the poles
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,11 @@ class Butterworth(Validated, SectionFilter):
 
     def sections(self, h: float) -> Array:
         require_below_nyquist(self.cutoff, h)
+        if self.cutoff * h < LOWEST:
+            raise UsageFault(
+                f"cutoff {self.cutoff:g} Hz is too low for a rate of {1.0 / h:g} Hz: give at least "
+                f"{LOWEST / h:.3g} Hz"
+            )
         w = 2.0 * np.tan(np.pi * self.cutoff * h)
         rows = [_pair(w, angle) for angle in _angles(self.order)]
         if self.order % 2:

@@ -123,7 +123,7 @@ ATTENUATION = 60.0  # dB from half the new rate on
 # Kaiser's formulas: the transition is as wide as that takes, and ends at half the new rate.
 BETA = 0.1102 * (ATTENUATION - 8.7)
 CUTOFF = 0.5 - 0.5 * (ATTENUATION - 8.0) / (2.285 * 2.0 * np.pi * 2.0 * REACH)  # of the new rate
-WINDOWS = 256  # computed at once
+WINDOWS, VALUES = 256, 1 << 22  # computed at once
 
 
 @dataclass(frozen=True)
@@ -188,8 +188,9 @@ class Decimator:
         count = room // self.factor + 1 if room >= 0 else 0
         rows = np.empty((len(state.x), count))
         taps = self.taps
-        for start in range(0, count, WINDOWS):
-            part = slice(start, min(start + WINDOWS, count))
+        together = max(1, min(WINDOWS, VALUES // len(taps)))
+        for start in range(0, count, together):
+            part = slice(start, min(start + together, count))
             for out, x in zip(rows, state.x, strict=True):
                 windows = sliding_window_view(x, len(taps))[first :: self.factor][part]
                 # Not a matrix product: it would round differently with the number of rows.

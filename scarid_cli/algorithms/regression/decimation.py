@@ -13,6 +13,7 @@ from scipy.signal import cheby1, sosfiltfilt
 from scarid_cli.algorithms.regression.counting import CUTOFF_OF_NYQUIST
 from scarid_cli.algorithms.regression.rows import Rows, joined, runs
 from scarid_cli.arrays import Array
+from scarid_cli.errors import TooShort
 
 ORDER = 8
 RIPPLE = 0.05  # dB
@@ -25,6 +26,8 @@ def decimated(rows: Rows, factor: int) -> Rows:
     Runs that are too short for the padding of the filter are left out; `at` numbers the new
     samples.
     """
+    if factor >= max(rows.samples, 2):
+        raise TooShort(f"one row in {factor} of a log of {rows.samples} is none; give a longer log")
     sections = cheby1(ORDER, RIPPLE, CUTOFF_OF_NYQUIST / factor, output="sos")
     parts = []
     for run in runs(rows.at):

@@ -56,7 +56,7 @@ def run(
         choice = Choice(topic, torque_topic, join, order)
         table = read_recording(job, file, source, extension, choice, arm)
         columns = Columns(pairs, given)
-    job.write(job.recorded(_adapted(table, columns, rate, arm)))
+    job.write(job.recorded(job.within(_adapted(table, columns, rate, arm))))
 
 
 def _adapted(table: Table, columns: Columns, rate: float | None, robot: Robot | None) -> Table:

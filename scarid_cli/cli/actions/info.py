@@ -6,7 +6,9 @@ import json
 
 import click
 
+from scarid_cli.cli.command_line import was_given
 from scarid_cli.cli.job import Job
+from scarid_cli.cli.options import SELECTION
 from scarid_cli.cli.terminal import wrapped
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bags import bag_extension
@@ -19,7 +21,7 @@ def run(job: Job, *, file: str, as_json: bool) -> None:
     source = job.opened(file)
     extension = bag_extension(file, source)
     if extension is None:
-        found = described(job.read_source(source))
+        found = described(job.within(job.read_source(source)))
         if as_json:
             click.echo(json.dumps(found.document))
             return
@@ -27,8 +29,9 @@ def run(job: Job, *, file: str, as_json: bool) -> None:
     else:
         from scarid_cli.cli.recordings import topic_lines  # not needed otherwise
 
-        if as_json:
-            raise UsageFault(f"{file}: --json describes tables, not recordings; leave it out")
+        if as_json or any(map(was_given, SELECTION)):
+            what = "--json describes" if as_json else "--from-time, --to-time and --rows are for"
+            raise UsageFault(f"{file}: {what} tables, not recordings; leave it out")
         lines = topic_lines(file, source, extension)
     for line in lines:
         click.echo(wrapped("", printable(line), 0, hanging=10))

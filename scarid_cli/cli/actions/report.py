@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from scarid_cli.cli.job import Job
@@ -13,6 +14,7 @@ from scarid_cli.reporting import naming, results, text
 from scarid_cli.reporting import published as values_of
 from scarid_cli.reporting import repeated as repetitions
 from scarid_cli.reporting.content import sections
+from scarid_cli.reporting.parts import Section
 
 
 def run(
@@ -23,11 +25,20 @@ def run(
     markdown: str | None,
     published: str | None,
     repeated: bool,
+    fleet: str | None,
     figures: str | None,
-    title: str,
+    title: str | None,
     place: str | None,
 ) -> None:
     """Print the tables, and write the documents."""
+    if fleet:
+        from scarid_cli.cli.fleet import of_fleet
+
+        others = {"--repeated": repeated, "--published": published, "--figures": figures}
+        _require_alone(files, others)
+        of_fleet(job, fleet, title or "Fleet report", html, markdown, place)
+        return
+    title = title or "Identification report"
     paths = files or ("-",)
     _require_distinct(paths, html, markdown)
     page, plain, printed = (job.side_text(path) for path in (html, markdown, place))
@@ -35,14 +46,16 @@ def run(
     values = values_of.read(job.read(published, "published")) if published else None
     collected = results.collect(tables, repeated=repeated)
     found = (repetitions.sections if repeated else sections)(collected, values)
-    if page or figures:
-        from scarid_cli.reporting import page as rendering  # matplotlib takes half a second
+    if figures:
+        _save(job, Path(figures), found)
+    if page:
+        from scarid_cli.reporting.study import page as rendering  # jinja2 takes a tenth of a second
 
-        drawn = rendering.figures(found)
-        if figures:
-            _save(job, Path(figures), [section.title for section in found], drawn)
-        if page:
-            page.write(rendering.html(title, found, drawn, tables))
+        page.write(
+            rendering.plain(title, found, tables)
+            if repeated
+            else rendering.study(title, collected, values, tables)
+        )
     if plain:
         plain.write(text.markdown(title, found))
     if printed:
@@ -68,6 +81,14 @@ def _reportable(job: Job, paths: Sequence[str]) -> list[Table]:
     return tables
 
 
+def _require_alone(files: Sequence[str], others: Mapping[str, object]) -> None:
+    """Refuse what a report of a fleet has no use for."""
+    if files:
+        raise UsageFault(f"--fleet reads its own folder; leave {files[0]} out")
+    if given := next((option for option, value in others.items() if value), None):
+        raise UsageFault(f"{given} has no meaning with --fleet; leave it out")
+
+
 def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | None) -> None:
     twice = next((path for path in paths if paths.count(path) > 1), None)
     if twice:
@@ -76,8 +97,11 @@ def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | No
         raise UsageFault(f"--html and --markdown both go to {html}; give two files")
 
 
-def _save(job: Job, folder: Path, titles: list[str], drawn: list[list[str]]) -> None:
+def _save(job: Job, folder: Path, found: list[Section]) -> None:
     """Write each figure as a file of its own."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, document in naming.figures(titles, drawn):
-        job.text(str(folder / name)).write(document)
+    # While it is imported, which takes half a second, matplotlib may log messages on its caches.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    from scarid_cli.reporting.figures import drawn
+
+    for name, document in naming.figures([section.title for section in found], drawn(found)):
+        job.figure(str(folder / name)).write(document)

@@ -68,8 +68,6 @@ def run(
         job.say(f"limited by: {found.limited}")
     job.say(prediction.summary)
     if side:
-        if wish.noise is None:
-            raise UsageFault("--expected needs the torque noise; give --torque-noise")
         job.write(job.recorded(prediction.table(replace(meta, period=None))), side)
 
 

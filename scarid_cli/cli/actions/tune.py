@@ -75,5 +75,5 @@ def _joints(table: Table, arm: Robot | None) -> int:
     if arm is None:
         return joints_of(table.columns, "q")
     joints = len(arm.joints)
-    require(table, of_joints(joints, "q{i}", "tau{i}"), f"this one for robot {arm.name}")
+    require(table, of_joints(joints, "q{i}", "tau{i}"), f"this column for robot {arm.name}")
     return joints

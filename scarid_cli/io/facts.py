@@ -1,0 +1,95 @@
+"""What commands read of a table's metadata beyond its kind: checked where it enters.
+
+A table may come from anywhere. Whether the sizes agree with the rows and the robot is checked where
+the values are used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import isfinite
+from typing import Any
+
+Check = Callable[[Any], bool]
+LARGEST = 1e100
+FREQUENCIES = (1e-6, 1e9)  # Hz
+
+
+def number(x: Any) -> bool:
+    """A number that can be calculated with."""
+    return isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= LARGEST
+
+
+def text(x: Any) -> bool:
+    """A string."""
+    return isinstance(x, str)
+
+
+def _frequency(x: Any) -> bool:
+    return number(x) and FREQUENCIES[0] <= x <= FREQUENCIES[1]
+
+
+def _size(x: Any) -> bool:
+    return number(x) and x >= 0.0
+
+
+def _count(x: Any) -> bool:
+    return isinstance(x, int) and not isinstance(x, bool) and 0 < x < 1 << 20
+
+
+def _or_none(check: Check) -> Check:
+    return lambda x: x is None or check(x)
+
+
+def _list(check: Check) -> Check:
+    return lambda x: isinstance(x, list) and all(map(check, x))
+
+
+def _of(checks: dict[str, Check]) -> Check:
+    """A table with these keys at least."""
+    return lambda x: isinstance(x, dict) and all(k in x and ok(x[k]) for k, ok in checks.items())
+
+
+def _evidence(x: Any) -> bool:
+    """The information matrix of an identification, by its lower triangle, with its columns."""
+    parts = {"columns": _list(text), "score": _list(number), "deviations": _list(_size)}
+    if not _of({**parts, "information": _list(number), "blocks": _count})(x):
+        return False
+    q = len(x["columns"]) + 1 + 2 * len(x["deviations"])
+    return len(x["score"]) == q and len(x["information"]) == q * (q + 1) // 2
+
+
+def _rows_of_joints(x: Any) -> bool:
+    """A list for each parameter, with a number for each joint; one parameter at least, or none."""
+    if not isinstance(x, dict):
+        return False
+    lengths = {len(row) if _list(number)(row) else 0 for row in x.values()}
+    return not x or (len(lengths) == 1 and lengths != {0})
+
+
+CHECKS: dict[str, Check] = {
+    "bandwidth": _or_none(_frequency),
+    "velocity_noise": _or_none(_list(_size)),
+    "delay": _or_none(number),
+    "delay_error": _or_none(_size),
+    "covariance": _or_none(_list(_list(_or_none(number)))),
+    "full_estimates": _or_none(_list(_or_none(number))),
+    "dropped": _list(text),
+    "verdict": text,
+    "reasons": _list(text),
+    "evidence": _or_none(_evidence),
+    "torque_constants": _or_none(_rows_of_joints),
+    "joints": lambda x: _list(text)(x) or _list(_of({"deviation": _size}))(x),
+}
+
+
+def sound(extra: dict[str, Any]) -> bool:
+    """Whether what commands read of these metadata is of the type that they expect."""
+    return all(check(extra[key]) for key, check in CHECKS.items() if key in extra) and (
+        "verdict" not in extra or "reasons" in extra
+    )
+
+
+def period(x: Any) -> bool:
+    """A sampling period [s], or none."""
+    return x is None or (number(x) and isfinite(x) and x > 0.0)

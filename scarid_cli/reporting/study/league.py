@@ -1,0 +1,124 @@
+"""The figure of the first screen: what each method is worth, on a logarithmic axis in percent."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, floor, isfinite, log10
+
+from markupsafe import Markup
+
+from scarid_cli.reporting.study import svg
+
+WIDTH, NAMES, NUMBERS = 640, 160, 110
+TOP, ROW, BOTTOM = 20, 22, 34
+LETTERS = 26
+LEAST, MOST = 1e-3, 1e5  # percent: the axis ends there at the latest
+
+
+@dataclass(frozen=True)
+class Place:
+    """One row: its name, the class of its colour, its verdict, and a value [%] for each mark."""
+
+    name: str
+    style: str
+    grade: str
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class League:
+    """Rows with the same marks; values above `limit` are doubtful."""
+
+    caption: str
+    axis: str
+    marks: tuple[str, ...]
+    places: tuple[Place, ...]
+    limit: float | None = None
+
+
+def drawn(league: League) -> Markup:
+    """The figure as an SVG element."""
+    low, high = decades(league)
+    bottom = TOP + ROW * len(league.places)
+    marks = league.marks if len(league.marks) > 1 else ()
+    return svg.element(
+        "svg",
+        *_axis(league, low, high, bottom),
+        *(part for i, p in enumerate(league.places) for part in _row(p, TOP + ROW * i, low, high)),
+        *_legend(marks),
+        viewBox=f"0 0 {WIDTH} {bottom + BOTTOM}",
+        role="img",
+        aria_label=_spoken(league),
+        class_="league",
+    )
+
+
+def decades(league: League) -> tuple[int, int]:
+    """The powers of ten between which all values lie."""
+    known = [v for p in league.places for v in p.values if isfinite(v) and v > 0.0]
+    known = [min(max(v, LEAST), MOST) for v in known] or [1.0]
+    low, high = floor(log10(min(known))), ceil(log10(max(known)))
+    return low, max(high, low + 1)
+
+
+def percents(values: Sequence[float]) -> str:
+    """The values with two significant digits, as a sentence would have them."""
+    return ", ".join(f"{v:,.0f}" if v >= 100.0 else f"{v:.2g}" for v in values if isfinite(v))
+
+
+def _spoken(league: League) -> str:
+    rows = (f"{p.name} {percents(p.values)} %" for p in league.places)
+    return f"{league.caption} {'; '.join(rows)}"
+
+
+def _x(value: float, low: int, high: int) -> float:
+    share = (log10(min(max(value, LEAST), MOST)) - low) / (high - low)
+    return NAMES + (WIDTH - NAMES - NUMBERS) * share
+
+
+def _axis(league: League, low: int, high: int, bottom: float) -> list[Markup]:
+    parts = []
+    for power in range(low, high + 1):
+        x = _x(10.0**power, low, high)
+        parts.append(svg.element("path", d=f"M{x:.1f} {TOP}V{bottom}", class_="grid"))
+        parts.append(svg.element("text", f"{10.0**power:g} %", x=x, y=bottom + 13, class_="x"))
+    if league.limit:
+        x = _x(league.limit, low, high)
+        parts.append(svg.element("path", d=f"M{x:.1f} {TOP}V{bottom}", class_="level"))
+    middle = NAMES + (WIDTH - NAMES - NUMBERS) / 2
+    return [*parts, svg.element("text", league.axis, x=middle, y=bottom + 28, class_="x")]
+
+
+def _row(place: Place, top: float, low: int, high: int) -> list[Markup]:
+    y = top + ROW / 2
+    name = place.name if len(place.name) <= LETTERS else place.name[: LETTERS - 1] + "…"
+    known = [(k, v) for k, v in enumerate(place.values) if isfinite(v) and v > 0.0]
+    xs = [_x(v, low, high) for _, v in known]
+    line = [svg.element("path", d=f"M{min(xs):.1f} {y}H{max(xs):.1f}", class_="bar")] if xs else []
+    marks = [mark(k, x, y) for (k, _), x in zip(known, xs, strict=True)]
+    text = f"{percents(place.values)} %" if known else "unknown"
+    return [
+        svg.element("text", name, x=NAMES - 10, y=y + 3.5, class_="name"),
+        svg.element("g", *line, *marks, class_=place.style),
+        svg.element("text", text, x=WIDTH - NUMBERS + 10, y=y + 3.5, class_="value"),
+    ]
+
+
+def mark(number: int, x: float, y: float) -> Markup:
+    """The mark of a joint: filled and hollow circles and squares, then their numbers."""
+    if number >= 4:
+        return svg.element("text", str(number + 1), x=x, y=y + 3.5, class_="digit")
+    hollow = " hollow" if number % 2 else ""
+    if number < 2:
+        return svg.element("circle", cx=x, cy=y, r=4.2, class_=f"mark{hollow}")
+    return svg.element("rect", x=x - 3.8, y=y - 3.8, width=7.6, height=7.6, class_=f"mark{hollow}")
+
+
+def _legend(marks: Sequence[str]) -> list[Markup]:
+    parts, x = [], float(NAMES)
+    for k, name in enumerate(marks):
+        parts.append(svg.element("g", mark(k, x + 5, 9), class_="plain"))
+        parts.append(svg.element("text", name, x=x + 14, y=12.5, class_="legend"))
+        x += 26 + 6.2 * len(name)
+    return parts

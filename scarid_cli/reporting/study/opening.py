@@ -1,0 +1,145 @@
+"""The first screen: the verdict, one sentence for each question, and the figure that shows it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from scarid_cli.algorithms.statistics.verdict import DOUBT, DOUBTFUL, GOOD
+from scarid_cli.reporting.study import league
+from scarid_cli.reporting.study.league import League, Place, percents
+from scarid_cli.reporting.study.ranking import GRADES, Ranking, Standing
+
+ROWS = 12  # of the figure at most
+NAMED = 4  # good methods that are named at most
+EXPERIMENTS = {
+    "common": "another log, calculated with one motion for all methods,",
+    "cross": "another log",
+    "direct": "the log of the identification",
+    "": "the log of the validation",
+}
+BELIEF = {
+    GOOD: "Yes, within the stated intervals",
+    DOUBTFUL: "Not without a look at the reason",
+}
+
+
+@dataclass(frozen=True)
+class Opening:
+    """Grade of the best method ("" if none is known), the answers, and the figure."""
+
+    grade: str
+    headline: str
+    answers: tuple[tuple[str, str], ...]
+    caption: str
+    figure: Markup
+
+
+def opening(ranking: Ranking, colours: dict[str, int]) -> Opening:
+    """What a reader who has not seen the study needs to know of it."""
+    best, several = ranking.best, len(ranking.standings) > 1
+    shown = _figure(ranking, colours)
+    answers = [("How well?", _how_well(ranking)), ("May I believe it?", _belief(best))]
+    if several and (counts := _counts(ranking)):
+        answers.append(("And the others?", counts))
+    return Opening(
+        grade=best.grade,
+        headline=_headline(ranking),
+        answers=tuple((q, a) for q, a in answers if a),
+        caption=shown.caption,
+        figure=league.drawn(shown),
+    )
+
+
+def _headline(ranking: Ranking) -> str:
+    best, count = ranking.best.name, len(ranking.standings)
+    if count == 1:
+        return f"{best}: {ranking.best.grade}" if ranking.best.grade else best
+    return f"{best} is the best of {count} identifications"
+
+
+def _how_well(ranking: Ranking) -> str:
+    """By how much the best is better than the next and than the last."""
+    judge, ranked = ranking.judge, list(ranking.standings)
+    if judge is None or not ranking.best.errors(judge):
+        known = _known(ranking.best)
+        return f"The parameters are known within {known} % at the median." if known else ""
+    known_ones = [s for s in ranked if s.errors(judge)]
+    text = (
+        f"It predicts the torques of {EXPERIMENTS.get(judge, f'the experiment {judge}')} within "
+        f"{percents(known_ones[0].errors(judge))} % of their norm"
+    )
+    others = known_ones[1:2] + known_ones[2:][-1:]
+    tails = [f"{s.label} within {percents(s.errors(judge))} %" for s in others]
+    names = ("the next, ", "the last, ")
+    rest = "; ".join(a + b for a, b in zip(names, tails, strict=False))
+    return f"{text}; {rest}." if rest else f"{text}."
+
+
+def _known(best: Standing) -> str:
+    return percents([best.vagueness()])
+
+
+def _belief(best: Standing) -> str:
+    if not best.grade:
+        return ""
+    reasons = "; ".join(best.reasons[:1])
+    belief = BELIEF.get(best.grade, "No: the log does not determine the parameters")
+    return f"{belief}: {reasons}." if reasons else f"{belief}."
+
+
+def _counts(ranking: Ranking) -> str:
+    counts = Counter(s.grade for s in ranking.standings)
+    good = [s.name for s in ranking.standings if s.grade == GOOD]
+    named = f" ({', '.join(good)})" if 0 < len(good) <= NAMED else ""
+    found = [
+        f"{counts[grade]} {grade}{named if grade == GOOD else ''}"
+        for grade in GRADES
+        if counts[grade]
+    ]
+    return f"Of all {len(ranking.standings)}: {', '.join(found)}." if found else ""
+
+
+def _figure(ranking: Ranking, colours: dict[str, int]) -> League:
+    """Torque errors of the methods, or, where there are none, the errors of the parameters."""
+    judge = ranking.judge
+    if judge is None or (len(ranking.standings) == 1 and ranking.best.parameters):
+        return _of_parameters(ranking, colours)
+    ranked = [s for s in ranking.standings if s.errors(judge)][:ROWS]
+    joints = next(iter(ranked)).metrics[judge].joints
+    places = (Place(s.name, f"m{colours[s.label]}", s.grade, s.errors(judge)) for s in ranked)
+    where = EXPERIMENTS.get(judge, f"the experiment {judge}")
+    return League(
+        caption=f"Error of the predicted torques of {where.rstrip(',')}; the best method first, "
+        "further left is better.",
+        axis="relative error of the predicted torque [%]",
+        marks=tuple(f"joint {joint}" for joint in joints),
+        places=tuple(places),
+    )
+
+
+def _of_parameters(ranking: Ranking, colours: dict[str, int]) -> League:
+    """Errors of each parameter of the best, or the median of each method."""
+    best = ranking.best.parameters
+    if best is None or len(ranking.standings) > 1:
+        places = tuple(
+            Place(s.name, f"m{colours[s.label]}", s.grade, (s.vagueness(),))
+            for s in ranking.standings[:ROWS]
+        )
+        caption = "Median relative standard error of the parameters of each method."
+    else:
+        errors, style = best.robust or best.deviations, f"m{colours[ranking.best.label]}"
+        places = tuple(
+            Place(name, style, "", (error,)) for name, error in zip(best.names, errors, strict=True)
+        )
+        caption = "Relative standard error of each parameter."
+    return League(
+        caption=f"{caption} The line marks {DOUBT:g} %, above which a parameter is not known; "
+        "further left is better.",
+        axis="relative standard error [%]",
+        marks=("error",),
+        places=places,
+        limit=DOUBT,
+    )

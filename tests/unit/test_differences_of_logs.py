@@ -1,0 +1,46 @@
+"""The difference of two logs: what both say about the parameters, and with how many blocks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from scarid_cli.algorithms.changes.evidence import LogEvidence
+from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
+
+RNG = np.random.default_rng(3)
+N = 4
+
+
+def evidence(blocks: int) -> LogEvidence:
+    """Any information and score, with the scores of so many blocks."""
+    root = RNG.standard_normal((N, N))
+    scores = RNG.standard_normal((blocks, N))
+    return LogEvidence(root @ root.T + np.eye(N), RNG.standard_normal(N), np.ones(1), scores)
+
+
+@pytest.mark.parametrize(("one", "other", "freedom"), [(12, 20, 11), (20, 12, 11), (1, 9, 1)])
+def test_the_degrees_of_freedom_are_those_of_the_log_with_fewer_blocks(
+    one: int, other: int, freedom: int
+) -> None:
+    assert Difference.between(evidence(one), evidence(other)).freedom == freedom
+
+
+def test_the_change_is_the_difference_of_the_estimates_weighted_by_its_information() -> None:
+    """With N1 and N2, its covariance is inv(N1) + inv(N2); the gradient is its inverse times it."""
+    first, second = evidence(9), evidence(9)
+    found = Difference.between(first, second)
+    covariance = np.linalg.inv(first.information) + np.linalg.inv(second.information)
+    change = np.linalg.solve(second.information, second.score)
+    change -= np.linalg.solve(first.information, first.score)
+    assert found.information == pytest.approx(np.linalg.inv(covariance))
+    assert found.gradient == pytest.approx(np.linalg.solve(covariance, change))
+
+
+@pytest.mark.parametrize(("blocks", "together"), [(1, 1), (2, 1), (7, 1), (7, 2), (7, 4), (3, 4)])
+def test_scores_of_joined_blocks_scatter_as_their_sums_do(blocks: int, together: int) -> None:
+    """About zero, with the factor of a jackknife; a single block has none."""
+    scores = RNG.standard_normal((blocks, N))
+    sums = [scores[i : i + together].sum(axis=0) for i in range(0, blocks, together)]
+    factor = len(sums) / (len(sums) - 1) if len(sums) > 1 else 1.0
+    assert _scatter(scores, together) == pytest.approx(factor * np.sum(np.square(sums)))
