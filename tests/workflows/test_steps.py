@@ -9,6 +9,7 @@ from typing import Any
 
 import pyarrow.parquet as pq
 import pytest
+from conftest import ROOT
 from fleet import Planned, description, made
 from workflows.outcomes import WORKFLOW, in_one_process
 
@@ -105,6 +106,23 @@ def test_the_commands_of_a_log_are_told_and_give_its_parameters(folder: Path) ->
     estimates = pq.read_table(folder / "outcome" / "estimates.parquet").to_pylist()
     first = [row["estimate"] for row in estimates if row["log"] == "2026-01-01"]
     assert first == table.column("estimate").to_pylist()
+
+
+def test_a_single_log_has_nothing_to_be_compared_with(tmp_path: Path) -> None:
+    config = tmp_path / "fleet.toml"
+    log = ROOT / "samples" / "scara2.csv"
+    config.write_text(f'[robots.one]\nrobot = "scara2"\nlogs = "{log}"\n')
+    done = in_one_process(config)
+    assert (done.returncode, done.stderr) == (0, "")
+    row = pq.read_table(tmp_path / "outcome" / "fleet.parquet").to_pylist()[0]
+    assert (row["status"], row["verdict"], row["reference"], row["change"]) == (
+        0,
+        "good",
+        None,
+        None,
+    )
+    assert row["page"] == "logs/one/scara2/report.html"
+    assert (tmp_path / "outcome" / row["page"]).exists()
 
 
 def test_a_log_that_kills_its_process_is_a_row() -> None:

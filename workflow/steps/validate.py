@@ -12,6 +12,8 @@ from steps import places
 from steps.commands import Result, failure, of_each, run
 from steps.plan import Log, Plan, Robot
 
+OK: Result = {"status": 0}
+
 
 def validate(plan: Plan, robot: Robot, group: str) -> None:
     """Validate the logs of a group that were identified."""
@@ -25,7 +27,7 @@ def validate(plan: Plan, robot: Robot, group: str) -> None:
         if "estimates" not in before:
             return {"status": before["status"]}
         name = against["second" if log.name == against["reference"] else "reference"]
-        found = _validated(plan, robot, log, places.table(motions, log), name) if name else {}
+        found = _validated(plan, robot, log, places.table(motions, log), name) if name else OK
         return found | _page(plan, robot, log, _needs_a_look(log, before, found, against), found)
 
     entries = list(zip(plan.logs(robot, group), identified, strict=True))
