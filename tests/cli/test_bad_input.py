@@ -276,8 +276,12 @@ def test_a_loop_that_blows_up_is_an_error_and_not_a_table(scarid: Run, tmp_path:
     ("command", "missing", "remedy"),
     [
         ("validate --parameters PARAMETERS", "dq1", "estimate it with `scarid differentiate`"),
-        ("validate --parameters PARAMETERS", "tau1", "name the columns as the schema does"),
-        ("differentiate", "q1", "name the columns as the schema does"),
+        (
+            "validate --parameters PARAMETERS",
+            "tau1",
+            "rename yours with `scarid convert --map tau1=NAME`",
+        ),
+        ("differentiate", "q1", "rename yours with `scarid convert --map q1=NAME`"),
         ("simulate", "q1_ref", "make a trajectory with `scarid trajgen`"),
         ("simulate", "dq1_ref", "make a trajectory with `scarid trajgen`"),
     ],

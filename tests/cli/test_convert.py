@@ -68,7 +68,7 @@ def test_arrays_become_columns(extension: str, shell: Shell, tmp_path: Path) -> 
         ("--unit q1=furlong LOG", 2, "unknown unit"),
         ("--unit x=deg LOG", 2, "no column 'x'"),
         ("--rate 100 LOG", 2, "has a time column t"),
-        ("--rate 0 LOG", 2, "'--rate': give a finite number above 0"),
+        ("--rate 0 LOG", 2, "'--rate': give a finite number above 1e-09"),
         ("--separator ab LOG", 2, "one character"),
         ("--decimal-comma LOG", 2, "needs a --separator"),
         ("nowhere.npz", 2, "no such file"),
