@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from fnmatch import fnmatchcase
@@ -68,7 +69,8 @@ def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:
             )
         to[old] = new
     fields = [f.with_name(to.get(f.name, f.name)) for f in table.schema]
-    twice = next((f.name for f in fields if [g.name for g in fields].count(f.name) > 1), None)
+    counts = Counter(f.name for f in fields)
+    twice = next((name for name, count in counts.items() if count > 1), None)
     if twice:
         raise UsageFault(f"--map: two columns would be called {twice!r}")
     return fields

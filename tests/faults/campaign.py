@@ -1,7 +1,7 @@
 """`make faults`: inject every kind of fault, and write the table of outcomes to docs/faults.md.
 
-`python tests/faults/campaign.py [SHARE]` writes it to standard output; SHARE (1 by default) scales
-how many faults are tried. With FAULTS_SOAK=1 in the environment 100 million rows are streamed too.
+`python tests/faults/campaign.py [SHARE [SECONDS]]` writes it to standard output; SHARE (1 by default)
+scales how many faults are tried, and SECONDS (25) bounds the time of each kind. With FAULTS_SOAK=1 in the environment 100 million rows are streamed too.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ between the last two):
 {soak}"""
 
 
-def classes(share: float) -> Iterator[tuple[str, Callable[[], Count]]]:
+def classes(share: float, seconds: float) -> Iterator[tuple[str, Callable[[], Count]]]:
     """The kinds of faults, by name, and how each is tried."""
 
     def trials(name: str, made: Iterator[Trial]) -> Count:
-        return counted(name, made, SECONDS)
+        return counted(name, made, seconds)
 
     for file in damage.names():
         yield f"`{file}` cut", lambda f=file: trials(f"`{f}` cut", damage.cuts(f, int(400 * share)))  # type: ignore[misc]
@@ -106,11 +106,11 @@ def soak() -> str:
     return f"\n100 million rows through `filter`: {memory:.0f} MB, {seconds:.0f} s (`FAULTS_SOAK=1 make faults`).\n"
 
 
-def main(share: float = 1.0) -> int:
+def main(share: float = 1.0, seconds: float = SECONDS) -> int:
     """Try all, write the page, and say on standard error what must not be."""
     processes.everything_imported()
     counts = []
-    for name, tried in classes(share):
+    for name, tried in classes(share, seconds):
         print(name, file=sys.stderr, flush=True)
         counts.append(tried())
         for example in counts[-1].examples:

@@ -9,7 +9,7 @@ import pytest
 from faults import damage, processes, settings
 from faults.trials import RIGHT, Trial, outcome
 
-FEW = 4
+FEW = 2
 ALLOWED = ("right result", "refused in one line", "not noticed by the format")
 
 

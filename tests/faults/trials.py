@@ -76,12 +76,15 @@ def _child(trial: Trial, error: Path) -> None:
         for fd, path, flags in ((0, os.devnull, os.O_RDONLY), (1, STDOUT, os.O_CREAT | os.O_WRONLY | os.O_TRUNC),
                                 (2, str(error), os.O_CREAT | os.O_WRONLY | os.O_TRUNC)):  # fmt: skip
             os.dup2(os.open(path, flags, 0o600), fd)
+        # Those of this process may be kept by pytest.
+        sys.stdout, sys.stderr = (os.fdopen(fd, "w", closefd=False) for fd in (1, 2))
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.alarm(SECONDS)
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         trial.before()
         status = main(list(trial.words))
         sys.stdout.flush()
+        sys.stderr.flush()
     finally:
         os._exit(status)
 
