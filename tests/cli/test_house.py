@@ -94,6 +94,21 @@ def test_what_the_program_imports_it_declares() -> None:
     assert imported - set(sys.stdlib_module_names) - {"scarid_cli"} == names | extra
 
 
+def test_a_wheel_has_every_package_and_every_file_of_data() -> None:
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]
+    tracked = subprocess.run(
+        ["git", "ls-files", "scarid_cli", "schemas"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.split()  # fmt: skip
+    folders = {Path(name).parent for name in tracked}
+    packages = {".".join(folder.parts) for folder in folders if folder.parts[0] == "scarid_cli"}
+    assert set(declared["packages"]) == packages | {"scarid_cli.schemas"}
+    data = declared["package-data"]
+    for name in tracked:
+        package = ".".join(Path(name).parent.parts).replace("schemas", "scarid_cli.schemas")
+        patterns = [*data.get(package, []), "*.py"]
+        assert any(Path(name).match(pattern) for pattern in patterns), name
+
+
 def test_imports_follow_the_architecture(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     assert lint_imports(config_filename="pyproject.toml", no_cache=True) == 0
