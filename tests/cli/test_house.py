@@ -96,9 +96,9 @@ def test_what_the_program_imports_it_declares() -> None:
 
 def test_a_wheel_has_every_package_and_every_file_of_data() -> None:
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]
-    tracked = subprocess.run(
-        ["git", "ls-files", "scarid_cli", "schemas"], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout.split()  # fmt: skip
+    listing = ["git", "ls-files", "scarid_cli", "schemas"]
+    done = subprocess.run(listing, cwd=ROOT, capture_output=True, text=True, check=True)
+    tracked = done.stdout.split()
     folders = {Path(name).parent for name in tracked}
     packages = {".".join(folder.parts) for folder in folders if folder.parts[0] == "scarid_cli"}
     assert set(declared["packages"]) == packages | {"scarid_cli.schemas"}
