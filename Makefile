@@ -56,15 +56,18 @@ $(VENV)/tested: $(BUILD_FILES) | $(BIN)/python
 	$(PIP) install --editable '.[test,lint]'
 	@touch $(VENV)/installed $@
 
-test: $(VENV)/tested  # one thread of linear algebra for each process of the tests
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4
+# Of each process that tests start: one thread of linear algebra, and modules that are compiled once.
+TESTING := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE=
+
+test: $(VENV)/tested
+	$(TESTING) $(BIN)/python -m pytest -n auto --maxprocesses 4
 
 docs-test: $(VENV)/tested
-	SCARID_DOCS=all $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/docs
+	SCARID_DOCS=all $(TESTING) $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/docs
 
 FUZZ := 5000
 fuzz: $(VENV)/tested
-	SCARID_FUZZ=$(FUZZ) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/fuzz
+	SCARID_FUZZ=$(FUZZ) $(TESTING) $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/fuzz
 
 $(VENV)/mutable: $(VENV)/tested
 	$(PIP) install --editable '.[mutants]'
@@ -75,7 +78,7 @@ mutants: $(VENV)/mutable  # goes on where it was stopped; after changes: rm -r b
 
 faults: $(VENV)/tested  # the page is replaced only by a whole one
 	@mkdir -p build
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python tests/faults/campaign.py > build/faults.md; \
+	$(TESTING) $(BIN)/python tests/faults/campaign.py > build/faults.md; \
 	  status=$$?; test -s build/faults.md && mv build/faults.md docs/faults.md; exit $$status
 
 lint: $(VENV)/tested
