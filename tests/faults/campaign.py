@@ -1,7 +1,7 @@
 """`make faults`: inject every kind of fault, and write the table of outcomes to docs/faults.md.
 
 `python tests/faults/campaign.py [SHARE [SECONDS]]` writes it to standard output; SHARE (1 by default)
-scales how many faults are tried, and SECONDS (25) bounds the time of each kind. With FAULTS_SOAK=1 in the environment 100 million rows are streamed too.
+scales how many faults are tried, and SECONDS (16) bounds the time of each kind. With FAULTS_SOAK=1 in the environment 100 million rows are streamed too.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from faults import bombs, damage, processes, settings
 from faults.trials import FORBIDDEN, KILLED, REFUSAL, RIGHT, UNNOTICED, Count, Trial, counted
 
-SECONDS = 25.0  # of each class at most
+SECONDS = 16.0  # of each class at most
 COLUMNS = (RIGHT, REFUSAL, KILLED, UNNOTICED)
 TEXT = """# Faults
 
