@@ -141,7 +141,7 @@ $(BATCH)/installed: $(BUILD_FILES)
 	@touch $@
 
 $(BATCH)/tested: $(BATCH)/installed
-	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install pytest hypothesis
+	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install pytest pytest-xdist hypothesis
 	@touch $@
 
 batch: $(BATCH)/installed
