@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from base64 import b64decode
 from collections.abc import Iterator
 from typing import Any, BinaryIO
 
+import pyarrow as pa
+import pyarrow.ipc as ipc
 import pyarrow.parquet as pq
 
 from scarid_cli.io.bytesource import CHUNK, require_moderate
@@ -17,6 +20,7 @@ TEXT = "BYTE_ARRAY"
 def opened(file: BinaryIO, name: str) -> pq.ParquetFile:
     """The Parquet file of this name. Columns of texts stay folded, as dictionaries, if they are."""
     footer = pq.read_metadata(file)
+    _require_own_levels(footer)
     columns = list(_columns(footer))
     require_moderate(name, max((c.total_uncompressed_size for c in columns), default=0))
     schema = [footer.schema.column(i) for i in range(footer.num_columns)]
@@ -31,6 +35,22 @@ def opened(file: BinaryIO, name: str) -> pq.ParquetFile:
         buffer_size=CHUNK,
         page_checksum_verification=True,
     )
+
+
+def _require_own_levels(footer: Any) -> None:
+    """Refuse a damaged schema, in which a column that may be empty has become one that may not.
+
+    pyarrow ends the process when it reads the statistics of such a column.
+    """
+    written = (footer.metadata or {}).get(b"ARROW:schema")
+    if not written:
+        return
+    stored = ipc.read_schema(pa.py_buffer(b64decode(written)))
+    for i in range(footer.num_columns):
+        column = footer.schema.column(i)
+        place = stored.get_field_index(column.path)
+        if place >= 0 and stored.field(place).nullable and not column.max_definition_level:
+            raise pa.ArrowInvalid(f"column {column.path}: its schema is damaged")
 
 
 def rows_at_once(file: pq.ParquetFile) -> int:

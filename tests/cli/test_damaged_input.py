@@ -271,3 +271,15 @@ def test_a_state_that_is_not_there_is_asked_for(scarid: Run, samples: Path, tmp_
     motion = tmp_path / "motion.parquet"
     assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
     refused(scarid("identify", motion, "--from", tmp_path / "state.npz"), 2, "no such file")
+
+
+def test_a_column_that_may_no_longer_be_empty_is_damage(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    """A bit of the footer says so; pyarrow would end the process when it reads its statistics."""
+    log = tmp_path / "log.parquet"
+    assert scarid("convert", samples / "scara2.csv", "-o", log).status == 0
+    content = log.read_bytes()
+    place = content.rindex(b"\x25\x02\x18\x08ddq1_ref") + 1  # of the 2, for optional
+    log.write_bytes(content[:place] + b"\x00" + content[place + 1 :])
+    refused(scarid("convert", log), 65, "column ddq1_ref: its schema is damaged")
