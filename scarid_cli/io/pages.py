@@ -19,8 +19,15 @@ TEXT = "BYTE_ARRAY"
 
 def opened(file: BinaryIO, name: str) -> pq.ParquetFile:
     """The Parquet file of this name. Columns of texts stay folded, as dictionaries, if they are."""
+    try:
+        return _opened(file, name)
+    except UnicodeDecodeError:
+        raise pa.ArrowInvalid("a name in its footer is damaged") from None
+
+
+def _opened(file: BinaryIO, name: str) -> pq.ParquetFile:
     footer = pq.read_metadata(file)
-    _require_own_levels(footer)
+    _require_own_schema(footer)
     columns = list(_columns(footer))
     require_moderate(name, max((c.total_uncompressed_size for c in columns), default=0))
     schema = [footer.schema.column(i) for i in range(footer.num_columns)]
@@ -37,15 +44,18 @@ def opened(file: BinaryIO, name: str) -> pq.ParquetFile:
     )
 
 
-def _require_own_levels(footer: Any) -> None:
-    """Refuse a damaged schema, in which a column that may be empty has become one that may not.
+def _require_own_schema(footer: Any) -> None:
+    """Refuse a schema that differs from the one that Arrow has stored beside it: it is damaged.
 
-    pyarrow ends the process when it reads the statistics of such a column.
+    If a column that may be empty has become one that may not, pyarrow ends the process when it
+    reads the statistics of this column.
     """
     written = (footer.metadata or {}).get(b"ARROW:schema")
     if not written:
         return
     stored = ipc.read_schema(pa.py_buffer(b64decode(written)))
+    if stored.names != footer.schema.to_arrow_schema().names:
+        raise pa.ArrowInvalid("the names of its columns are damaged")
     for i in range(footer.num_columns):
         column = footer.schema.column(i)
         place = stored.get_field_index(column.path)

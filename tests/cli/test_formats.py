@@ -204,7 +204,7 @@ def test_unknown_columns_are_typed_by_their_first_row(scarid: Run, tmp_path: Pat
     robot=st.none() | st.text(),
     period=st.none() | st.floats(1e-6, 1.0),
     command=st.text(),
-    extra=st.dictionaries(st.text(), st.floats(allow_nan=False)),
+    extra=st.dictionaries(st.text().map("x-{}".format), st.floats(allow_nan=False)),
 )
 @settings(deadline=None)
 def test_metadata_survive_their_json(
