@@ -32,6 +32,7 @@ from scarid_cli.io.table import (
 )
 from scarid_cli.stages.holding import Holding, measured
 from scarid_cli.stages.slower import Filling, slower_groups
+from scarid_cli.stages.splitting import Splitting
 
 MOST = 1 << 18  # new rows that are made at once, and that lie between two of the log
 SLOWEST_RATE = 100_000  # times slower than the log at most
@@ -168,38 +169,6 @@ def _moderate(piece: pa.RecordBatch, period: float, name: str) -> Iterator[pa.Re
     numbers = np.floor((t - t[0]) / (MOST * period))
     for start, end in pairwise([0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), len(t)]):
         yield piece.slice(start, end - start)
-
-
-class Splitting:
-    """Splits batches at gaps longer than `limit` [s], and drops repeated rows."""
-
-    def __init__(self, limit: float) -> None:
-        self._limit = limit
-        self._last: Instant | None = None
-        self.segment = -1
-        self.clock = Clock()
-
-    def pieces(self, batch: pa.RecordBatch) -> Iterator[tuple[bool, pa.RecordBatch]]:
-        """The pieces of a batch, and for each of them whether it begins a new segment."""
-        steps, jumps, last = steps_of(batch, self._last)
-        begins = (steps > self._limit) | (jumps != 0)
-        begins[0] |= self._last is None
-        for start, end in pairwise(sorted({0, *np.flatnonzero(begins).tolist(), len(steps)})):
-            first = bool(begins[start])
-            if first:
-                self._begin(float(steps[start]))
-            self.clock = self.clock.after(steps[start + first : end])
-            kept = start + np.flatnonzero((steps > 0.0)[start:end] | begins[start:end])
-            if len(kept) == end - start:
-                yield first, batch.slice(start, end - start)
-            elif len(kept):
-                yield first, batch.take(pa.array(kept))  # imports pyarrow.compute, 40 ms
-        self._last = last
-
-    def _begin(self, gap: float) -> None:
-        self.segment += 1
-        if self.segment:
-            self.clock = self.clock.after_gap(gap)
 
 
 @dataclass
