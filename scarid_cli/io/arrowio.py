@@ -228,18 +228,20 @@ class _GroupWriter(_Writer):
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
         super().__init__(write, schema)
         self._held: list[pa.RecordBatch] = []
-        self._rows = 0
+        self._rows = self._bytes = 0
         self._group = min(GROUP_ROWS, max(1, GROUP // (8 * max(1, len(schema)))))
 
     def write(self, batch: pa.RecordBatch) -> None:
         self._held.append(batch.replace_schema_metadata(self._schema.metadata))
         self._rows += batch.num_rows
-        require_moderate("the output", COPIES * sum(held.nbytes for held in self._held))
+        self._bytes += batch.nbytes
+        require_moderate("the output", COPIES * self._bytes)
         while self._rows >= self._group:
             table = pa.Table.from_batches(self._held, self._schema)
             self._put(table.slice(0, self._group))
             self._held = table.slice(self._group).to_batches()
             self._rows -= self._group
+            self._bytes = sum(held.nbytes for held in self._held)
 
     def close(self) -> None:
         if self._rows:
