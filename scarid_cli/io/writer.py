@@ -50,7 +50,26 @@ def format_for(path: str, wanted: str | None) -> str:
     return chosen
 
 
-class Output:
+class Committable:
+    """What goes to a target, whose file appears, or is taken back, together with all others."""
+
+    target: Target
+
+    @property
+    def is_file(self) -> bool:
+        """Whether it goes to a file, which can be taken back."""
+        return self.target.is_file
+
+    def commit(self, *, keep: bool) -> None:
+        """Put the file in its place, and keep what was there before until all is settled."""
+        self.target.commit(keep=keep)
+
+    def settle(self) -> None:
+        """All outputs are complete."""
+        self.target.settle()
+
+
+class Output(Committable):
     """One table to write; made before the input is read, so that mistakes show at once."""
 
     def __init__(self, path: str, wanted: str | None = None) -> None:
@@ -82,19 +101,6 @@ class Output:
         if self._writer:
             self._writer.close()
             self._writer = None
-
-    @property
-    def is_file(self) -> bool:
-        """Whether it goes to a file, which can be taken back."""
-        return self.target.is_file
-
-    def commit(self, *, keep: bool) -> None:
-        """Put the file in its place, and keep what was there before until all is settled."""
-        self.target.commit(keep=keep)
-
-    def settle(self) -> None:
-        """All outputs are complete."""
-        self.target.settle()
 
     def abort(self) -> None:
         """The table is incomplete, and must not look complete."""
@@ -131,7 +137,7 @@ class Handover(Output):
         """The next stage has aborted its own output."""
 
 
-class Document:
+class Document(Committable):
     """A document beside the tables."""
 
     def __init__(self, path: str) -> None:
@@ -143,19 +149,6 @@ class Document:
 
     def finish(self) -> None:
         """A document has no end mark."""
-
-    @property
-    def is_file(self) -> bool:
-        """Whether it goes to a file, which can be taken back."""
-        return self.target.is_file
-
-    def commit(self, *, keep: bool) -> None:
-        """Put the file in its place, and keep what was there before until all is settled."""
-        self.target.commit(keep=keep)
-
-    def settle(self) -> None:
-        """All outputs are complete."""
-        self.target.settle()
 
     def abort(self) -> None:
         self.target.discard()
