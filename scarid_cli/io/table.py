@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from itertools import groupby, pairwise
 from math import isfinite
@@ -193,6 +193,13 @@ def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any]) 
         return values if isinstance(values, pa.Array) else doubles(values)
 
     return pa.RecordBatch.from_arrays([column(name) for name in schema.names], schema=schema)
+
+
+def together(batches: Sequence[pa.RecordBatch]) -> pa.RecordBatch:
+    """Batches of one schema as a single one; at least one of them has rows."""
+    if len(batches) == 1:
+        return batches[0]
+    return pa.Table.from_batches(batches).combine_chunks().to_batches()[0]
 
 
 def segments_of(batch: pa.RecordBatch) -> Numbers:

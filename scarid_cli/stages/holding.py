@@ -9,7 +9,7 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.processes.holding import held_rows
 from scarid_cli.io.schemas import numbered
-from scarid_cli.io.table import Table, matrix, segments_of
+from scarid_cli.io.table import Table, matrix, segments_of, together
 
 
 def measured(table: Table) -> list[str]:
@@ -45,17 +45,14 @@ class Holding:
 
     def _passed(self, batch: pa.RecordBatch) -> Iterator[pa.RecordBatch]:
         first = self._waiting is None
-        together = batch
-        if self._waiting is not None:
-            parts = pa.Table.from_batches([self._waiting, batch])
-            together = parts.combine_chunks().to_batches()[0]
-        t, *values = matrix(together, ["t", *self._columns])
-        held, waiting = held_rows(t, np.array(values), segments_of(together), self._limit)
+        rows = together([batch] if self._waiting is None else [self._waiting, batch])
+        t, *values = matrix(rows, ["t", *self._columns])
+        held, waiting = held_rows(t, np.array(values), segments_of(rows), self._limit)
         self.count += int(held.sum())
         kept = ~held
         kept[0], kept[waiting + 1 :] = first, False
         if kept.all():
-            yield together
+            yield rows
         elif kept.any():
-            yield together.take(pa.array(np.flatnonzero(kept)))
-        self._waiting = together.slice(waiting)
+            yield rows.take(pa.array(np.flatnonzero(kept)))
+        self._waiting = rows.slice(waiting)

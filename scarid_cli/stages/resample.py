@@ -28,6 +28,7 @@ from scarid_cli.io.table import (
     matrix,
     segments_of,
     steps_of,
+    together,
     with_columns,
 )
 from scarid_cli.stages.holding import Holding, measured
@@ -200,17 +201,17 @@ class Interpolation:
             self.held = piece.slice(0, 1)
             piece, t, x = piece.slice(1), t[1:], x[:, 1:]
         assert self.state
-        together = pa.Table.from_batches([self.held, piece]).combine_chunks().to_batches()[0]
+        rows = together([self.held, piece])
         times = np.concatenate((self.state.t, t))
         self.state, at, found = self.resampler.step(self.state, t, x)
-        self.held = together.slice(len(times) - len(self.state.t))
+        self.held = rows.slice(len(times) - len(self.state.t))
         if not len(at):
             return None
         self.first = self.state.row - len(at)
         left = np.maximum(np.searchsorted(times, at + 1e-12, side="right") - 1, 0)
         mark = integers(np.full(len(at), segment))
         new = {"t": at, SEGMENT: mark, **dict(zip(self.numbers, found, strict=True))}
-        return _batch(together, self.schema, new, left)
+        return _batch(rows, self.schema, new, left)
 
 
 @dataclass
@@ -236,7 +237,7 @@ class Decimation:
             self.state = self.decimator.init(first, len(self.numbers))
             self.held, self.at = batch.slice(0, 0), first
             self.start = start
-        self.held = pa.Table.from_batches([self.held, batch]).combine_chunks().to_batches()[0]
+        self.held = together([self.held, batch])
         self.state, numbers, found = self.decimator.step(self.state, x)
         return self._joined(numbers, found)
 

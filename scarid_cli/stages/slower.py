@@ -12,7 +12,7 @@ import pyarrow as pa
 from scarid_cli.algorithms.processes.filling import READINGS, SEARCH, Readings, reading_interval
 from scarid_cli.arrays import Array, Marks, Numbers
 from scarid_cli.io.schemas import numbered
-from scarid_cli.io.table import Table, matrix, segments_of, with_columns
+from scarid_cli.io.table import Table, matrix, segments_of, together, with_columns
 
 
 @dataclass(frozen=True)
@@ -99,12 +99,9 @@ class Filling:
             yield from self._ready(self._waiting.slice(0, 0), ended=True)
 
     def _ready(self, batch: pa.RecordBatch, *, ended: bool) -> Iterator[pa.RecordBatch]:
-        together = batch
-        if self._waiting is not None:
-            parts = pa.Table.from_batches([self._waiting, batch])
-            together = parts.combine_chunks().to_batches()[0]
-        t, *columns = matrix(together, ["t", *self.slower.columns])
-        values, segments = np.array(columns), segments_of(together)
+        rows = together([batch] if self._waiting is None else [self._waiting, batch])
+        t, *columns = matrix(rows, ["t", *self.slower.columns])
+        values, segments = np.array(columns), segments_of(rows)
         fresh = fresh_rows(values, segments)
         fresh[: len(self._fresh)] = self._fresh
         readings = Readings.of(t, fresh, segments, self._limit)
@@ -114,10 +111,8 @@ class Filling:
         self.count += int(np.count_nonzero(changed[self._passed :]))
         if done > self._passed:
             new = dict(zip(self.slower.columns, filled, strict=True))
-            yield with_columns(together, together.schema, new).slice(
-                self._passed, done - self._passed
-            )
-        self._waiting, self._fresh = together.slice(kept), fresh[kept:]
+            yield with_columns(rows, rows.schema, new).slice(self._passed, done - self._passed)
+        self._waiting, self._fresh = rows.slice(kept), fresh[kept:]
         self._passed = done - kept
 
 
