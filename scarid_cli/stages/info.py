@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.processes.holding import FIRST, MAX_GAP
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array, Numbers, median
 from scarid_cli.io import schemas
 from scarid_cli.io.clock import nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
@@ -205,7 +205,7 @@ class Sampling:
     def settle(self) -> None:
         """Count the gaps among the intervals that wait."""
         forward = [step for step in self.waiting if step > 0.0]
-        self.period = self.period or float(np.median(forward[:FIRST] or [0.0]))
+        self.period = self.period or median(np.array(forward[:FIRST] or [0.0]))
         long = [step for step in forward if step > MAX_GAP * self.period]
         self.gaps += len(long)
         self.missing += sum(long)

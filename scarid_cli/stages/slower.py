@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.processes.filling import READINGS, SEARCH, Readings, reading_interval
+from scarid_cli.algorithms.processes.holding import repeating
 from scarid_cli.arrays import Array, Marks, Numbers
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table, matrix, segments_of, together, with_columns
@@ -102,12 +103,13 @@ class Filling:
         rows = together([batch] if self._waiting is None else [self._waiting, batch])
         t, *columns = matrix(rows, ["t", *self.slower.columns])
         values, segments = np.array(columns), segments_of(rows)
-        fresh = fresh_rows(values, segments)
+        later = np.diff(t, prepend=-np.inf) > 0.0
+        fresh = fresh_rows(values, t, segments, later)
         fresh[: len(self._fresh)] = self._fresh
         readings = Readings.of(t, fresh, segments, self._limit)
         readings = replace(readings, ended=readings.ended or ended)
         filled, changed = readings.filled(values)
-        done, kept = readings.decided(), readings.needed()
+        done, kept = readings.decided(), min(readings.needed(), int(np.flatnonzero(later)[-1]))
         self.count += int(np.count_nonzero(changed[self._passed :]))
         if done > self._passed:
             new = dict(zip(self.slower.columns, filled, strict=True))
@@ -116,8 +118,11 @@ class Filling:
         self._passed = done - kept
 
 
-def fresh_rows(values: Array, segments: Numbers) -> Marks:
-    """The rows of values (signals, rows) that do not repeat the row before."""
-    fresh = np.ones(values.shape[1], dtype=np.bool_)
-    fresh[1:] = np.any(np.diff(values, axis=1) != 0.0, axis=0) | (np.diff(segments) != 0)
+def fresh_rows(values: Array, t: Array, segments: Numbers, later: Marks) -> Marks:
+    """The rows of values (signals, rows) that are readings, at times t (rows) [s].
+
+    Only rows `later` than the row before count: no polynomial goes through two values at one time.
+    """
+    fresh = np.zeros(len(t), dtype=np.bool_)
+    fresh[later] = ~repeating(t[later], values[:, later], segments[later])
     return fresh

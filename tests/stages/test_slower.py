@@ -70,3 +70,31 @@ def test_coarse_torques_and_torques_of_every_row_are_left_alone() -> None:
     found, clock = resampled(columns)
     assert not clock.filled
     np.testing.assert_array_equal(found["tau1"], columns["tau1"])
+
+
+@pytest.mark.parametrize("sizes", [(1,), (401, 202, 1), (ROWS + 2,)])
+def test_a_reading_at_the_time_of_the_row_before_is_left_out(sizes: tuple[int, ...]) -> None:
+    """Other values at the time of a reading and of a row that repeats it."""
+    columns = log()
+    again = np.insert(np.arange(ROWS), [401, 602], [400, 601])
+    twice = {name: values[again] for name, values in columns.items()}
+    for i in (1, 2):
+        twice[f"tau{i}"][[401, 603]] += 0.01
+    found, clock = resampled(twice, *sizes)
+    inner = slice(HELD, -2 * HELD)
+    true = np.cos(9.0 * columns["t"])
+    assert clock.repeated == 2
+    assert found.equals(resampled(twice)[0])
+    assert np.abs(found["tau1"] - true)[inner].max() < 1e-3
+
+
+def test_a_long_rest_before_the_first_reading_hides_no_slower_sensor() -> None:
+    """Positions that rest for 1500 rows, and then are read every thirtieth row."""
+    t = np.arange(3 * ROWS) * PERIOD
+    at = t[np.arange(3 * ROWS) // 30 * 30]
+    noise = 0.1 * np.random.default_rng(0).standard_normal((2, 3 * ROWS))
+    columns = {"t": t} | {f"q{i}": np.sin(np.maximum(at - 1500 * PERIOD, 0.0)) for i in (1, 2)}
+    _, clock = resampled(columns | {f"tau{i}": noise[i - 1] for i in (1, 2)})
+    assert [(name, interval) for name, interval, _ in clock.filled] == [
+        ("positions", pytest.approx(30 * PERIOD))
+    ]

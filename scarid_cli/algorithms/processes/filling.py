@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.arrays import Array, Marks, Numbers
+from scarid_cli.arrays import Array, Marks, Numbers, median
 
 NODES = 4  # readings through which the polynomial goes
 READINGS = 32  # new values of a group, by which its rate is judged
@@ -32,8 +32,8 @@ def reading_interval(t: Array, values: Array) -> float | None:
     if len(at) <= READINGS or changed[at].mean() < TOGETHER:
         return None
     steps = np.diff(t[: at[-1] + 2])
-    rows = float(np.median(steps[steps > 0.0])) if np.any(steps > 0.0) else np.inf
-    interval = float(np.median(np.diff(t[at + 1])))
+    rows = median(steps[steps > 0.0]) if np.any(steps > 0.0) else np.inf
+    interval = median(np.diff(t[at + 1]))
     return interval if interval > SLOWER * rows else None
 
 
