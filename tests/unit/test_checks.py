@@ -112,7 +112,7 @@ def test_a_log_is_checked_for_held_samples_by_the_rule_of_resample() -> None:
     x[100:104] = x[100]
     x[500:600] = x[500]  # a second at rest
     log = Log(t, x[None, :], np.cos(x)[None, :])
-    held, period = held_in(log.t, log.sensed)
+    held, period = log.held
     assert np.flatnonzero(held).tolist() == [101, 102, 103]
     assert period == pytest.approx(0.01)
     clocks: list[Clock] = []

@@ -9,7 +9,7 @@ import numpy as np
 from scarid_cli.algorithms.checks.finding import Finding, failed, ok, several, warning
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.processes.filling import reading_interval
-from scarid_cli.algorithms.processes.holding import MAX_GAP, held_in
+from scarid_cli.algorithms.processes.holding import MAX_GAP
 from scarid_cli.arrays import Array, median
 
 # Hz. Friction and inertia are told apart where the velocity changes within tenths of a second, so
@@ -124,7 +124,7 @@ def _jitter(steps: Array, period: float) -> Finding:
 
 def held(log: Log) -> Finding:
     """Held samples, by the rule by which `resample` leaves them out."""
-    rows, _ = held_in(log.t, log.sensed)
+    rows, _ = log.held
     count = int(np.count_nonzero(rows))
     share = count / max(log.rows, 1)
     figure = f"{several(count, 'row')}, {100.0 * share:.2g} %, with all values of the row before"
@@ -136,7 +136,7 @@ def held(log: Log) -> Finding:
 
 def slower(log: Log) -> Finding:
     """Positions or torques of a sensor that is slower than the rows, by the rule of `resample`."""
-    held, period = held_in(log.t, log.sensed)
+    held, period = log.held
     t = log.t[~held]
     found = {
         name: interval

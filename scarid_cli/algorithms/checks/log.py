@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from scarid_cli.algorithms.processes.holding import held_in
 from scarid_cli.arrays import Array, Marks, Numbers
 
 
@@ -39,6 +41,11 @@ class Log:
     def sensed(self) -> Array:
         """All values that sensors fill (columns, rows)."""
         return self.signals if self.others is None else np.concatenate((self.signals, self.others))
+
+    @cached_property
+    def held(self) -> tuple[Marks, float]:
+        """Which rows are held samples (rows), and the period of the sensors [s]."""
+        return held_in(self.t, self.sensed)
 
     @property
     def names(self) -> list[str]:

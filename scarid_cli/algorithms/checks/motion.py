@@ -13,7 +13,6 @@ import numpy as np
 
 from scarid_cli.algorithms.checks.clock import GAP, JITTER
 from scarid_cli.algorithms.checks.log import Log
-from scarid_cli.algorithms.processes.holding import held_in
 from scarid_cli.algorithms.tuning.likelihood import noise_of
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
 from scarid_cli.algorithms.tuning.scatter import HIGHEST, LOWEST
@@ -45,7 +44,7 @@ class Motion:
 
         Where the log holds the samples of slower sensors, the period is theirs.
         """
-        held, slower = held_in(log.t, log.sensed)
+        held, slower = log.held
         period = slower if held.any() else period
         segments = tuple(_segments(log.part(usable(log, held)), period))
         if not segments:
