@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from scarid_cli.cli.documents import Documents
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.table import Table
-from scarid_cli.reporting import text
 from scarid_cli.reporting.fleet import FleetRobot, fleet
 from scarid_cli.reporting.fleet_history import histories
 from scarid_cli.reporting.fleet_sections import sections
@@ -26,20 +25,11 @@ def of_fleet(
     place: str | None,
 ) -> None:
     """Print the robots and the logs that need a look, and write the documents."""
-    if html and html == markdown:
-        raise UsageFault(f"--html and --markdown both go to {html}; give two files")
-    page, plain, printed = (job.side_text(path) for path in (html, markdown, place))
+    documents = Documents.opened(job, html, markdown, place)
     robots = _read(job, Path(folder))
-    found = sections(robots)
-    if page:
+    if page := documents.page:
         page.write(_page(title, robots, folder, page.path))
-    if plain:
-        plain.write(text.markdown(title, found))
-    if printed:
-        printed.write(text.terminal(found, plain=True))
-    elif "-" not in (html, markdown):
-        sys.stdout.write(text.terminal(found))
-        sys.stdout.flush()
+    documents.write(title, sections(robots))
 
 
 def _page(title: str, robots: Sequence[FleetRobot], folder: str, path: str) -> str:

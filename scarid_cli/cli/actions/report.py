@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import logging
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from scarid_cli.cli.documents import Documents
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
-from scarid_cli.reporting import naming, results, text
+from scarid_cli.reporting import naming, results
 from scarid_cli.reporting import published as values_of
 from scarid_cli.reporting import repeated as repetitions
 from scarid_cli.reporting.content import sections
@@ -40,29 +40,23 @@ def run(
         return
     title = title or "Identification report"
     paths = files or ("-",)
-    _require_distinct(paths, html, markdown)
-    page, plain, printed = (job.side_text(path) for path in (html, markdown, place))
+    _require_distinct(paths)
+    documents = Documents.opened(job, html, markdown, place)
     tables = _reportable(job, paths)
     values = values_of.read(job.read(published, "published")) if published else None
     collected = results.collect(tables, repeated=repeated)
     found = (repetitions.sections if repeated else sections)(collected, values)
     if figures:
         _save(job, Path(figures), found)
-    if page:
+    if documents.page:
         from scarid_cli.reporting.study import page as rendering  # jinja2 takes a tenth of a second
 
-        page.write(
+        documents.page.write(
             rendering.plain(title, found, tables)
             if repeated
             else rendering.study(title, collected, values, tables)
         )
-    if plain:
-        plain.write(text.markdown(title, found))
-    if printed:
-        printed.write(text.terminal(found, plain=True))
-    elif "-" not in (html, markdown):
-        sys.stdout.write(text.terminal(found))
-        sys.stdout.flush()
+    documents.write(title, found)
     if not html and any(not section.rows for section in found):
         job.say("some tables have figures only; draw them with --html FILE")
 
@@ -89,12 +83,10 @@ def _require_alone(files: Sequence[str], others: Mapping[str, object]) -> None:
         raise UsageFault(f"{given} has no meaning with --fleet; leave it out")
 
 
-def _require_distinct(paths: Sequence[str], html: str | None, markdown: str | None) -> None:
+def _require_distinct(paths: Sequence[str]) -> None:
     twice = next((path for path in paths if paths.count(path) > 1), None)
     if twice:
         raise UsageFault(f"{twice} is given twice; each table can be read once")
-    if html and html == markdown:
-        raise UsageFault(f"--html and --markdown both go to {html}; give two files")
 
 
 def _save(job: Job, folder: Path, found: list[Section]) -> None:
