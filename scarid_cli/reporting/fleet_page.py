@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 
 from scarid_cli import __version__
 from scarid_cli.reporting.fleet import FINE, FleetRobot, Log
@@ -23,6 +23,7 @@ from scarid_cli.reporting.fleet_sections import (
     named,
     trend,
 )
+from scarid_cli.reporting.templates import templates
 
 CURVES = 3  # of a robot in the summary at most
 WIDTH, HEIGHT = 190, 60  # of a curve [px]
@@ -104,13 +105,7 @@ def _card(index: int, robot: FleetRobot) -> Card:
 
 def _environment() -> Environment:
     """The templates, with what does not depend on the fleet."""
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=StrictUndefined,
-    )
+    environment = templates(Path(__file__).parent)
     environment.globals.update(
         version=__version__,
         words=WORDS,

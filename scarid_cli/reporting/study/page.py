@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
+from jinja2 import Template
 from markupsafe import Markup
 
 from scarid_cli import __version__
@@ -22,6 +22,7 @@ from scarid_cli.reporting.study.colours import rules
 from scarid_cli.reporting.study.opening import Opening, opening
 from scarid_cli.reporting.study.origin import origin
 from scarid_cli.reporting.study.terms import Glossary
+from scarid_cli.reporting.templates import templates
 
 PAGE_WIDTH = 108  # characters of a table that fit an A4 page
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -88,13 +89,7 @@ def _titled(found: Iterator[Chapter]) -> list[Titled]:
 
 
 def _template() -> Template:
-    environment = Environment(
-        loader=FileSystemLoader(FOLDER),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=StrictUndefined,
-    )
+    environment = templates(FOLDER)
     environment.filters["wrapping"] = _wrapping
     environment.filters["parts"] = _parts
     return environment.get_template("study.html")
