@@ -5,8 +5,9 @@ from __future__ import annotations
 import contextlib
 import sys
 import time
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -20,8 +21,8 @@ def steps(*, quiet: bool, of: str = "settings tried") -> Iterator[Callable[[], N
     if quiet or not sys.stderr.isatty():
         yield lambda: None
         return
-    with _line(f"{{task.completed}} {of}") as advance:
-        yield lambda: advance(1)
+    with _line(f"{{task.completed}} {of}") as update:
+        yield lambda: update(advance=1)
 
 
 def counted(
@@ -62,20 +63,14 @@ def _bar(text: str, *, known: bool, since: float) -> Iterator[Callable[[float | 
 
     The function takes the part that is done, and the number of rows.
     """
-    from rich.console import Console
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    columns = [SpinnerColumn(), TextColumn(text), TimeElapsedColumn()]
-    if known:
-        columns.insert(1, TextColumn("{task.fields[percent]:.0f} %"))
-        columns.append(TextColumn("{task.fields[left]} left"))
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    texts = ("{task.fields[percent]:.0f} %", text) if known else (text,)
+    left_of = ("{task.fields[left]} left",) if known else ()
+    with _line(*texts, behind=left_of, rows=0, percent=0.0, left="?") as update:
         begun = time.monotonic() - since
-        task = progress.add_task("", total=None, rows=0, percent=0.0, left="?")
 
         def show(part: float | None, rows: int) -> None:
             left = (time.monotonic() - begun) * (1.0 / part - 1.0) if part else 0.0
-            progress.update(task, rows=rows, percent=100.0 * (part or 0.0), left=_clock(left))
+            update(rows=rows, percent=100.0 * (part or 0.0), left=_clock(left))
 
         yield show
 
@@ -88,12 +83,19 @@ def _clock(seconds: float) -> str:
 
 
 @contextlib.contextmanager
-def _line(text: str) -> Iterator[Callable[[int], None]]:
-    """A progress line with this text, and the function that counts on."""
+def _line(*texts: str, behind: Sequence[str] = (), **fields: Any) -> Iterator[Callable[..., None]]:
+    """A progress line with these texts, the time so far, and the texts `behind` it.
+
+    The function changes the `fields` that the texts show, or counts on (`advance`).
+    """
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    columns = (SpinnerColumn(), TextColumn(text), TimeElapsedColumn())
+    columns = (
+        SpinnerColumn(),
+        *map(TextColumn, texts),
+        TimeElapsedColumn(),
+        *map(TextColumn, behind),
+    )
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=None)
-        yield lambda count: progress.advance(task, count)
+        yield partial(progress.update, progress.add_task("", total=None, **fields))
