@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.processes.holding import FIRST, MAX_GAP, intervals, sensor_period
+from scarid_cli.algorithms.processes.holding import MAX_GAP, sensor_period
 from scarid_cli.algorithms.processes.resampling import (
     Clock,
     Decimator,
@@ -31,7 +31,7 @@ from scarid_cli.io.table import (
     together,
     with_columns,
 )
-from scarid_cli.stages.holding import Holding, measured
+from scarid_cli.stages.holding import FirstIntervals, Holding, measured
 from scarid_cli.stages.slower import Filling, slower_groups
 from scarid_cli.stages.splitting import Splitting
 
@@ -65,13 +65,13 @@ def resample(
 def _with_period(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
     """The median of the first intervals between new values [s], and all batches."""
     held: list[pa.RecordBatch] = []
-    every, new, columns = np.empty(0), np.empty(0), measured(table)
+    first = FirstIntervals(measured(table))
     for batch in table.batches:
         held.append(batch)
-        every, new = _intervals(held, columns)
-        if len(new) >= FIRST:
+        first.add(batch)
+        if first.known:
             break
-    if not len(every):
+    if not len(first.every):
         raise bad_data(
             table.name,
             "a time that never increases",
@@ -79,15 +79,7 @@ def _with_period(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
             remedy="give a log with a clock",
             column="t",
         )
-    return sensor_period(every, new), chain(held, table.batches)
-
-
-def _intervals(batches: list[pa.RecordBatch], columns: list[str]) -> tuple[Array, Array]:
-    """The positive intervals [s] between all rows, and between those with new values."""
-    parts = [matrix(batch, ["t", *columns]) for batch in batches]
-    t, *values = np.concatenate(parts, axis=1)
-    segments = np.concatenate([segments_of(batch) for batch in batches])
-    return intervals(t, np.array(values), segments)
+    return sensor_period(first.every, first.new), chain(held, table.batches)
 
 
 def _ordered(table: Table) -> Iterator[pa.RecordBatch]:

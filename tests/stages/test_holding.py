@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from stages.tables import collected, table
 
+from scarid_cli.algorithms.processes.holding import FIRST, intervals
 from scarid_cli.algorithms.processes.resampling import Clock
 from scarid_cli.arrays import Array
+from scarid_cli.io.table import doubles
+from scarid_cli.stages.holding import FirstIntervals
 from scarid_cli.stages.resample import resample
 
 Columns = dict[str, Any]
@@ -77,3 +84,36 @@ def test_a_log_that_ends_at_rest_keeps_its_last_rows(repeats: int) -> None:
     np.testing.assert_allclose(found["t"], t)
     np.testing.assert_allclose(found["q1"], columns["q1"], atol=1e-12)
     assert clocks[0].held == 0
+
+
+def test_a_robot_at_rest_is_not_waited_for_without_end() -> None:
+    """The first rows of a stream without an end arrive, in which no value ever changes."""
+    rest = np.zeros(20_000)
+
+    def batches() -> Iterator[pa.RecordBatch]:
+        for start in itertools.count(0, len(rest)):
+            t = (start + np.arange(len(rest))) * 1e-3
+            columns = [doubles(x) for x in (t, *[rest] * 4)]
+            yield pa.RecordBatch.from_arrays(columns, schema=stream.schema)
+
+    names = ("t", "q1", "q2", "tau1", "tau2")
+    stream = table(dict.fromkeys(names, rest))
+    found = resample(replace(stream, batches=batches()), 1000.0)
+    assert next(found.batches).num_rows > 0
+
+
+@pytest.mark.parametrize("sizes", [(1,), (7, 1, 40), ()])
+def test_the_period_of_a_slower_sensor_is_found_however_rows_arrive(sizes: tuple[int, ...]) -> None:
+    """With a repeated time, and a rest before the first sample."""
+    columns, _, _ = held_log(8e-3, rows=600)
+    again = np.r_[np.zeros(50, dtype=int), np.arange(600)]
+    again = np.insert(again, 300, again[300])
+    columns = {name: values[again] for name, values in columns.items()}
+    columns["t"] = np.insert(np.arange(650) * 1e-3, 300, 0.3)
+    first = FirstIntervals(["q1", "tau1"])
+    for batch in table(columns, sizes).batches:
+        first.add(batch)
+    values = np.array([columns["q1"], columns["tau1"]])
+    every, new = intervals(columns["t"], values, np.zeros(651, dtype=np.int64))
+    np.testing.assert_array_equal(first.every, every[:FIRST])
+    np.testing.assert_array_equal(first.new, new[:FIRST])
