@@ -129,6 +129,12 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
             expected="a header with the names of the columns",
             remedy="name them with `scarid convert --header t,q1,...`",
         )
+    _require_different(names, name)
+    return names
+
+
+def _require_different(names: list[str], name: str) -> None:
+    """Refuse columns of one name, and without a name."""
     for column in names if len(set(names)) < len(names) or not all(names) else ():
         if not column or names.count(column) > 1:
             found = f"{names.count(column)} columns of this name" if column else "no name"
@@ -139,7 +145,6 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
                 remedy="rename the columns in the header",
                 column=column or str(names.index(column) + 1),
             )
-    return names
 
 
 def _types(names: list[str], body: bytes) -> list[pa.DataType]:

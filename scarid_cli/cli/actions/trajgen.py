@@ -35,13 +35,7 @@ def run(
 ) -> None:
     """Write the trajectory, and report how well it excites the robot."""
     arm = job.robot(robot)
-    if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
-        raise UsageFault("--rate and --duration must be positive")
-    if rate * duration * given["repeat"] > MOST_ROWS:
-        raise UsageFault(
-            f"--rate {rate:g} over --duration {duration:g} gives more than {MOST_ROWS:g} rows; "
-            "lower one of them, or --repeat"
-        )
+    _require_moderate(rate, duration, given["repeat"])
     given |= {"seed": seed, "duration": duration, "rate": rate}
     treatment = _treatment(arm, given)
     side = job.side_table(given["expected"])
@@ -69,6 +63,17 @@ def run(
     job.say(prediction.summary)
     if side:
         job.write(job.recorded(prediction.table(replace(meta, period=None))), side)
+
+
+def _require_moderate(rate: float, duration: float, times: int) -> None:
+    """Refuse a number of rows that cannot be written."""
+    if not (rate > 0.0 and isfinite(rate) and duration > 0.0 and isfinite(duration)):
+        raise UsageFault("--rate and --duration must be positive")
+    if rate * duration * times > MOST_ROWS:
+        raise UsageFault(
+            f"--rate {rate:g} over --duration {duration:g} gives more than {MOST_ROWS:g} rows; "
+            "lower one of them, or --repeat"
+        )
 
 
 def _treatment(arm: Robot, given: dict[str, Any]) -> Treatment:
