@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import csv
 import io
-import re
-import sqlite3
-import struct
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from cli.real import TRAIN, described_six_axes, far_from_published
 from conftest import Result
-
-from scarid_cli.algorithms.robots.reading import load
 
 Shell = Callable[..., Result]
 
@@ -122,42 +117,13 @@ def test_the_default_gives_emps_its_published_mass_online(shell: Shell, real_log
     assert error < 4.4
 
 
-TX40 = """title = "Staubli TX40"
-urdf = "{folder}/tx40_mdh_modified.urdf"
-[[joint]]
-[[joint]]
-[[joint]]
-[[joint]]
-[[joint]]
-[[joint]]
-terms = ["viscous", "coulomb", "offset"]
-[[coupling]]
-joints = [5, 6]
-"""
-
-
 SLOW = "--drop-slow 0.0501,0.0501,0.0750,0.0716,0.0559,0.1222"
 
 
 @pytest.fixture
 def six_axes(real_logs: Path, tmp_path: Path) -> Path:
     """The folder of the log, with a description of the robot in the working directory."""
-    pytest.importorskip("pinocchio")
-    folder = (real_logs / "staubli_tx40").resolve()
-    (tmp_path / "tx40.toml").write_text(TX40.format(folder=folder))
-    return folder
-
-
-def far_from_published(table: str, folder: Path) -> set[str]:
-    """Base parameters that are more than two published deviations off."""
-    estimates = {
-        row["parameter"]: float(row["estimate"]) for row in csv.DictReader(table.split("\n"))
-    }
-    with (folder / "TX40_bp_5.csv").open() as file:
-        published = {row[0].split()[0]: (float(row[3]), float(row[4])) for row in csv.reader(file)}
-    assert estimates.keys() == published.keys()
-    assert len(published) == 60
-    return {n for n, (x, r) in published.items() if abs(estimates[n] - x) > 0.02 * r * abs(x)}
+    return described_six_axes(real_logs, tmp_path)
 
 
 def quality(table: str) -> tuple[float, float]:
@@ -218,7 +184,6 @@ def test_six_axes_as_bodies_that_can_exist(six_axes: Path, shell: Shell) -> None
     assert quality(result.out)[0] >= 0.98
 
 
-TRAIN = ("143524", "143601", "154220")
 UNDRIVEN = {"143704": 1, "143747": 1, "143906": 2, "144003": 2, "144115": 2}
 
 
@@ -288,141 +253,3 @@ def test_a_jittered_clock_is_refused_with_its_row(shell: Shell, real_logs: Path)
     assert result.status == 65
     assert "column t: found an interval of" in result.err
     assert "resample" in result.err
-
-
-def blind(robot: str, log: object, shell: Shell) -> str:
-    """Identify a measurement with nothing set, and validate on the motion that its pipe makes.
-
-    Returns what identify reports. The working directory then has p.parquet, p.csv and m.csv.
-    """
-    result = shell(f"scarid identify --robot {robot} {log} -o p.parquet")
-    assert result.status == 0, result.err
-    found = re.search(r"the same as: (.* --format arrow \S+) \|", result.err)
-    assert found
-    judged = shell(
-        f"{found[1]} | scarid validate --robot {robot} --parameters p.parquet -o m.csv &&"
-        " scarid convert -q p.parquet -o p.csv"
-    )
-    assert judged.status == 0, judged.err
-    return result.err
-
-
-def rows_in(table: Path) -> list[dict[str, str]]:
-    return list(csv.DictReader(table.read_text("utf-8").splitlines()))
-
-
-def estimates_in(folder: Path) -> dict[str, float]:
-    """The parameters in p.csv."""
-    rows = rows_in(folder / "p.csv")
-    return {row["parameter"]: float(row["estimate"]) for row in rows}
-
-
-def r2_of(folder: Path) -> list[float]:
-    """R2 of each joint in m.csv."""
-    return [float(row["r2"]) for row in rows_in(folder / "m.csv")]
-
-
-def test_blind_emps(shell: Shell, real_logs: Path, tmp_path: Path) -> None:
-    """Published offline: 95.1089 kg, and an error of 4.08 %."""
-    said = blind("emps", f"{real_logs}/emps/emps_train.csv", shell)
-    assert "good: 3 of 4 parameters known" in said  # and the offset, as friction is asymmetric
-    assert estimates_in(tmp_path)["M"] == pytest.approx(95.1089, rel=0.001)
-    (row,) = rows_in(tmp_path / "m.csv")
-    assert float(row["relative_error"]) <= 4.2
-
-
-PUBLISHED_R2 = [0.998, 0.997, 0.994, 0.995, 0.989, 0.992]
-
-
-def test_blind_six_axes(six_axes: Path, shell: Shell, tmp_path: Path) -> None:
-    """At least 55 of 60 parameters within two published deviations."""
-    blind("tx40.toml", f"{six_axes}/tx40_joint_5kHz.parquet", shell)
-    assert len(far_from_published((tmp_path / "p.csv").read_text("utf-8"), six_axes)) <= 5
-    r2 = r2_of(tmp_path)
-    assert all(x >= known - 0.003 for x, known in zip(r2, PUBLISHED_R2, strict=True))
-
-
-def test_blind_vertical_arm(shell: Shell, real_logs: Path, tmp_path: Path) -> None:
-    """Three logs, one after the other, each with the bandwidth that it asks for.
-
-    Compared with what was made by hand with other tools, on a fourth log at 5 Hz.
-    """
-    made = " && ".join(
-        f"scarid resample -q --rate 500 {real_logs}/double_pendulum/20230629-{run}.csv -o {run}.csv"
-        for run in (*TRAIN, "154548")
-    )
-    identify = "scarid identify -q --robot planar2-gravity --estimator wls"
-    first, second, third = TRAIN
-    result = shell(
-        f"{made} && {identify} --save s.npz {first}.csv > /dev/null &&"
-        f" {identify} --from s.npz --save s.npz {second}.csv > /dev/null &&"
-        f" {identify} --from s.npz {third}.csv -o p.csv &&"
-        " scarid differentiate --method zero-phase --set cutoff=5 154548.csv --format arrow |"
-        " tee motion.arrows |"
-        " scarid validate -q --robot planar2-gravity --all-rows --parameters p.csv -o m.csv"
-    )
-    assert result.status == 0, result.err
-    inertias = [estimates_in(tmp_path)[name] for name in ("ZZ1R", "ZZ2", "MX1R", "MX2")]
-    assert inertias == pytest.approx([0.0504, 0.0468, 0.1987, 0.1459], rel=0.05)
-    one, two = r2_of(tmp_path)
-    assert one >= 0.86
-    assert two >= 0.96
-
-
-def ur10_log(bag: Path, order: list[str], place: Path) -> None:
-    """The joint states (ROS 2, CDR) of a bag as a CSV log, with the joints in this order."""
-    joints = [f"{name}{i}" for name in ("q", "tau") for i in range(1, len(order) + 1)]
-    lines = [",".join(["t", *joints])]
-    with contextlib.closing(sqlite3.connect(bag)) as database:
-        for (message,) in database.execute("select data from messages order by timestamp"):
-            stamp, names, (q, _, effort) = joint_state(message)
-            at = [names.index(name) for name in order]
-            values = [*(q[k] for k in at), *(effort[k] for k in at)]
-            lines.append(",".join(map(repr, [stamp, *values])))
-    place.write_text("\n".join(lines) + "\n")
-
-
-def joint_state(message: bytes) -> tuple[float, list[str], list[tuple[float, ...]]]:
-    """Time, names, and positions, velocities and efforts of a sensor_msgs/JointState."""
-    place = 4
-    seconds, nanoseconds = struct.unpack_from("<iI", message, place)
-    place += 8
-
-    def count() -> int:
-        nonlocal place
-        place += -(place - 4) % 4
-        place += 4
-        return int(struct.unpack_from("<I", message, place - 4)[0])
-
-    size = count()  # of the name of the frame
-    place += size
-    names = []
-    for _ in range(count()):
-        size = count()
-        names.append(message[place : place + size - 1].decode())
-        place += size
-    values = []
-    for _ in range(3):
-        size = count()
-        place += -(place - 4) % 8
-        values.append(struct.unpack_from(f"<{size}d", message, place))
-        place += 8 * size
-    return seconds + 1e-9 * nanoseconds, names, values
-
-
-def test_blind_ur10(shell: Shell, real_logs: Path, tmp_path: Path) -> None:
-    """A bag of ROS 2: R2 of at least .985 for all joints, and validate says the same."""
-    bag = real_logs / "ur10_ros2" / "ur10_exciting_trajectory.db3"
-    urdf = (real_logs / "urdf" / "ur10.urdf").resolve()
-    pytest.importorskip("pinocchio")
-    body = load(str(urdf)).body
-    assert body
-    ur10_log(bag, body.joint_names, tmp_path / "bag.csv")
-    assert shell("scarid resample -q --rate 125 bag.csv -o log.csv").status == 0
-    said = blind(str(urdf), "log.csv", shell)
-    found = re.search(r"R2 ((?:[\d.]+, )*[\d.]+)", said)
-    assert found
-    reported = [float(x) for x in found[1].split(", ")]
-    r2 = r2_of(tmp_path)
-    assert min(r2) >= 0.985
-    assert r2 == pytest.approx(reported, abs=5e-4)  # at the ends rows have no torque when shifted

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from checks import LOGS, ROBOTS, UR10, clean, named, read, remarks
-from cli.test_real_logs import TX40, ur10_log
+from cli.real import TX40, ur10_log
 from conftest import ROOT
 from spoiled import SPOILED, Spoiled, torques_times
 

@@ -1,15 +1,13 @@
-"""The optimisation of experiments: gradients, criteria, constraints and predictions."""
+"""The optimisation of experiments: gradients, constraints and predictions."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import ROOT
-from scipy.interpolate import BSpline
 
 from scarid_cli.algorithms.design import criteria
 from scarid_cli.algorithms.design.constraints import Along, Constraint, Kinematic, Law, Torque
@@ -23,8 +21,7 @@ from scarid_cli.algorithms.excitations.quintic import Excitation as Quintic
 from scarid_cli.algorithms.excitations.spline import Excitation as Spline
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.trajectories.curve import Basis, Curve, random_curve
-from scarid_cli.algorithms.trajectories.fourier import FourierBasis
+from scarid_cli.algorithms.trajectories.curve import Curve, random_curve
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.algorithms.trajectories.spline import SplineBasis
 from scarid_cli.arrays import Array
@@ -73,104 +70,6 @@ def test_the_gradient_of_the_model_is_its_slope(name: str) -> None:
             ahead, behind = (model.regressor(tuple(motion + s * step)) for s in (1.0, -1.0))  # type: ignore[arg-type]
             slope = ((ahead - behind) * G).sum(axis=(1, 2)) / (2.0 * STEP)
             np.testing.assert_allclose(found[signal][joint], slope, rtol=1e-5, atol=1e-4)
-
-
-BASES = [SplineBasis(6.0, 7), FourierBasis(6.0, 3)]
-every_basis = pytest.mark.parametrize("basis", BASES, ids=["spline", "fourier"])
-
-
-@every_basis
-def test_the_functions_of_a_basis_have_a_peak_acceleration_of_1_and_start_and_end_at_rest(
-    basis: Basis,
-) -> None:
-    t = np.linspace(0.0, basis.duration, 4001)
-    for order in range(4):
-        values, slopes = basis.values(t, order), basis.values(t, order + 1)
-        differences = (values[:, 2:] - values[:, :-2]) / (2.0 * t[1])
-        np.testing.assert_allclose(differences, slopes[:, 1:-1], atol=0.02 * np.abs(slopes).max())
-        if order < 3:
-            assert (values[:, [0, -1]] == 0.0).all()
-    assert np.abs(basis.values(t, 2)).max(axis=1) == pytest.approx(1.0, rel=1e-3)
-
-
-def test_splines_are_those_of_scipy() -> None:
-    t = np.linspace(0.0, 6.0, 50)
-    knots = np.concatenate((np.zeros(5), np.linspace(0.0, 6.0, 8), np.full(5, 6.0)))
-    theirs = BSpline.design_matrix(t, knots, 5).toarray().T[3:-3]
-    ours = SplineBasis(6.0, 7).values(t, 0)
-    np.testing.assert_allclose(ours, theirs * (ours.max(axis=1) / theirs.max(axis=1))[:, None])
-
-
-@every_basis
-def test_the_largest_values_of_a_curve_bound_all_its_values(basis: Basis) -> None:
-    limits = Limits(*np.array([[-1.0, -2.0], [2.0, 0.5], [1.0, 3.0], [2.0, 4.0]]))
-    curve = random_curve(basis, np.zeros(2), limits, np.random.default_rng(1))
-    q, dq, ddq = curve.sample(np.linspace(0.0, basis.duration, 100_003))
-    below, above, fast, hard = curve.largest()
-    for bound, values in ((below, -q), (above, q), (fast, np.abs(dq)), (hard, np.abs(ddq))):
-        assert np.all(values.max(axis=1) <= bound)
-        assert values.max(axis=1) == pytest.approx(bound, rel=1e-4, abs=1e-6)
-
-
-def matrices(count: int = 6) -> Array:
-    """A symmetric positive definite matrix whose eigenvalues differ."""
-    A = np.random.default_rng(2).standard_normal((40, count)) * np.geomspace(1.0, 30.0, count)
-    return A.T @ A
-
-
-SCALES = np.array([1.0, 2.0, 0.5, 1.5, 3.0, 0.7])
-CRITERIA: dict[str, Callable[[Array], tuple[float, Array]]] = {
-    "d": criteria.determinant,
-    "c": lambda M: criteria.condition(M, np.eye(6)),
-    "scaled-c": lambda M: criteria.scaled_condition(M, np.eye(6)),
-    "a": lambda M: criteria.goal("a", np.diag(SCALES**2)).of(M, M)[::2],  # type: ignore[return-value]
-    "d of some": lambda M: criteria.goal("d", np.diag(SCALES**2), (1, 4)).of(M, M)[::2],  # type: ignore[return-value]
-    "a of some": lambda M: criteria.goal("a", np.diag(SCALES**2), (1, 4)).of(M, M)[::2],  # type: ignore[return-value]
-}
-
-
-@pytest.mark.parametrize("name", CRITERIA)
-def test_the_gradient_of_a_criterion_is_its_slope(name: str) -> None:
-    M = matrices()
-    _, found = CRITERIA[name](M)
-    for i in range(len(M)):
-        for j in range(i + 1):
-            step = np.zeros_like(M)
-            step[i, j] = step[j, i] = 1e-5 * np.sqrt(M[i, i] * M[j, j])
-            ahead, behind = CRITERIA[name](M + step)[0], CRITERIA[name](M - step)[0]
-            assert (found * step).sum() == pytest.approx((ahead - behind) / 2.0, rel=1e-4, abs=1e-9)
-
-
-def test_criteria_are_what_textbooks_say() -> None:
-    M = matrices()
-    covariance = np.linalg.inv(M)
-    some = np.ix_((1, 4), (1, 4))
-    values = {name: criterion(M)[0] for name, criterion in CRITERIA.items()}
-    assert values["d"] == pytest.approx(-np.log(np.linalg.det(M)) / 12.0)
-    assert values["d of some"] == pytest.approx(np.log(np.linalg.det(covariance[some])) / 4.0)
-    scaled = np.diag(covariance) * SCALES**2
-    assert values["a"] == pytest.approx(np.log(scaled.mean()) / 2.0)
-    assert values["a of some"] == pytest.approx(np.log(scaled[[1, 4]].mean()) / 2.0)
-    lengths = np.sqrt(np.diag(M))
-    for name, matrix in (("c", M), ("scaled-c", M / np.outer(lengths, lengths))):
-        exact = 0.5 * np.log(np.linalg.cond(matrix))
-        assert exact <= values[name] <= exact + np.log(6.0) / criteria.POWER
-
-
-def test_what_no_motion_excites_has_no_say_in_the_condition_number() -> None:
-    typical = np.diag([1.0, 4.0, 1e-12])
-    M = np.diag([9.0, 1.0, 1e-10])
-    value, slope = criteria.goal("c", typical).of(M, M)[:2]
-    assert value == pytest.approx(np.log(3.0), rel=1e-6)
-    assert slope[2, 2] == pytest.approx(0.0, abs=1e-12)
-
-
-def test_a_motion_far_beyond_its_limits_has_a_value() -> None:
-    """A trial of the line search, whose smallest eigenvalue is rounding."""
-    M = np.diag([1e20, 1.0, -1.0])
-    value, slope = criteria.condition(M, np.eye(3))
-    assert np.isfinite(value)
-    assert np.isfinite(slope).all()
 
 
 def boxed(robot: str) -> tuple[Samples, Limits]:
