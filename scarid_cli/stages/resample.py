@@ -119,13 +119,8 @@ def _rows(
     limit = max_gap or max(MAX_GAP * own, period)
     splitting, holding = Splitting(limit), Holding(measured(table), limit)
     fillings = [Filling(group, max(limit, MAX_GAP * group.interval)) for group in slower]
-    factor = max(1, int(np.ceil(period / own - SLOWER)))
+    factor = _slower_by(period, own)
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]
-    if factor > SLOWEST_RATE:
-        raise UsageFault(
-            f"--rate {1.0 / period:g}: {factor:,} times slower than the log of {1.0 / own:.6g} Hz; "
-            f"give at most {SLOWEST_RATE:,} times"
-        )
     interpolation = Interpolation(Resampler(period / factor), schema, numbers)
     decimation = Decimation(Decimator(factor), schema, numbers, period) if factor > 1 else None
     rows = holding.rows(batches)
@@ -146,6 +141,17 @@ def _rows(
         yield from decimation.finish()
     filled = tuple((f.slower.name, f.slower.interval, f.count) for f in fillings if f.count)
     report(replace(splitting.clock, held=holding.count, filled=filled))
+
+
+def _slower_by(period: float, own: float) -> int:
+    """How many rows are interpolated for each new one, given the new and the log's period [s]."""
+    factor = max(1, int(np.ceil(period / own - SLOWER)))
+    if factor > SLOWEST_RATE:
+        raise UsageFault(
+            f"--rate {1.0 / period:g}: {factor:,} times slower than the log of {1.0 / own:.6g} Hz; "
+            f"give at most {SLOWEST_RATE:,} times"
+        )
+    return factor
 
 
 def _moderate(piece: pa.RecordBatch, period: float, name: str) -> Iterator[pa.RecordBatch]:

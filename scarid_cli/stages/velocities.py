@@ -14,12 +14,13 @@ MEASURED = "_measured"
 
 def measured(names: list[str]) -> list[str]:
     """The columns of measured velocities; where a joint has two of them, that with the suffix."""
-    own = [name for name in names if name.endswith(MEASURED) and _plain(name) != []]
+    own = [name for name in names if name.endswith(MEASURED) and _is_velocity(name)]
     return own + [name for name in numbered(names, "dq") if f"{name}{MEASURED}" not in own]
 
 
-def _plain(name: str) -> list[str]:
-    return numbered([name.removesuffix(MEASURED)], "dq")
+def _is_velocity(name: str) -> bool:
+    """Whether this is the velocity of a joint, with the suffix or without it."""
+    return bool(numbered([name.removesuffix(MEASURED)], "dq"))
 
 
 def used(table: Table) -> Table:

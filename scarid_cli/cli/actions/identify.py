@@ -16,11 +16,11 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
-from scarid_cli.cli.evened import Evened
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import motion
 from scarid_cli.cli.pairs import require_known, single_settings
+from scarid_cli.cli.resampled import Resampled
 from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.schemas import numbered
@@ -56,8 +56,8 @@ def run(
     if initial and not method.INITIAL:
         raise UsageFault(f"--initial: {name} has no initial parameters; leave the option out")
     side, place = job.side_table(trace), job.side_text(save)
-    evened = Evened(job)
-    reading = partial(_read, job, method, evened)
+    resampled = Resampled(job)
+    reading = partial(_read, job, method, resampled)
     table, arm = read_logs(job, files, robot, reading, skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
     if not method.FOLLOWS and not numbered(table.columns, "ddq"):
@@ -66,7 +66,7 @@ def run(
             name, method = OFFLINE, ESTIMATORS.load(OFFLINE)
         if given["align"] is None and method.ALIGNS and not row_by_row:
             treatment = replace(treatment, align=True)
-        table = motion(job, table, arm, _options(name, treatment), evened.rates)
+        table = motion(job, table, arm, _options(name, treatment), resampled.rates)
     given["all_rows"] |= method.FOLLOWS
     reach = Reach(len(arm.joints))
     table = reach.watched(table)
@@ -111,7 +111,7 @@ def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
 
 
 def _read(
-    job: Job, method: Any, evened: Evened, file: str, robot: str | Robot | None
+    job: Job, method: Any, resampled: Resampled, file: str, robot: str | Robot | None
 ) -> tuple[Table, Robot]:
     """The motion or measurement, or whatever else the estimator reads, and the robot."""
     table, arm = job.read_for(
@@ -124,7 +124,7 @@ def _read(
     )
     if method.FOLLOWS or numbered(table.columns, "ddq"):
         return table, arm
-    return evened.table(file, table), arm
+    return resampled.table(file, table), arm
 
 
 def _options(name: str, treatment: Treatment) -> list[str]:

@@ -1,4 +1,4 @@
-"""Logs with a sensor that is slower than the rows, made even before `identify` takes them."""
+"""Logs with a sensor that is slower than the rows, resampled before `identify` takes them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from scarid_cli.io.table import Table
 
 
-class Evened:
+class Resampled:
     """Measurements as `scarid resample` returns them, where a slower sensor makes that necessary.
 
     `rates` are the rates [Hz] as typed, by the names of the files that were resampled.
