@@ -151,8 +151,12 @@ def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> T
         raise BadData(
             f"{name}: the scarid metadata of the table cannot be read; write it again"
         ) from None
-    fields = [_plain(field) for field in schema]
-    plain = pa.schema(fields)
+    try:
+        plain = pa.schema([_plain(field) for field in schema])
+    except UnicodeDecodeError:
+        raise BadData(
+            f"{name}: the name of a column is not UTF-8; rename it where the table is made"
+        ) from None
     return Table(name, plain, meta, (cast(batch, plain, name) for batch in _sound(name, batches)))
 
 
