@@ -1,8 +1,9 @@
-"""Arrow IPC streams and files, and Parquet, with their metadata; cut tables are detected."""
+"""Tables from Arrow IPC streams and files, and Parquet, with their metadata; damage is detected."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import struct
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -10,26 +11,22 @@ import pyarrow as pa
 import pyarrow.ipc as ipc
 
 from scarid_cli.errors import BadData, OutputFailure, ScaridError, cut_short
-from scarid_cli.io.bytesource import STDIN, ByteSource, require_moderate
+from scarid_cli.io.bytesource import CHUNK, STDIN, ByteSource, max_batch
+from scarid_cli.io.incoming import END_OF_STREAM, Incoming
+from scarid_cli.io.messages import MAGIC, PREFIX, RECORDS, Message
 from scarid_cli.io.parts import parts
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
-from scarid_cli.io.weight import Blocks, Weighed
-
-COPIES = 4  # of a group of rows that are in memory while it is written
-END_OF_STREAM = b"\xff\xff\xff\xff\x00\x00\x00\x00"
-# Rows of a Parquet row group or of a block of an Arrow file. They are fixed so that the bytes of a
-# file do not depend on how its rows arrived.
-GROUP_ROWS = 1 << 16
-GROUP = 1 << 26  # bytes of the numbers of a group at most; wide tables have fewer rows in each
+from scarid_cli.io.weight import Blocks
 
 
 def read_stream(source: ByteSource) -> Table:
     """A table from an Arrow IPC stream."""
     if isinstance(source, Handed):
         return source.table
+    incoming = Incoming(source)
     try:
-        reader = ipc.open_stream(pa.PythonFile(Weighed(source), mode="r"))
+        reader = ipc.open_stream(pa.PythonFile(incoming, mode="r"))
     except (pa.ArrowException, OSError) as error:
         raise _unreadable(source.name, error) from None
 
@@ -38,9 +35,7 @@ def read_stream(source: ByteSource) -> Table:
             yield from reader
         except (pa.ArrowException, OSError):
             raise cut_short(source.name) from None
-        # pyarrow takes an end of file between two batches for the end of the table.
-        if source.last != END_OF_STREAM:
-            raise cut_short(source.name)
+        incoming.require_whole()
 
     return _table(source.name, reader.schema, batches())
 
@@ -63,7 +58,15 @@ class Handed(ByteSource):
 
 
 def read_file(source: ByteSource) -> Table:
-    """A table from an Arrow IPC file."""
+    """A table from an Arrow IPC file.
+
+    It contains a stream, which is read if scarid wrote it, for its checksums. Other files are read
+    as their footer says: their batches may be in another order, and a stream need not end.
+    """
+    if _is_verifiable(source):
+        source.read(len(MAGIC))
+        table = read_stream(source)
+        return replace(table, batches=_footed(table.batches, source))
     file = source.seekable()
     blocks = Blocks.of(source.name, file)
     blocks.require_moderate(blocks.dictionaries)
@@ -78,6 +81,33 @@ def read_file(source: ByteSource) -> Table:
             yield reader.get_batch(i)
 
     return _table(source.name, reader.schema, batches())
+
+
+def _is_verifiable(source: ByteSource) -> bool:
+    """Whether the first batch of a file has a checksum."""
+    start = len(MAGIC) + PREFIX
+    while start <= max_batch():
+        size = int.from_bytes(source.peek(start)[start - 4 :], "little")
+        if size > max_batch():
+            break
+        try:
+            message = Message.of(source.peek(start + size)[start : start + size])
+        except (struct.error, ValueError):
+            break
+        if message.kind == RECORDS:
+            return message.checksum > 0
+        start += size + message.body + PREFIX
+    return False
+
+
+def _footed(batches: Iterator[pa.RecordBatch], source: ByteSource) -> Iterator[pa.RecordBatch]:
+    """The batches of a file, whose footer must be there although nothing is read from it."""
+    yield from batches
+    size, end = 0, b""
+    while data := source.read_some(CHUNK):
+        size, end = size + len(data), (end + data)[-len(MAGIC) - 2 :]
+    if not end.endswith(b"ARROW1") or int.from_bytes(end[:4], "little") + len(end) != size:
+        raise cut_short(source.name)
 
 
 def read_parquet(source: ByteSource) -> Table:
@@ -121,8 +151,12 @@ def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> T
         raise BadData(
             f"{name}: the scarid metadata of the table cannot be read; write it again"
         ) from None
-    fields = [_plain(field) for field in schema]
-    plain = pa.schema(fields)
+    try:
+        plain = pa.schema([_plain(field) for field in schema])
+    except UnicodeDecodeError:
+        raise BadData(
+            f"{name}: the name of a column is not UTF-8; rename it where the table is made"
+        ) from None
     return Table(name, plain, meta, (cast(batch, plain, name) for batch in _sound(name, batches)))
 
 
@@ -156,129 +190,3 @@ def _plain(field: pa.Field) -> pa.Field:
         kind = pa.string()
     unit = (field.metadata or {}).get(UNIT_KEY)
     return pa.field(field.name, kind, metadata={UNIT_KEY: unit} if unit else None)
-
-
-class PyarrowFile:
-    """The file-like object that pyarrow writes to. Once cut, it drops everything.
-
-    pyarrow's writers write their end mark even when an exception closes them, and a table with an
-    end mark would look complete.
-    """
-
-    closed = False
-
-    def __init__(self, write: Callable[[bytes], None]) -> None:
-        self._write = write
-        self._cut = False
-        self._position = 0
-
-    def write(self, data: Any) -> int:
-        size = len(data)
-        if not self._cut:
-            self._write(data)
-        self._position += size
-        return size
-
-    def tell(self) -> int:
-        return self._position
-
-    def flush(self) -> None:
-        """Nothing is held back."""
-
-    def close(self) -> None:
-        """The output is closed where it was opened."""
-
-    def cut(self) -> None:
-        self._cut = True
-
-
-class _Writer:
-    """What the writers share: a writer of pyarrow, which is cut off if the command fails."""
-
-    def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
-        self._schema = schema
-        self._file = PyarrowFile(write)
-        self._writer = self._opened()
-
-    def _opened(self) -> Any:
-        """The writer of pyarrow for this schema."""
-        raise NotImplementedError
-
-    def close(self) -> None:
-        self._writer.close()
-
-    def abort(self) -> None:
-        self._file.cut()
-        self._writer.close()
-
-
-class StreamWriter(_Writer):
-    """An Arrow IPC stream: batches leave as they arrive, the end mark only on success."""
-
-    def _opened(self) -> Any:
-        return ipc.new_stream(self._file, self._schema)
-
-    def write(self, batch: pa.RecordBatch) -> None:
-        self._writer.write_batch(batch.replace_schema_metadata(self._schema.metadata))
-
-
-class _GroupWriter(_Writer):
-    """The part common to files: batches are gathered into groups of a fixed number of rows."""
-
-    def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
-        super().__init__(write, schema)
-        self._held: list[pa.RecordBatch] = []
-        self._rows = self._bytes = 0
-        self._group = min(GROUP_ROWS, max(1, GROUP // (8 * max(1, len(schema)))))
-
-    def write(self, batch: pa.RecordBatch) -> None:
-        self._held.append(batch.replace_schema_metadata(self._schema.metadata))
-        self._rows += batch.num_rows
-        self._bytes += batch.nbytes
-        require_moderate("the output", COPIES * self._bytes)
-        while self._rows >= self._group:
-            table = pa.Table.from_batches(self._held, self._schema)
-            self._put(table.slice(0, self._group))
-            self._held = table.slice(self._group).to_batches()
-            self._rows -= self._group
-            self._bytes = sum(held.nbytes for held in self._held)
-
-    def close(self) -> None:
-        if self._rows:
-            self._put(pa.Table.from_batches(self._held, self._schema))
-        super().close()
-
-    def _put(self, table: pa.Table) -> None:
-        """Write one group of rows."""
-        raise NotImplementedError
-
-
-class FileWriter(_GroupWriter):
-    """An Arrow IPC file."""
-
-    def _opened(self) -> Any:
-        return ipc.new_file(self._file, self._schema)
-
-    def _put(self, table: pa.Table) -> None:
-        self._writer.write_batch(table.combine_chunks().to_batches()[0])
-
-
-class ParquetWriter(_GroupWriter):
-    """Parquet with settings for doubles: 5 times faster and 44 % smaller than the defaults."""
-
-    def _opened(self) -> Any:
-        import pyarrow.parquet as pq
-
-        floats = [field.name for field in self._schema if pa.types.is_floating(field.type)]
-        return pq.ParquetWriter(
-            self._file,
-            self._schema,
-            use_dictionary=False,
-            write_page_checksum=True,
-            use_byte_stream_split=floats,
-            compression="zstd",
-            compression_level=1,
-        )
-
-    def _put(self, table: pa.Table) -> None:
-        self._writer.write_table(table.combine_chunks(), row_group_size=GROUP_ROWS)

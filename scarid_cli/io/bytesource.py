@@ -106,6 +106,18 @@ class ByteSource:
         self.last = (self.last + data[-8:])[-8:]
         return data
 
+    def filled(self, size: int) -> bytearray:
+        """Exactly `size` bytes, fewer only at the end, like `read`, but without copies of them."""
+        data, start = bytearray(size), self._ahead[:size]
+        self._ahead = self._ahead[size:]
+        data[: (done := len(start))] = start
+        with memoryview(data) as view:
+            while done < size and (count := self._fetch_into(view[done:])):
+                done += count
+        del data[done:]
+        self.last = (self.last + data[-8:])[-8:]
+        return data
+
     def read(self, size: int = -1) -> bytes:
         """Exactly `size` bytes, fewer only at the end; all of them for a negative size."""
         parts: list[bytes] = []
@@ -177,6 +189,12 @@ class ByteSource:
         except OSError as error:
             raise OutputFailure(f"{self.name}: {error.strerror}") from None
 
+    def _fetch_into(self, view: memoryview) -> int:
+        try:
+            return os.readv(self.fd, [view])
+        except OSError as error:
+            raise OutputFailure(f"{self.name}: {error.strerror}") from None
+
 
 class Wrapped(ByteSource):
     """The bytes of another source after a change."""
@@ -189,6 +207,11 @@ class Wrapped(ByteSource):
     def regular(self) -> bool:
         """A changed file is read in order, like a pipe."""
         return False
+
+    def _fetch_into(self, view: memoryview) -> int:
+        data = self._fetch(len(view))
+        view[: len(data)] = data
+        return len(data)
 
 
 class Unzipped(Wrapped):

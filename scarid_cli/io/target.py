@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import fcntl
 import os
 import stat
 import sys
@@ -18,6 +19,7 @@ STDOUT = "<stdout>"
 # Ends of names: of a file that is being written, and of the one that it replaces.
 PART, BEFORE = ".part", ".before"
 YOUNG = 60.0  # s
+PIPE = 1 << 20  # bytes in a pipe at most
 
 
 class Target:
@@ -42,6 +44,7 @@ class Target:
             self._fd = self._open(self._part, os.O_CREAT | os.O_TRUNC)
         else:
             self._fd = self._open(self._place)
+        _widen(self._fd)
 
     def _remove_abandoned(self) -> None:
         """Remove what runs to the same output have left that were killed, and tell it."""
@@ -139,6 +142,12 @@ def _place_of(path: str) -> object:
         if not stat.S_ISCHR(found.st_mode) or path == "-":  # /dev/null takes any number of them
             return found.st_dev, found.st_ino
     return object() if Path(real).is_char_device() else real
+
+
+def _widen(fd: int) -> None:
+    """Let a pipe hold a whole batch of rows, where the system allows it (Linux)."""
+    with contextlib.suppress(OSError, AttributeError):
+        fcntl.fcntl(fd, fcntl.F_SETPIPE_SZ, PIPE)
 
 
 def _is_stdout(path: str) -> bool:

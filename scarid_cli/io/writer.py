@@ -175,12 +175,12 @@ def _writer(name: str) -> Any:
         from scarid_cli.io.csvio import CsvWriter
 
         return CsvWriter
-    from scarid_cli.io import arrowio
+    from scarid_cli.io import outgoing
 
     return {
-        "parquet": arrowio.ParquetWriter,
-        "arrow": arrowio.StreamWriter,
-        "arrow-file": arrowio.FileWriter,
+        "parquet": outgoing.ParquetWriter,
+        "arrow": outgoing.StreamWriter,
+        "arrow-file": outgoing.FileWriter,
     }[name]
 
 

@@ -22,8 +22,8 @@ TEXT = """# Faults
 
 Exit status 0 means the right result. `make faults` injects faults of many kinds, always the same ones, and
 writes this page: how many were tried, and what became of them. "Not noticed by the format" means that the
-damaged file is still a file of its format, with other numbers in it: CSV, Arrow and descriptions of robots have no
-checksums; Parquet of our own writing and saved states have. "Killed" are runs that got a signal before they
+damaged file is still a file of its format, with other numbers in it: CSV, settings and descriptions of robots have no
+checksums; Parquet and Arrow of our own writing and saved states have. "Killed" are runs that got a signal before they
 had written anything.
 
 | fault | tried | {columns} | anything else |

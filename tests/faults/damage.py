@@ -21,8 +21,7 @@ READERS = {
     "arm.toml": ("robot", "check", "arm.toml"),
 }
 # Damage that leaves a file of the same format is not noticed where the format has no checksums.
-CHECKED = ("log.parquet", "state.npz")
-CUT_NOTICED = (*CHECKED, "log.arrows", "log.arrow")
+CHECKED = ("log.parquet", "log.arrows", "log.arrow", "state.npz")
 
 
 @cache
@@ -37,9 +36,7 @@ def expected(name: str) -> bytes:
     return content
 
 
-def _damaged(
-    name: str, noticed: tuple[str, ...], contents: Iterator[tuple[str, bytes]]
-) -> Iterator[Trial]:
+def _damaged(name: str, contents: Iterator[tuple[str, bytes]]) -> Iterator[Trial]:
     right = expected(name)
     folder = folder_of(files())
     for place, content in contents:
@@ -49,7 +46,7 @@ def _damaged(
             READERS[name],
             folder,
             lambda at: (at / STDOUT).read_bytes() == right,
-            OTHER if name in noticed else UNNOTICED,
+            OTHER if name in CHECKED else UNNOTICED,
         )
     removed(folder)
 
@@ -58,7 +55,7 @@ def cuts(name: str, count: int) -> Iterator[Trial]:
     """The file cut at every byte, or at so many of them."""
     content = files()[name]
     places = range(0, len(content), max(1, len(content) // count))
-    return _damaged(name, CUT_NOTICED, ((f"cut at {n}", content[:n]) for n in places))
+    return _damaged(name, ((f"cut at {n}", content[:n]) for n in places))
 
 
 def flips(name: str, count: int) -> Iterator[Trial]:
@@ -71,7 +68,7 @@ def flips(name: str, count: int) -> Iterator[Trial]:
             bad[place] ^= 1 << int(rng.integers(8))
             yield f"bit at {place}", bytes(bad)
 
-    return _damaged(name, CHECKED, damaged())
+    return _damaged(name, damaged())
 
 
 VALUES: tuple[object, ...] = (None, -1, 0, 1e308, "", "x" * 1000, "\x1b[2J\n", [], {}, [[]], True)
