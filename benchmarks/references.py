@@ -29,7 +29,7 @@ from scarid_cli.__main__ import main
 WHOLE = dict(fleet.LOAD)
 UNCHANGED, CHANGED = 40, 20  # logs of each kind
 DRAWS, AMONG = 20, 12  # sets of unchanged logs, and the logs of a set
-POOLED = (1, 3, 5)
+POOLED = (1, 2, 4)
 KINDS = {
     "unchanged": (0.0, 1.0),
     "2 % of the payload": (0.02, 1.0),

@@ -15,7 +15,7 @@ from steps.plan import Log, Plan, Robot
 from scarid_cli.arrays import Array
 
 VERDICTS = {"good": 0, "doubtful": 1, "not identifiable": 2}
-POOLED = 5  # logs against which another one is validated, at most
+POOLED = 4  # logs against which another one is validated, at most
 SETTLED = 2  # the rank from which a log does not count for the trend
 NEIGHBOURS = 3  # logs before and after one
 FAR = 6.0  # usual distances
