@@ -81,7 +81,7 @@ def ranking(results: Sequence[Result]) -> Ranking | None:
     standings = _standings(of_kind(own, Parameters), of_kind(own, Metrics))
     if not standings:
         return None
-    judge = _judge(of_kind(own, Metrics))
+    judge = judge_of(of_kind(own, Metrics))
 
     def key(standing: Standing) -> tuple[int, float, float]:
         grade = GRADES.index(standing.grade) if standing.grade in GRADES else len(GRADES)
@@ -102,7 +102,7 @@ def _standings(parameters: Sequence[Parameters], metrics: Sequence[Metrics]) -> 
     return [*found, *(Standing(label, None, those) for label, those in by_label.items())]
 
 
-def _judge(metrics: Sequence[Metrics]) -> str | None:
+def judge_of(metrics: Sequence[Metrics]) -> str | None:
     """The experiment in which most methods can be compared, the fairest of these."""
     counts: dict[str, int] = {}
     for one in metrics:
