@@ -170,10 +170,12 @@ def side_output(*names: str, help: str, metavar: str = "FILE") -> Callable[[F], 
 
 
 def input_file(
-    *names: str, help: str, metavar: str = "FILE", required: bool = False
+    *names: str, help: str, metavar: str = "FILE", required: bool = False, multiple: bool = False
 ) -> Callable[[F], F]:
     """A file to read beside the table; - stands for standard input."""
-    return click.option(*names, type=INPUT, metavar=metavar, required=required, help=help)
+    return click.option(
+        *names, type=INPUT, metavar=metavar, required=required, multiple=multiple, help=help
+    )
 
 
 def settings_of(algorithm: str) -> Callable[[F], F]:

@@ -9,7 +9,10 @@ from scarid_cli.cli.declare import declare
 @declare("validate")
 @options.table_inputs
 @options.input_file(
-    "--parameters", required=True, help="The parameter table that `scarid identify` wrote."
+    "--parameters",
+    required=True,
+    multiple=True,
+    help="The parameter table that `scarid identify` wrote; repeatable: several are pooled.",
 )
 @options.robot
 @options.treatment
@@ -23,12 +26,14 @@ def command() -> None:
     \b
       scarid validate --parameters parameters.csv motion.csv
       scarid validate --parameters p.parquet --predictions torques.parquet motion.parquet
+      scarid validate --parameters may.parquet --parameters june.parquet july-motion.parquet
 
     Writes for each joint R2 (paper eq. 36), the root-mean-square error (eq. 35), the relative error
     100 |tau - tau_hat| / |tau| in percent, and the number of samples. On the motion that the
     parameters were identified from, this is direct validation; on another motion, it is cross
     validation. Several motions count as one. Give the options that select and treat rows as they
-    were given to identify.
+    were given to identify. Several parameter tables are pooled, weighted by the information of
+    their logs: the motion is then compared with all of these logs together.
 
     The verdict, on standard error and in the metadata, says whether the robot has changed since the
     identification: `unchanged`, `changed` with the cause (another payload or set-up, the friction,

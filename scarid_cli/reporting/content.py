@@ -17,7 +17,7 @@ from scarid_cli.reporting.kinds import (
     Trace,
 )
 from scarid_cli.reporting.parts import Section
-from scarid_cli.reporting.signals import logs, soft_sensors
+from scarid_cli.reporting.signals import compared_with, logs, soft_sensors
 from scarid_cli.reporting.wording import experiment_of, grouped, of_kind
 
 
@@ -32,7 +32,7 @@ def sections(results: Sequence[Result], values: published.Values | None = None) 
         *(logs(group) for group in grouped(of_kind(results, Measurement), experiment_of)),
         *(
             soft_sensors(group, colours)
-            for group in grouped(of_kind(results, MotionEstimate), experiment_of)
+            for group in grouped(of_kind(results, MotionEstimate), compared_with)
         ),
         *_of_estimates(results, colours),
         *_of_torques(results, colours),

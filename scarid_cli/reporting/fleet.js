@@ -145,7 +145,7 @@
     for (const [command, text] of logs.notes[i]) say(command, text);
     say("Place in the robot's logs", `${logs.order[i]} of ${robot.logs}`);
     if (logs.reference[i]) say("Reference", logs.reference[i]);
-    if (logs.validated[i].length) say("R² by the reference's parameters", joints(logs.validated[i]));
+    if (logs.validated[i].length) say("R² by the parameters of other logs", joints(logs.validated[i]));
     if (logs.samples[i]) say("Samples", logs.samples[i].toLocaleString("en"));
     if (logs.condition[i]) say("Condition number", String(logs.condition[i]));
     if (logs.delay[i] !== null) say("Delay", delay(i, " ms"));

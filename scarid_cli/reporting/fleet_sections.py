@@ -14,8 +14,8 @@ from scarid_cli.reporting.parts import NONE, Section
 
 WORDS = ("failed", "changed", "verdict not good", "check not ok", "nothing found")
 NOTE = (
-    "Failed: a command ended with an error. Changed: validate or compare found a change against "
-    "the reference log. A log may have several findings."
+    "Failed: a command ended with an error. Changed: validate found a change against other logs of "
+    "the robot, or compare one against the reference log. A log may have several findings."
 )
 
 

@@ -98,7 +98,7 @@ class MotionEstimate(Result):
 
     Curves (2, points), joint by joint: dq1, ddq1, dq2, ... `errors` are root-mean-square errors
     relative to the standard deviation of the true signal [%]. `misses` are the curves of estimate
-    minus truth.
+    minus truth. `against` is what stands for the truth: "truth", or "common motion" of a real log.
     """
 
     columns: tuple[str, ...]
@@ -106,3 +106,4 @@ class MotionEstimate(Result):
     truths: tuple[Array, ...]
     errors: tuple[float, ...]
     misses: tuple[Array, ...] = ()
+    against: str = "truth"

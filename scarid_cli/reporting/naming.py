@@ -11,6 +11,8 @@ from pathlib import Path
 from scarid_cli.io.bytesource import STDIN
 from scarid_cli.printable import printable
 
+COMMON = "common"  # the one motion of a log with which all methods are compared
+
 
 @dataclass(frozen=True)
 class Name:

@@ -100,6 +100,7 @@ def motion(source: Source) -> MotionEstimate:
         truths=_chosen(curves, truths),
         errors=tuple(100.0 * np.sqrt(max(1.0 - quality.r2, 0.0)) for quality in qualities),
         misses=_chosen(curves, [difference(*pair) for pair in pairs]),
+        against="common motion" if source.with_common else "truth",
     )
 
 

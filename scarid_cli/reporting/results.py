@@ -16,6 +16,7 @@ from scarid_cli.io.reader import checked
 from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
 from scarid_cli.printable import printable
+from scarid_cli.reporting.common import with_common
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
 from scarid_cli.reporting.naming import name_of, names_of
 from scarid_cli.reporting.records import measurement, motion, prediction, trace
@@ -52,9 +53,11 @@ def collect(tables: Sequence[Table], *, repeated: bool = False) -> list[Result]:
     alone = [name_of(file, kind) for file, kind in zip(files, kinds, strict=True)]
     names = alone if repeated else names_of(files, kinds)
     known = [robot for robot in robots if robot]
+    beside = with_common(tables, names)
     return [
-        READERS[kind](Source(table, name, robot, known))
-        for table, kind, name, robot in zip(tables, kinds, names, robots, strict=True)
+        READERS[kind](Source(table, name, robot, known, with_common=table is not own))
+        for own, table, kind, name, robot in zip(tables, beside, kinds, names, robots, strict=True)
+        if table
     ]
 
 

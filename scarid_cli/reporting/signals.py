@@ -72,6 +72,11 @@ def _position_unit(result: Measurement | MotionEstimate, joint: int) -> str:
     return result.robot.joints[joint].unit if result.robot else "rad"
 
 
+def compared_with(result: MotionEstimate) -> tuple[str, str]:
+    """The experiment, and what stands for the truth: such estimates share a section."""
+    return result.name.experiment, result.against
+
+
 def soft_sensors(group: Sequence[MotionEstimate], colours: dict[str, int]) -> Section:
     """Velocities and accelerations of one experiment, method by method, with an enlarged part."""
     first = group[0]
@@ -81,9 +86,9 @@ def soft_sensors(group: Sequence[MotionEstimate], colours: dict[str, int]) -> Se
     known = [r for r in group if r.errors]
     return Section(
         title=titled("Soft sensors", first.name.experiment),
-        note="Root-mean-square error relative to the standard deviation of the true signal, in %, "
-        "without settling rows. Estimate and truth are compared at the same instant, so a delay "
-        "counts as an error."
+        note=f"Root-mean-square difference from the {first.against}, relative to the standard "
+        "deviation of the latter, in %, without settling rows. Both are compared at the same "
+        "instant, so a delay counts as an error."
         if known
         else "",
         headers=("method", *(f"{column} [%]" for column in first.columns)) if known else (),
@@ -102,7 +107,8 @@ def _estimates(group: Sequence[MotionEstimate], colours: dict[str, int], i: int)
     series = [Series(r.name.label, colours[r.name.label], r.curves[i]) for r in group]
     limits = None
     if first.truths:
-        series.insert(0, Series("true", None, first.truths[i]))
+        name = "true" if first.against == "truth" else first.against
+        series.insert(0, Series(name, None, first.truths[i]))
         low, high = (float(f(first.truths[i][1])) for f in (np.min, np.max))
         limits = (low - MARGIN * (high - low), high + MARGIN * (high - low))
     per_time = "/s2" if column.startswith("ddq") else "/s"

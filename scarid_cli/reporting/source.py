@@ -12,12 +12,16 @@ from scarid_cli.reporting.naming import Name
 
 @dataclass(frozen=True)
 class Source:
-    """The table, its name, the robot that it states, and those that any table states."""
+    """The table, its name, the robot that it states, and those that any table states.
+
+    `with_common`: what the table has as the truth is the common motion of its log.
+    """
 
     table: Table
     name: Name
     robot: Robot | None
     robots: Sequence[Robot]
+    with_common: bool = False
 
     def robot_with(self, names: Sequence[str]) -> Robot | None:
         """The robot with these parameters: the table's own, else any (a CSV states none)."""

@@ -99,6 +99,7 @@ def _robot(robot: Robot, rows: list[Row], tuned: Result, against: Result) -> Row
         "identified": sum("estimates" in row for row in rows),
         "failed": sum(row["status"] != 0 for row in rows),
         "reference": against["reference"],
+        "pooled": ", ".join(against["nearest"][:-1]) or None,
         "cutoff": tuned.get("cutoff"),
         "tuned_on": tuned.get("tuned_on"),
         "trend": trend or None,

@@ -1,4 +1,4 @@
-"""The log of a robot that stands for the others, and how the others differ from it."""
+"""The logs of a robot that stand for the others, and how the others differ from the first."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from steps.plan import Log, Plan, Robot
 from scarid_cli.arrays import Array
 
 VERDICTS = {"good": 0, "doubtful": 1, "not identifiable": 2}
+POOLED = 4  # logs against which another one is validated, at most
 SETTLED = 2  # the rank from which a log does not count for the trend
 NEIGHBOURS = 3  # logs before and after one
 FAR = 6.0  # usual distances
@@ -24,13 +25,13 @@ Entry = tuple[Log, Result]
 
 
 def reference(plan: Plan, robot: Robot) -> None:
-    """Choose the reference, compare all logs with it, and look for a trend."""
+    """Choose the logs that stand for all, compare all others with the first, look for a trend."""
     identified = _identified(plan, robot)
     nearest = _nearest(identified)
     messages: list[str] = []
-    found: Result = {"reference": None, "second": None, "messages": messages}
+    found: Result = {"reference": None, "nearest": [], "messages": messages}
     if len(nearest) > 1:
-        found |= {"reference": nearest[0].name, "second": nearest[1].name}
+        found |= {"reference": nearest[0].name, "nearest": [log.name for log in nearest]}
         found |= _compared(plan, robot, nearest[0], [log for log, _ in identified], messages)
         found |= _trend(plan, robot, identified, messages)
     places.write(places.results(plan, robot, "reference"), found)
@@ -76,7 +77,11 @@ def _rank(result: Result) -> int:
 
 
 def _nearest(identified: list[Entry]) -> list[Log]:
-    """The two logs nearest to the median of all parameters, of those with the best verdict."""
+    """The logs nearest to the median of all parameters, of those with the best verdict, in order.
+
+    They are at most half of these, so that a minority of changed logs stays out, and one more,
+    which takes the place of each of them where it is validated itself; two at least.
+    """
     if not identified:
         return []
     alike, values, errors = _alike(identified)
@@ -84,7 +89,14 @@ def _nearest(identified: list[Entry]) -> list[Log]:
     distances = np.sqrt(np.mean((apart / _spread(apart, errors)) ** 2, axis=1))
     ranks = [_rank(result) for _, result in alike]
     ordered = sorted(zip(ranks, distances.tolist(), range(len(alike)), strict=True))
-    return [alike[i][0] for _, _, i in ordered[:2]]
+    among = ranks.count(min(ranks)) // 2
+    return [alike[i][0] for _, _, i in ordered[: max(1, min(POOLED, among)) + 1]]
+
+
+def others(against: Result, log: Log) -> list[str]:
+    """The names of the logs against which one is validated: the nearest ones without itself."""
+    names = [name for name in against["nearest"] if name != log.name]
+    return names[: len(against["nearest"]) - 1]
 
 
 def _steady(identified: list[Entry]) -> list[Log]:

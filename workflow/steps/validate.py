@@ -1,4 +1,4 @@
-"""validate: whether each log fits the parameters of the reference; and the page of a log."""
+"""validate: whether each log fits the parameters of the others; and the page of a log."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 from steps import places
 from steps.commands import Result, failure, of_each, run
 from steps.plan import Log, Plan, Robot
+from steps.reference import others
 
 OK: Result = {"status": 0}
 
@@ -26,25 +27,26 @@ def validate(plan: Plan, robot: Robot, group: str) -> None:
         places.cleared(plan, robot, log, "validate")
         if "estimates" not in before:
             return {"status": before["status"]}
-        name = against["second" if log.name == against["reference"] else "reference"]
-        found = _validated(plan, robot, log, places.table(motions, log), name) if name else OK
+        names = others(against, log)
+        found = _validated(plan, robot, log, places.table(motions, log), names) if names else OK
         return found | _page(plan, robot, log, _needs_a_look(log, before, found, against), found)
 
     entries = list(zip(plan.logs(robot, group), identified, strict=True))
     places.write(places.results(plan, robot, "validate", group), of_each(step, entries))
 
 
-def _validated(plan: Plan, robot: Robot, log: Log, motion: Path, name: str) -> Result:
+def _validated(plan: Plan, robot: Robot, log: Log, motion: Path, names: list[str]) -> Result:
     messages: list[str] = []
     own = places.folder_of(plan, robot, log)
-    other = next(other for other in robot.logs if other.name == name)
-    parameters = places.folder_of(plan, robot, other) / "parameters.parquet"
-    words = ["validate", str(motion), "--parameters", str(parameters)]
+    words = ["validate", str(motion)]
+    for name in names:
+        other = next(other for other in robot.logs if other.name == name)
+        words += ["--parameters", str(places.folder_of(plan, robot, other) / "parameters.parquet")]
     words += ["--robot", robot.description, *shlex.split(robot.pipe["validate"])]
     if plan.pages != "none":
         words += ["--predictions", str(own / "prediction.parquet")]
     ran = run([*words, "-o", str(own / "metrics.parquet")], messages)
-    found: Result = {"status": 0, "reference": name, "messages": messages}
+    found: Result = {"status": 0, "reference": names[0], "messages": messages}
     if ran.status:
         return found | failure(ran)
     table = pq.read_table(own / "metrics.parquet")

@@ -52,7 +52,7 @@ def run(
         from scarid_cli.reporting.study import page as rendering  # jinja2 takes a tenth of a second
 
         documents.page.write(
-            rendering.plain(title, found, tables)
+            rendering.repeated(title, collected, values, tables)
             if repeated
             else rendering.study(title, collected, values, tables)
         )

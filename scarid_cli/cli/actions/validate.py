@@ -19,13 +19,14 @@ from scarid_cli.stages import validate as stage
 from scarid_cli.stages.changes import known
 from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.pooling import Entry, together
 
 
 def run(
     job: Job,
     *,
     files: tuple[str, ...],
-    parameters: str,
+    parameters: tuple[str, ...],
     robot: str | None,
     predictions: str | None,
     **given: Any,
@@ -35,14 +36,12 @@ def run(
     if treatment.holds and predictions:
         raise UsageFault("--predictions needs every row and cannot be combined with --decimate")
     side = job.side_table(predictions)
-    stored = job.read(parameters, "parameters")
-    stated = robot or stated_robot(stored)
+    tables = [job.read(file, "parameters") for file in parameters]
+    stated = robot or stated_robot(tables[0])
     table, arm = read_logs(job, files, stated, partial(_read, job), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
     treatment = for_motion(table.meta, treatment, given)
-    batches = list(stored.batches)
-    model = identified(replace(stored, batches=iter(batches)), arm)
-    before = known(stored, model.robot, errors_of(pa.Table.from_batches(batches)))
+    model, before = together([_stored(table, arm) for table in tables])
     result = stage.validate(
         job.recorded(table),
         model,
@@ -52,6 +51,8 @@ def run(
     )
     job.write(result)
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
+    if len(tables) > 1:
+        job.say(f"pooled the parameters of {len(tables)} identifications, by their information")
     if model.delay:
         delay = 1e3 * model.delay
         job.say(f"applied the delay that identify fitted: torques lead by {delay:.3g} ms")
@@ -60,6 +61,13 @@ def run(
         job.say(f"{change['verdict']}: {change['reason']}", change["verdict"])
     if before.remark:
         job.say(before.remark)
+
+
+def _stored(table: Table, robot: Robot) -> Entry:
+    """The name and the content of a parameter table."""
+    batches = list(table.batches)
+    model = identified(replace(table, batches=iter(batches)), robot)
+    return table.name, model, known(table, model.robot, errors_of(pa.Table.from_batches(batches)))
 
 
 def _read(job: Job, file: str, robot: str | Robot | None) -> tuple[Table, Robot]:

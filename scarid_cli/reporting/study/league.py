@@ -13,17 +13,22 @@ from scarid_cli.reporting.study import svg
 WIDTH, NAMES, NUMBERS = 640, 160, 110
 TOP, ROW, BOTTOM = 20, 22, 34
 LETTERS = 26
+SPREAD = 7.0  # of the marks of a row that have bars of their own
 LEAST, MOST = 1e-3, 1e5  # percent: the axis ends there at the latest
 
 
 @dataclass(frozen=True)
 class Place:
-    """One row: its name, the class of its colour, its verdict, and a value [%] for each mark."""
+    """One row: its name, the class of its colour, its verdict, and a value [%] for each mark.
+
+    `ranges` are the ends of a bar through each mark; without them one bar joins all marks.
+    """
 
     name: str
     style: str
     grade: str
     values: tuple[float, ...]
+    ranges: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -56,7 +61,10 @@ def drawn(league: League) -> Markup:
 
 def decades(league: League) -> tuple[int, int]:
     """The powers of ten between which all values lie."""
-    known = [v for p in league.places for v in p.values if isfinite(v) and v > 0.0]
+    values = [
+        v for p in league.places for v in (*p.values, *(x for ends in p.ranges for x in ends))
+    ]
+    known = [v for v in values if isfinite(v) and v > 0.0]
     known = [min(max(v, LEAST), MOST) for v in known] or [1.0]
     low, high = floor(log10(min(known))), ceil(log10(max(known)))
     return low, max(high, low + 1)
@@ -93,16 +101,30 @@ def _axis(league: League, low: int, high: int, bottom: float) -> list[Markup]:
 def _row(place: Place, top: float, low: int, high: int) -> list[Markup]:
     y = top + ROW / 2
     name = place.name if len(place.name) <= LETTERS else place.name[: LETTERS - 1] + "…"
-    known = [(k, v) for k, v in enumerate(place.values) if isfinite(v) and v > 0.0]
-    xs = [_x(v, low, high) for _, v in known]
-    line = [svg.element("path", d=f"M{min(xs):.1f} {y}H{max(xs):.1f}", class_="bar")] if xs else []
-    marks = [mark(k, x, y) for (k, _), x in zip(known, xs, strict=True)]
-    text = f"{percents(place.values)} %" if known else "unknown"
+    parts = _marks(place, y, low, high)
+    text = f"{percents(place.values)} %" if parts else "unknown"
     return [
         svg.element("text", name, x=NAMES - 10, y=y + 3.5, class_="name"),
-        svg.element("g", *line, *marks, class_=place.style),
+        svg.element("g", *parts, class_=place.style),
         svg.element("text", text, x=WIDTH - NUMBERS + 10, y=y + 3.5, class_="value"),
     ]
+
+
+def _marks(place: Place, y: float, low: int, high: int) -> list[Markup]:
+    """The marks of a row, and the bar that joins them, or one through each of them."""
+    known = [(k, v) for k, v in enumerate(place.values) if isfinite(v) and v > 0.0]
+    marks = {k: _x(v, low, high) for k, v in known}
+    heights = dict.fromkeys(marks, y)
+    bars = [(y, [*marks.values()])] if marks else []
+    if place.ranges:
+        between = SPREAD / max(len(place.values) - 1, 1)
+        heights = {k: y + between * k - SPREAD / 2 for k in marks}
+        bars = [(heights[k], [_x(end, low, high) for end in place.ranges[k]]) for k in marks]
+    lines = [
+        svg.element("path", d=f"M{min(xs):.1f} {at:.1f}H{max(xs):.1f}", class_="bar")
+        for at, xs in bars
+    ]
+    return [*lines, *(mark(k, x, heights[k]) for k, x in marks.items())]
 
 
 def mark(number: int, x: float, y: float) -> Markup:

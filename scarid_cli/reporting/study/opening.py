@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
@@ -42,7 +43,7 @@ def opening(ranking: Ranking, colours: dict[str, int]) -> Opening:
     best, several = ranking.best, len(ranking.standings) > 1
     shown = _figure(ranking, colours)
     answers = [("How well?", _how_well(ranking)), ("May I believe it?", _belief(best))]
-    if several and (counts := _counts(ranking)):
+    if several and (counts := counted([(s.name, s.grade) for s in ranking.standings])):
         answers.append(("And the others?", counts))
     return Opening(
         grade=best.grade,
@@ -72,8 +73,13 @@ def _how_well(ranking: Ranking) -> str:
         f"It predicts the torques of {EXPERIMENTS.get(judge, f'the experiment {judge}')} within "
         f"{percents(known_ones[0].errors(judge))} % of their norm"
     )
-    others = known_ones[1:2] + known_ones[2:][-1:]
-    tails = [f"{s.label} within {percents(s.errors(judge))} %" for s in others]
+    return others(text, [(s.label, s.errors(judge)) for s in known_ones[1:]])
+
+
+def others(text: str, ranked: Sequence[tuple[str, Sequence[float]]]) -> str:
+    """The sentence, with the errors [%] of the next and of the last of these methods."""
+    chosen = [*ranked[:1], *ranked[1:][-1:]]
+    tails = [f"{label} within {percents(errors)} %" for label, errors in chosen]
     names = ("the next, ", "the last, ")
     rest = "; ".join(a + b for a, b in zip(names, tails, strict=False))
     return f"{text}; {rest}." if rest else f"{text}."
@@ -91,16 +97,17 @@ def _belief(best: Standing) -> str:
     return f"{belief}: {reasons}." if reasons else f"{belief}."
 
 
-def _counts(ranking: Ranking) -> str:
-    counts = Counter(s.grade for s in ranking.standings)
-    good = [s.name for s in ranking.standings if s.grade == GOOD]
+def counted(methods: Sequence[tuple[str, str]]) -> str:
+    """How many methods have which verdict, from their names and verdicts; "" if none is known."""
+    counts = Counter(grade for _, grade in methods)
+    good = [name for name, grade in methods if grade == GOOD]
     named = f" ({', '.join(good)})" if 0 < len(good) <= NAMED else ""
     found = [
         f"{counts[grade]} {grade}{named if grade == GOOD else ''}"
         for grade in GRADES
         if counts[grade]
     ]
-    return f"Of all {len(ranking.standings)}: {', '.join(found)}." if found else ""
+    return f"Of all {len(methods)}: {', '.join(found)}." if found else ""
 
 
 def _figure(ranking: Ranking, colours: dict[str, int]) -> League:

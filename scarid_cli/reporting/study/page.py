@@ -16,6 +16,8 @@ from scarid_cli.reporting import published
 from scarid_cli.reporting.curves import POINTS
 from scarid_cli.reporting.kinds import Measurement, Result
 from scarid_cli.reporting.parts import Section, header_lines, split
+from scarid_cli.reporting.repeated import sections as repeated_sections
+from scarid_cli.reporting.study import repetitions
 from scarid_cli.reporting.study.blocks import Chapter
 from scarid_cli.reporting.study.chapters import chapters, of_sections, view_of
 from scarid_cli.reporting.study.colours import rules
@@ -49,9 +51,14 @@ def study(
     return _rendered(title, first, found, tables, rules(len(view.colours) + logs))
 
 
-def plain(title: str, sections: Sequence[Section], tables: Sequence[Table]) -> str:
-    """The page of sections that are tables only."""
-    return _rendered(title, None, of_sections(sections), tables, "")
+def repeated(
+    title: str, results: Sequence[Result], values: published.Values | None, tables: Sequence[Table]
+) -> str:
+    """The page of experiments that were repeated, whose chapters are tables, the best first."""
+    found = repetitions.ranked(results)
+    first = repetitions.opening(found) if found.methods else None
+    sections = repeated_sections(found.in_order(results), values)
+    return _rendered(title, first, of_sections(sections), tables, rules(len(found.methods)))
 
 
 def _rendered(

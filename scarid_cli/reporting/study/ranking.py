@@ -8,12 +8,13 @@ from math import exp, inf, isfinite, log
 
 from scarid_cli.algorithms.statistics.verdict import DOUBTFUL, GOOD, NOT_IDENTIFIABLE
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
+from scarid_cli.reporting.naming import COMMON
 from scarid_cli.reporting.wording import experiment_of, of_kind
 
 GRADES = (GOOD, DOUBTFUL, NOT_IDENTIFIABLE)
 # Experiments by how fair a judge of methods they are: one motion for all, then another log than
 # that of the identification. Those of other names come between.
-FAIREST, FAIR, UNFAIR = "common", "cross", ("direct", "")
+FAIREST, FAIR, UNFAIR = COMMON, "cross", ("direct", "")
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ def ranking(results: Sequence[Result]) -> Ranking | None:
     standings = _standings(of_kind(own, Parameters), of_kind(own, Metrics))
     if not standings:
         return None
-    judge = _judge(of_kind(own, Metrics))
+    judge = judge_of(of_kind(own, Metrics))
 
     def key(standing: Standing) -> tuple[int, float, float]:
         grade = GRADES.index(standing.grade) if standing.grade in GRADES else len(GRADES)
@@ -101,7 +102,7 @@ def _standings(parameters: Sequence[Parameters], metrics: Sequence[Metrics]) -> 
     return [*found, *(Standing(label, None, those) for label, those in by_label.items())]
 
 
-def _judge(metrics: Sequence[Metrics]) -> str | None:
+def judge_of(metrics: Sequence[Metrics]) -> str | None:
     """The experiment in which most methods can be compared, the fairest of these."""
     counts: dict[str, int] = {}
     for one in metrics:

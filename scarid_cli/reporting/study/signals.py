@@ -10,6 +10,7 @@ import numpy as np
 from scarid_cli.arrays import Array
 from scarid_cli.reporting.kinds import Measurement, Metrics, MotionEstimate, Prediction
 from scarid_cli.reporting.parts import Panel, Panels, Section, Series, number
+from scarid_cli.reporting.signals import compared_with
 from scarid_cli.reporting.signals import logs as logs_section
 from scarid_cli.reporting.signals import soft_sensors as sensors_section
 from scarid_cli.reporting.study.blocks import Block, Chapter, Figure, Fold, Grid, Key, figure
@@ -113,15 +114,15 @@ def _paired(made: Figure) -> Figure:
 
 
 def sensors(view: View, results: Sequence[MotionEstimate]) -> Iterator[Chapter]:
-    """Soft sensors: their errors against the truth, or the signals where it is not known."""
-    for group in grouped(results, experiment_of):
+    """Soft sensors: their errors against the truth or the common motion, else the signals."""
+    for group in grouped(results, compared_with):
         section = sensors_section(group, view.colours)
         ordered = sorted(group, key=view.place)
         blocks: list[Block] = [Grid(section)] if section.rows else []
         whole = [p for plot in section.plots[:1] if isinstance(plot, Panels) for p in plot.panels]
         blocks += [_sensor(view, ordered, at, panel) for at, panel in enumerate(whole)]
         note = section.note
-        words = ("soft sensor", "matched", "settled")
+        words = ("soft sensor", "matched", "settled", *(r.against for r in group))
         yield Chapter(section.title, section.title, note, words, tuple(blocks))
 
 
@@ -141,7 +142,7 @@ def _sensor(view: View, group: Sequence[MotionEstimate], at: int, panel: Panel) 
         )
         for r, curve in zip(group, curves, strict=True)
     ]
-    what = "Error (estimate minus truth) of" if true else "Estimates of"
+    what = f"Error (estimate minus {group[0].against}) of" if true else "Estimates of"
     clipped = " The scale is that of the best three." if true and len(group) > view.FEW else ""
     return figure(f"{what} {panel.axis}, method by method, on one scale.{clipped}", charts)
 

@@ -24,6 +24,8 @@ TERMS = {
     "cross": "the torques of another log, with derivatives from the method's own soft sensor.",
     "common": "the torques of another log, with the same derivatives for all methods (one "
     "zero-phase filtered motion), so that no method looks good because it smooths its own torque.",
+    "common motion": "the motion in the table common.EXPERIMENT.motion of the same log, which "
+    "stands for the truth where it is not known, as on a real robot. It has errors of its own.",
     "settled": "rows after the start of a soft sensor, when its initial error has died away; only "
     "these are used.",
     "lag share": "the part of a soft sensor's error that a pure delay explains.",
