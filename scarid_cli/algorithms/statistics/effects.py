@@ -24,7 +24,6 @@ INTERVAL = 0.005  # s: the rows are thinned to intervals of at most this length
 REVERSALS, PARALLEL = "reversals", "parallel"
 ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL)  # widen the intervals whether significant or not
 CERTAIN = 0.01  # probability of calling an effect significant that is none
-LIKELY = 0.05
 TRUST = 1.5  # variances of an effect that are subtracted from its square
 
 
@@ -53,7 +52,7 @@ class Effect:
     @property
     def bias(self) -> Array:
         """The part of the move that its error does not explain (parameters); 0 if there is none."""
-        if self.name not in ALWAYS and not self.significant(LIKELY):
+        if self.name not in ALWAYS and not self.significant():
             return np.zeros_like(self.moved)
         rest = self.moved**2 - TRUST * self.errors**2
         return np.asarray(np.sign(self.moved) * np.sqrt(np.maximum(np.nan_to_num(rest), 0.0)))
@@ -64,7 +63,7 @@ class Effect:
         It keeps the direction of the move, in which large moves of single parameters may cancel in
         the torque. `scatter` (parameters) are the errors from noise, which make them comparable.
         """
-        if self.name not in ALWAYS and not self.significant(LIKELY):
+        if self.name not in ALWAYS and not self.significant():
             return np.zeros_like(self.moved)
         known = scatter > 0.0
         squares = float(np.sum((self.moved[known] / scatter[known]) ** 2))
