@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import plain
-from scarid_cli.algorithms.statistics.alternatives import smoothed
+from scarid_cli.algorithms.statistics.parallel import smoothed
 
 H = 0.01  # s
 
@@ -22,6 +22,9 @@ def test_smoothed_rows_are_those_at_the_middle_of_the_window() -> None:
     for column, expected in ((0, at), (1, 3.0 - 2.0 * at), (-1, 0.5 * at)):
         np.testing.assert_allclose(found.A[:, 0, column], expected[found.centres], atol=1e-9)
     np.testing.assert_array_equal(found.at, at[found.centres])
-    starts, gap = found.centres[0], np.diff(found.centres).max()
-    assert gap == 1 + 2 * starts  # as much is lost on each side of the gap as at the ends
-    assert len(at) - 1 - found.centres[-1] == starts
+    starts = found.centres[0]
+    np.testing.assert_array_equal(
+        at[found.centres + starts] - at[found.centres - starts], 2 * starts
+    )
+    assert np.diff(found.centres).min() == 2  # 20 ms: no more than 25 ms
+    assert len(found.centres) == 2 * 86 + 10  # of 200 - 28 and 220 - 28 samples, every second

@@ -10,9 +10,11 @@ import pytest
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.statistics.alternatives import STRIBECK
 from scarid_cli.algorithms.statistics.consequences import Consequences
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import PARALLEL, SIGNALS, STRIBECK, Effect
+from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
+from scarid_cli.algorithms.statistics.parallel import SIGNALS
 from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 from scarid_cli.arrays import Array

@@ -143,6 +143,14 @@ class Robot:
             columns = self.body.columns(motion.q, motion.dq, motion.ddq)
             W[:, :, list(rigid)] = columns.take(list(rigid.values()), axis=2)
 
+    def partial_torques(self, motion: Array, kept: list[int], theta: Array) -> Array:
+        """The torques (samples, joints) of the parameters `kept` alone, whose values are theta.
+
+        motion (3, joints, samples): positions, velocities and accelerations.
+        """
+        parameters = tuple(self.parameters[i] for i in kept)
+        return replace(self, parameters=parameters).regressor(*motion) @ theta
+
     def torques(self, W: Array, theta: Array) -> Array:
         """The torques W theta (joints, samples) [N m or N].
 

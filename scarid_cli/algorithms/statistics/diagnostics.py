@@ -13,14 +13,14 @@ import numpy as np
 from scarid_cli.algorithms.regression.estimation import Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.statistics.alternatives import TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.consequences import (
     Consequences,
     consequences,
     gain_sensitivities,
 )
-from scarid_cli.algorithms.statistics.effects import FRICTION, Effect, Trial
+from scarid_cli.algorithms.statistics.effects import Effect, Trial
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
     inflation,
@@ -81,8 +81,8 @@ def diagnose(
     shifts = np.array([e.bias for e in effects]).reshape(-1, own)
     fit, moves = found.fit.part(slice(own)), [(e.name, e.direction(scatter[:own])) for e in effects]
     matrix = _matrix(fit, scatter[:own], [*(move for _, move in moves), *gain_error * gains])
-    # What friction gains in other columns the parameters lose: the torque remains what it was.
-    other = [move for name, move in moves if name not in FRICTION]
+    # What other columns gain the parameters lose: the torque on this motion remains what it was.
+    other = [move for name, move in moves if name not in TORQUES]
     torque_matrix = _matrix(fit, scatter[:own], [*other, *gain_error * gains])
     widest = np.max(shifts**2, axis=0, initial=0.0) + np.sum((gain_error * gains) ** 2, axis=0)
     return Diagnostics(

@@ -8,28 +8,22 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.alternatives import (
+    OFFSET,
+    STRIBECK,
     Model,
     away_from_reversals,
-    friction_columns,
-    smoothed,
+    torque_columns,
 )
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
 from scarid_cli.algorithms.statistics.jackknife import block_numbers, quantile
+from scarid_cli.algorithms.statistics.parallel import smoothed
 from scarid_cli.algorithms.statistics.products import Products, Solved, jackknifed
 from scarid_cli.arrays import Array, Numbers
 
 INTERVAL = 0.005  # s: the rows are thinned to intervals of at most this length
-REVERSALS, OFFSET, STRIBECK = "reversals", "offset", "Stribeck"
-ASYMMETRY, LOAD, PARALLEL, SIGNALS = "asymmetry", "load", "parallel", "signals"
+REVERSALS, PARALLEL = "reversals", "parallel"
 ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL)  # widen the intervals whether significant or not
-FRICTION = (
-    OFFSET,
-    ASYMMETRY,
-    STRIBECK,
-    LOAD,
-)  # further columns, whose torques are not in the model
 CERTAIN = 0.01  # probability of calling an effect significant that is none
-LIKELY = 0.05
 TRUST = 1.5  # variances of an effect that are subtracted from its square
 
 
@@ -58,7 +52,7 @@ class Effect:
     @property
     def bias(self) -> Array:
         """The part of the move that its error does not explain (parameters); 0 if there is none."""
-        if self.name not in ALWAYS and not self.significant(LIKELY):
+        if self.name not in ALWAYS and not self.significant():
             return np.zeros_like(self.moved)
         rest = self.moved**2 - TRUST * self.errors**2
         return np.asarray(np.sign(self.moved) * np.sqrt(np.maximum(np.nan_to_num(rest), 0.0)))
@@ -69,7 +63,7 @@ class Effect:
         It keeps the direction of the move, in which large moves of single parameters may cancel in
         the torque. `scatter` (parameters) are the errors from noise, which make them comparable.
         """
-        if self.name not in ALWAYS and not self.significant(LIKELY):
+        if self.name not in ALWAYS and not self.significant():
             return np.zeros_like(self.moved)
         known = scatter > 0.0
         squares = float(np.sum((self.moved[known] / scatter[known]) ** 2))
@@ -122,8 +116,14 @@ class Trial:
         """The effects of all alternatives that the rows determine."""
         if self.plain is None:
             return ()
-        friction = self.friction(self.plain, estimates, model)
-        return (*friction, *self.signals(self.plain, estimates, model))
+        away = away_from_reversals(self.rows)
+        solved = self.products(away, {})[0].solved([])
+        same = [(self.rows.scales, self.plain)]
+        found = self.torques(self.plain, estimates, model)
+        if solved:
+            found.append(self.effect(REVERSALS, self.plain, self.plain, solved, columns=False))
+            same.insert(0, (away, solved))
+        return (*found, *self.signals(self.plain, same, estimates, model))
 
     def products(
         self, scales: Array, further: dict[str, Array]
@@ -140,41 +140,47 @@ class Trial:
         weighted = A * (scales * self.weights)[:, :, None]
         return Products.of(weighted, number, self.count, self.rows.W.shape[2])
 
-    def friction(self, plain: Solved, estimates: Array, model: Model | None) -> list[Effect]:
-        """The effects of what friction may have beyond the model, and of rows near reversals."""
+    def torques(self, plain: Solved, estimates: Array, model: Model | None) -> list[Effect]:
+        """The effects of what the torques may have beyond the model."""
         products, places = self.products(
-            self.rows.scales, friction_columns(self.rows, model, estimates)
+            self.rows.scales, torque_columns(self.rows, model, estimates)
         )
+        return self.beside(products, places, plain, plain)
+
+    def beside(
+        self, products: Products, places: dict[str, list[int]], plain: Solved, same: Solved
+    ) -> list[Effect]:
+        """The effects of the further columns of each name that are not in the model already."""
         found = []
         for name, columns in places.items():
             new = products.independent(columns)
             solved = products.solved(new) if new else None
-            found.append(solved and self.effect(name, plain, plain, solved, columns=True))
-        away = self.products(away_from_reversals(self.rows), {})[0].solved([])
-        found.append(away and self.effect(REVERSALS, plain, plain, away, columns=False))
-        return [effect for effect in found if effect]
+            if solved:
+                found.append(self.effect(name, plain, same, solved, columns=True))
+        return found
 
-    def signals(self, plain: Solved, estimates: Array, model: Model | None) -> list[Effect]:
-        """The effects of another soft sensor, and of delays and flexible joints."""
+    def signals(
+        self,
+        plain: Solved,
+        same: list[tuple[Array, Solved]],
+        estimates: Array,
+        model: Model | None,
+    ) -> list[Effect]:
+        """The effects of another soft sensor, and of what may be wrong with its signals.
+
+        `same` are the scales of rows with which they can be tried, the better ones first, and the
+        fits to these rows without any alternative.
+        """
         smooth = smoothed(self.rows, model, estimates, self.own)
         if smooth is None:
             return []
         number = self.number[smooth.centres]
-        for scales in (away_from_reversals(self.rows), self.rows.scales):
+        for scales, without in same:
             products = self._of(smooth.A, scales[smooth.centres], number)
-            same = self.products(scales, {})[0].solved([])
-            parallel = products.solved([])
-            if parallel and same:
-                break
-        else:
-            return []
-        found = [self.effect(PARALLEL, plain, same, parallel, columns=False)]
-        further = range(self.rows.W.shape[2], smooth.A.shape[2] - 1)
-        new = products.independent(list(further))
-        solved = products.solved(new) if new else None
-        if solved:
-            found.append(self.effect(SIGNALS, plain, parallel, solved, columns=True))
-        return found
+            if parallel := products.solved([]):
+                found = self.effect(PARALLEL, plain, without, parallel, columns=False)
+                return [found, *self.beside(products, smooth.places, plain, parallel)]
+        return []
 
     def effect(
         self, name: str, plain: Solved, same: Solved, other: Solved, *, columns: bool

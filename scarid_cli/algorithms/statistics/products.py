@@ -1,12 +1,15 @@
 """Least squares with further columns beside W, and how far those move the estimates.
 
 From the products of the rows in each block, the fit with any of the columns follows, and so do the
-fits without one block after another, which give the error of each difference between two fits.
+fits without one block after another, which give the error of each difference between two fits. The
+columns of W are eliminated once for all fits (the Schur complement), so that each further fit costs
+no more than its own columns.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -31,6 +34,19 @@ class Solved:
 
 
 @dataclass(frozen=True)
+class Eliminated:
+    """What is left of the products when the columns of W are eliminated, with unit columns.
+
+    The first entry is that of all blocks, the others are without one block after another. `fits`
+    (blocks + 1, parameters, further + 1) are the fits of the further columns and of y by W, and
+    `rest` (blocks + 1, further + 1, further + 1) the products of their residuals.
+    """
+
+    fits: Array
+    rest: Array
+
+
+@dataclass(frozen=True)
 class Products:
     """A'A of each block (blocks, columns + 1, columns + 1), with A = [W, further columns, y].
 
@@ -47,37 +63,53 @@ class Products:
         parts = (A[a:b].reshape(-1, A.shape[2]) for a, b in pairwise(edges.tolist()))
         return cls(np.array([part.T @ part for part in parts]), parameters)
 
-    def independent(self, columns: list[int]) -> list[int]:
-        """Those of the further columns that are no combination of W and of those before them."""
-        total = self.blocks.sum(axis=0)
-        kept = list(range(self.parameters))
-        for i in columns:
-            size = total[i, i]
-            with_kept = total[kept, i]
-            explained = np.linalg.lstsq(total[np.ix_(kept, kept)], with_kept, rcond=1e-14)[0]
-            if size > 0.0 and size - with_kept @ explained > NEW * size:
-                kept.append(i)
-        return kept[self.parameters :]
+    @cached_property
+    def scale(self) -> Array:
+        """What gives the columns unit length (columns + 1); 0 for a column of zeros, 1 for y."""
+        size = np.sqrt(np.diag(self.blocks.sum(axis=0))[:-1])
+        return np.append(np.where(size > 0.0, 1.0 / np.where(size > 0.0, size, 1.0), 0.0), 1.0)
 
-    def solved(self, further: list[int]) -> Solved | None:
-        """The fit of W and of these further columns; None if they are not determined."""
-        columns = [*range(self.parameters), *further, -1]
-        blocks = self.blocks[:, columns][:, :, columns]
-        total = blocks.sum(axis=0)
-        size = np.sqrt(np.diag(total)[:-1])
-        if not np.all(size > 0.0):
+    @cached_property
+    def eliminated(self) -> Eliminated | None:
+        """The products without W; None if the rows do not determine its parameters."""
+        p, scaled = self.parameters, self.blocks * self.scale[:, None] * self.scale
+        total = scaled.sum(axis=0)
+        if not self.scale[:p].all() or not np.linalg.cond(total[:p, :p]) < SINGULAR:
             return None
-        scale = np.append(1.0 / size, 1.0)
-        scaled = total * scale[:, None] * scale
-        if not np.linalg.cond(scaled[:-1, :-1]) < SINGULAR:
-            return None
-        rest = scaled - blocks * scale[:, None] * scale
+        systems = np.concatenate((total[None], total - scaled))
         try:
-            whole = np.linalg.solve(scaled[:-1, :-1], scaled[:-1, -1])
-            without = np.linalg.solve(rest[:, :-1, :-1], rest[:, :-1, -1:])[:, :, 0]
+            fits = np.linalg.solve(systems[:, :p, :p], systems[:, :p, p:])
         except np.linalg.LinAlgError:
             return None
-        return Solved(whole / size, without / size)
+        rest = systems[:, p:, p:] - systems[:, p:, :p] @ fits
+        return Eliminated(fits, rest)
+
+    def independent(self, columns: list[int]) -> list[int]:
+        """Those of the further columns that are no combination of W and of those before them."""
+        if self.eliminated is None:
+            return []
+        rest, kept = self.eliminated.rest[0].copy(), []
+        for column in columns:
+            i = column - self.parameters
+            if rest[i, i] > NEW:
+                kept.append(column)
+                rest -= np.outer(rest[:, i], rest[i]) / rest[i, i]
+        return kept
+
+    def solved(self, further: list[int]) -> Solved | None:
+        """The fit of W and of these independent columns; None if they are not determined."""
+        if self.eliminated is None:
+            return None
+        fits, rest = self.eliminated.fits, self.eliminated.rest
+        chosen = [column - self.parameters for column in further]
+        try:
+            own = np.linalg.solve(rest[:, chosen][:, :, chosen], rest[:, chosen, -1:])
+        except np.linalg.LinAlgError:
+            return None
+        of_W = fits[:, :, -1:] - fits[:, :, chosen] @ own
+        found = np.concatenate((of_W, own), axis=1)[:, :, 0]
+        found *= self.scale[[*range(self.parameters), *further]]
+        return Solved(found[0], found[1:])
 
 
 def jackknifed(deviations: Array) -> Array:

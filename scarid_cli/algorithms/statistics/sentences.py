@@ -1,4 +1,4 @@
-"""The wording of a verdict: which estimates change, and which friction the model lacks."""
+"""The wording of a verdict: which estimates change, and what the model lacks."""
 
 from __future__ import annotations
 
@@ -6,15 +6,19 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import (
+from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
+    DRIFT,
     LOAD,
     OFFSET,
-    REVERSALS,
+    QUADRATIC,
+    SATURATION,
+    SPRING,
     STRIBECK,
-    Effect,
 )
+from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.algorithms.statistics.effects import REVERSALS, Effect
+from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS
 from scarid_cli.arrays import Array, Marks
 
 NAMED = 2  # estimates whose change is written out
@@ -23,7 +27,14 @@ ADVICE = {
     ASYMMETRY: "friction differs between the two directions (add the terms viscous-forward and "
     "viscous-backward to the robot)",
     STRIBECK: "friction decreases with speed (add Stribeck friction with --estimator separable)",
+    QUADRATIC: "friction is not proportional to the speed, for which there is no term",
     LOAD: "friction grows with the torque that a joint transmits, for which there is no term",
+    SPRING: "something pulls on a joint as a spring or a cable does, for which there is no term",
+    SATURATION: "the logged torque is not proportional to the torque, as when a motor saturates",
+    DRIFT: "the torque drifts during the log",
+    ENCODERS: "a position has an error that depends on the angle (an offset of the zero, or an "
+    "eccentric encoder)",
+    ELASTICITY: "a transmission yields to the torque (an elastic gear or belt behind the encoder)",
     REVERSALS: "friction near reversals differs from the model (--drop-slow leaves more of the "
     "slow rows out)",
 }
@@ -53,8 +64,8 @@ def errors_in(size: float) -> str:
     return f"{size:.2g} standard errors" if size < 1000.0 else "over 1000 standard errors"
 
 
-def friction_notes(names: Sequence[str], diagnostics: Diagnostics) -> list[str]:
-    """The term of friction that the model lacks most clearly, and whose intervals are wider."""
+def notes_of(names: Sequence[str], diagnostics: Diagnostics) -> list[str]:
+    """What the model lacks most clearly, and the parameters whose intervals are wider for it."""
     scatter = diagnostics.scatter[: len(names)]
     found = [
         effect

@@ -10,10 +10,11 @@ import numpy as np
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import PARALLEL, SIGNALS, Effect
+from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
 from scarid_cli.algorithms.statistics.jackknife import quantile
+from scarid_cli.algorithms.statistics.parallel import SIGNALS
 from scarid_cli.algorithms.statistics.residuals import JointResidual
-from scarid_cli.algorithms.statistics.sentences import changed, friction_notes, listed, percents
+from scarid_cli.algorithms.statistics.sentences import changed, listed, notes_of, percents
 from scarid_cli.arrays import Array
 
 GOOD, DOUBTFUL, NOT_IDENTIFIABLE = "good", "doubtful", "not identifiable"
@@ -83,7 +84,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
         *_vague(evidence),
         *_impossible(evidence, robot),
     ]
-    notes = friction_notes(evidence.names, evidence.diagnostics)
+    notes = notes_of(evidence.names, evidence.diagnostics)
     return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes))
 
 
@@ -135,7 +136,7 @@ def _biased(evidence: Evidence) -> list[str]:
         advice = "" if evidence.treatment.align else "; --align fits a delay"
         reasons.append(
             f"{APART}, or a joint is flexible: with a delay "
-            f"and the second derivative of the inertial torque fitted as well, {moved}{advice}"
+            f"and the second derivative of the torque fitted as well, {moved}{advice}"
         )
     return reasons
 

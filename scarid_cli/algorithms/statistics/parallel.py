@@ -1,0 +1,147 @@
+"""The rows behind one low-pass, with alternatives for the positions and their derivatives.
+
+The regressor is computed again from differences of the logged positions, and passes the same
+zero-phase window as the torques. Beside it stand the columns of what may be wrong with the
+signals: a delay, a low-pass of the logged torque, errors of the encoders, elastic transmissions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.rows import Rows, delay_column, runs
+from scarid_cli.algorithms.statistics.alternatives import WINDOW, Model, diagonal
+from scarid_cli.algorithms.statistics.positions import (
+    Sensitivities,
+    elastic_columns,
+    encoder_columns,
+)
+from scarid_cli.arrays import Array, Numbers
+
+SIGNALS, ENCODERS, ELASTICITY = "signals", "encoders", "elasticity"
+STEP = 0.025  # s between the rows that are kept: the window passes hardly anything above 10 Hz
+EDGE = 4  # samples at both ends of a run where the differences are not central
+
+
+@dataclass(frozen=True)
+class Smoothed:
+    """Rows A = [W, further columns, y] (samples, joints, columns + 1) behind the Hann window.
+
+    `at` (samples) are their numbers in the record, and `centres` their places among the rows.
+    `places` are the numbers of the further columns of each alternative.
+    """
+
+    A: Array
+    at: Numbers
+    centres: Numbers
+    places: dict[str, list[int]]
+
+
+def smoothed(rows: Rows, model: Model | None, estimates: Array, own: int) -> Smoothed | None:
+    """The rows behind one zero-phase Hann window, with W from differences of the position.
+
+    The further columns of the signals are, for each joint, the first derivative of the torque of
+    inertia, the second one of the torque that it transmits and, unless a delay is fitted, the first
+    one of the other torques; those of the encoders and of elastic transmissions are in
+    positions.py. Without a model the columns of W are only smoothed, and there are no further
+    columns. None if every run between gaps is shorter than the window.
+    """
+    taps = np.hanning(2 * round(0.5 * WINDOW / rows.h) + 3)[1:-1] if rows.h > 0.0 else np.ones(1)
+    window = Window(taps / taps.sum(), max(1, int(STEP / rows.h + 1e-9)) if rows.h > 0.0 else 1)
+    found: list[tuple[dict[str, Array], Numbers]] = []
+    for run in runs(rows.at):
+        centres = window.centres(run.stop - run.start)
+        if len(centres):
+            columns = _columns(rows.part(run), model, estimates, own, window)
+            found.append((columns, run.start + centres))
+    if not found:
+        return None
+    sizes = {name: columns.shape[2] for name, columns in found[0][0].items()}
+    A = np.concatenate([np.concatenate([*x.values()], axis=2) for x, _ in found])
+    centres = np.concatenate([x for _, x in found])
+    return Smoothed(A, rows.at[centres], centres, dict(_places(sizes)))
+
+
+def _places(sizes: dict[str, int]) -> Iterator[tuple[str, list[int]]]:
+    """The places of the columns of each alternative, whose names and sizes are in this order."""
+    start = 0
+    for name, size in sizes.items():
+        if name in (SIGNALS, ENCODERS, ELASTICITY):
+            yield name, list(range(start, start + size))
+        start += size
+
+
+@dataclass(frozen=True)
+class Window:
+    """A zero-phase window of these taps, of whose output every `step`-th row is kept."""
+
+    taps: Array
+    step: int
+
+    def centres(self, samples: int) -> Numbers:
+        """The samples of a run at which the window is inside, away from its edges."""
+        edge = len(self.taps) // 2 + EDGE
+        return np.arange(edge, samples - edge, self.step)
+
+    def passed(self, x: Array) -> Array:
+        """x (samples, ...) of a run behind the window, at its centres."""
+        last = len(x) - len(self.taps) + 1 - EDGE
+        return np.asarray(
+            sum(tap * x[k + EDGE : k + last : self.step] for k, tap in enumerate(self.taps))
+        )
+
+
+def _columns(
+    rows: Rows, model: Model | None, estimates: Array, own: int, window: Window
+) -> dict[str, Array]:
+    """The columns of one run behind the window, by name, in the order of A."""
+    y = window.passed(rows.y[:, :, None])
+    if model is None:
+        return {"W": window.passed(rows.W), "y": y}
+    q, h, theta = rows.motion[0], rows.h, estimates[:own]
+    dq, ddq = differences(q, h)
+    W = model.regressor(q, dq, ddq)
+    carried = np.flatnonzero(model.transmits)
+    transmitted = W[:, :, carried] @ theta[carried]
+    rest = model.regressor(q, dq, np.zeros_like(ddq)) @ theta
+    moved = replace(rows, motion=np.stack((q, dq, ddq, rows.motion[3])))
+    first = np.gradient(W @ theta - rest, h, axis=0)
+    speed = np.gradient(transmitted, h, axis=0)
+    curvature = np.gradient(speed, h, axis=0)
+    signals = [diagonal(first), diagonal(curvature)]
+    if rows.W.shape[2] > own:
+        delay = delay_column(moved, W @ theta)
+        W = np.concatenate((W, delay[:, :, None]), axis=2)
+    else:
+        signals.append(diagonal(delay_column(moved, rest)))
+    motion = _turned(window.passed(np.stack((q, dq, ddq)).T))
+    torque = _turned(window.passed(np.stack((transmitted.T, speed.T, curvature.T)).T))
+    sensitivities = Sensitivities.of(model, theta, motion)
+    return {
+        "W": window.passed(W),
+        SIGNALS: window.passed(np.concatenate(signals, axis=2)),
+        ENCODERS: encoder_columns(model, sensitivities, motion),
+        ELASTICITY: elastic_columns(sensitivities, torque),
+        "y": y,
+    }
+
+
+def _turned(values: Array) -> Array:
+    """Values (samples, joints, 3) as (3, joints, samples)."""
+    return np.ascontiguousarray(values.T)
+
+
+def differences(q: Array, h: float) -> tuple[Array, Array]:
+    """Velocity and acceleration by central differences over five samples (joints, samples).
+
+    They are exact for polynomials of degree four and five; two samples at both ends are 0.
+    """
+    dq, ddq = np.zeros_like(q), np.zeros_like(q)
+    sides, far = q[:, 3:-1], q[:, 4:]
+    before, first = q[:, 1:-3], q[:, :-4]
+    dq[:, 2:-2] = (8.0 * (sides - before) - (far - first)) / (12.0 * h)
+    ddq[:, 2:-2] = (16.0 * (sides + before) - (far + first) - 30.0 * q[:, 2:-2]) / (12.0 * h**2)
+    return dq, ddq

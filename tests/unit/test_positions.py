@@ -1,0 +1,107 @@
+"""Positions that are not those of the joints: eccentric encoders and elastic transmissions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from unit.regressions import estimated
+
+from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.regression.rows import rows_of
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
+from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS
+from scarid_cli.algorithms.statistics.positions import (
+    Sensitivities,
+    elastic_columns,
+    encoder_columns,
+)
+from scarid_cli.arrays import Array
+
+ARM = load("planar2-gravity")
+MODEL = Model(ARM, list(range(len(ARM.parameters))))
+H = 0.005  # s
+SINES = [[(1.0, 0.31, 0.0), (0.4, 0.83, 1.0)], [(0.8, 0.23, 2.0), (0.3, 1.1, 0.5)]]
+
+
+def motion(samples: int = 6000) -> Array:
+    """Positions, velocities and accelerations (3, joints, samples) of sums of sines."""
+    t = np.arange(samples) * H
+    found = np.zeros((3, 2, samples))
+    for joint, sines in enumerate(SINES):
+        for size, frequency, phase in sines:
+            w = 2.0 * np.pi * frequency
+            found[0, joint] += size * np.sin(w * t + phase)
+            found[1, joint] += size * w * np.cos(w * t + phase)
+            found[2, joint] -= size * w * w * np.sin(w * t + phase)
+    return found
+
+
+def torques(at: Array) -> Array:
+    """The torques (samples, joints) of the links."""
+    return MODEL.link_torques(at, ARM.apriori)
+
+
+def with_derivatives(q: Array) -> Array:
+    """Positions (joints, samples) and their first two derivatives by central differences."""
+    dq = np.gradient(q, H, axis=1)
+    return np.stack((q, dq, np.gradient(dq, H, axis=1)))
+
+
+def test_columns_of_encoders_are_the_change_that_their_errors_make() -> None:
+    """Both sides, with the error and its derivatives in closed form, of joint 2."""
+    true, size = motion(400), 1e-6
+    q, dq, ddq = true[:, 1]
+    cosine = np.stack((np.cos(q), -np.sin(q) * dq, -np.sin(q) * ddq - np.cos(q) * dq**2))
+    up, down = true.copy(), true.copy()
+    up[:, 1] += size * cosine
+    down[:, 1] -= size * cosine
+    expected = (torques(up) - torques(down)) / (2.0 * size)
+    found = encoder_columns(MODEL, Sensitivities.of(MODEL, ARM.apriori, true), true)
+    assert found.shape == (400, 2, 6)  # an offset, a sine and a cosine of each joint
+    np.testing.assert_allclose(found[:, :, 5], expected, atol=1e-3 * np.abs(expected).max())
+
+
+def test_columns_of_elastic_transmissions_are_the_change_that_yielding_makes() -> None:
+    """A joint behind an encoder on its motor is where the torque has turned it to."""
+    true, stiffness = motion(400), 1e6
+    carried = with_derivatives(torques(true).T)
+    yielding = true.copy()
+    yielding[:, 0] += carried[:, 0] / stiffness
+    expected = (torques(yielding) - torques(true)) * stiffness
+    found = elastic_columns(Sensitivities.of(MODEL, ARM.apriori, true), carried)
+    np.testing.assert_allclose(found[:, :, 0], expected, atol=2e-3 * np.abs(expected).max())
+
+
+def diagnosed(logged: Array, true: Array) -> tuple[Diagnostics, Array]:
+    """The diagnostics of logged motions of an arm that moves truly so, and how far off it is."""
+    tau = ARM.torques(ARM.regressor(*true), ARM.apriori)
+    noise = 0.02 * np.random.default_rng(0).standard_normal(tau.shape)
+    rows = rows_of(ARM, np.stack((*logged, tau + noise)), np.arange(tau.shape[1]), H)
+    fit = estimated(ls.Estimator(), rows)
+    found = diagnose(rows, fit, len(ARM.parameters), model=MODEL)
+    return found, np.abs(fit.fit.estimates - ARM.apriori)
+
+
+def eccentric(true: Array) -> Array:
+    """Encoders whose error is 5 mrad times the sine of the position."""
+    return with_derivatives(true[0] + 0.005 * np.sin(true[0]))
+
+
+def elastic(true: Array) -> Array:
+    """Motors that are ahead of their links by 1 mrad per N m."""
+    return with_derivatives(true[0] + 0.001 * torques(true).T)
+
+
+@pytest.mark.parametrize(("seen", "name"), [(eccentric, ENCODERS), (elastic, ELASTICITY)])
+def test_intervals_allow_for_positions_that_are_off(
+    seen: Callable[[Array], Array], name: str
+) -> None:
+    true = motion()
+    found, off = diagnosed(seen(true), true)
+    assert next(effect for effect in found.effects if effect.name == name).significant()
+    assert np.any(off > 3.0 * found.scatter)
+    assert np.all(off < 3.0 * found.errors)
