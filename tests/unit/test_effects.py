@@ -20,7 +20,6 @@ from scarid_cli.algorithms.statistics.alternatives import (
     DRIFT,
     LOAD,
     OFFSET,
-    QUADRATIC,
     SATURATION,
     SPRING,
     STRIBECK,
@@ -118,11 +117,6 @@ def loaded(motion: Array) -> Array:
     return np.asarray(0.05 * np.abs(AXIS.apriori[0] * ddq) * np.sign(dq))
 
 
-def quadratic(motion: Array) -> Array:
-    """Friction of the air, 20 N at 1 m/s."""
-    return np.asarray(20.0 * motion[1] * np.abs(motion[1]))
-
-
 def pulled(motion: Array) -> Array:
     """A cable that pulls with 20 N/m."""
     return 20.0 * motion[0]
@@ -139,7 +133,6 @@ def saturated(motion: Array) -> Array:
     [
         (stribeck, STRIBECK),
         (loaded, LOAD),
-        (quadratic, QUADRATIC),
         (pulled, SPRING),
         (saturated, SATURATION),
     ],

@@ -2,7 +2,7 @@
 
 A bias matters as far as it moves the estimates. Therefore the estimation is repeated with
 alternatives to what it takes for granted. Those of this module concern the torques: that friction
-has no offset, asymmetry, Stribeck effect or other dependence on speed and load, that nothing else
+has no offset, asymmetry, Stribeck effect or dependence on the load, that nothing else
 pulls on the joints, and that the logged torques are proportional to the real ones. Those of
 parallel.py concern the positions and their derivatives.
 """
@@ -20,9 +20,8 @@ from scarid_cli.algorithms.robots.terms import Mass, Term
 from scarid_cli.arrays import Array, Marks
 
 OFFSET, ASYMMETRY, STRIBECK = "offset", "asymmetry", "Stribeck"
-QUADRATIC, LOAD = "quadratic", "load"
-SPRING, SATURATION, DRIFT = "spring", "saturation", "drift"
-TORQUES = (OFFSET, ASYMMETRY, STRIBECK, QUADRATIC, LOAD, SPRING, SATURATION, DRIFT)
+LOAD, SPRING, SATURATION, DRIFT = "load", "spring", "saturation", "drift"
+TORQUES = (OFFSET, ASYMMETRY, STRIBECK, LOAD, SPRING, SATURATION, DRIFT)
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
 FADED = 0.3  # of the root-mean-square velocity: where the Stribeck effect has decayed
 BESIDE_FRICTION = ("offset", "stribeck")  # terms that are not friction alone, but go with it
@@ -58,7 +57,7 @@ class Model:
 
 
 def torque_columns(rows: Rows, model: Model | None, estimates: Array) -> dict[str, Array]:
-    """Further columns (samples, joints, joints) of each alternative for the torques.
+    """Further columns (samples, joints, columns) of each alternative for the torques.
 
     Friction of gears grows with the torque that they transmit, which only a model can tell.
     """
@@ -70,8 +69,7 @@ def torque_columns(rows: Rows, model: Model | None, estimates: Array) -> dict[st
         OFFSET: diagonal(np.ones_like(v)),
         ASYMMETRY: diagonal(np.abs(v)),
         STRIBECK: diagonal(np.sign(v) * np.exp(-((v / fade) ** 2))),
-        QUADRATIC: diagonal(v * np.abs(v)),
-        SPRING: diagonal(q - q.mean(axis=0)),
+        SPRING: np.concatenate((diagonal(np.ones_like(q)), diagonal(q)), axis=2),
         SATURATION: diagonal(predicted * np.abs(predicted)),
         DRIFT: diagonal(time - time.mean(axis=0)),
     }

@@ -11,7 +11,6 @@ from scarid_cli.algorithms.statistics.alternatives import (
     DRIFT,
     LOAD,
     OFFSET,
-    QUADRATIC,
     SATURATION,
     SPRING,
     STRIBECK,
@@ -27,7 +26,6 @@ ADVICE = {
     ASYMMETRY: "friction differs between the two directions (add the terms viscous-forward and "
     "viscous-backward to the robot)",
     STRIBECK: "friction decreases with speed (add Stribeck friction with --estimator separable)",
-    QUADRATIC: "friction is not proportional to the speed, for which there is no term",
     LOAD: "friction grows with the torque that a joint transmits, for which there is no term",
     SPRING: "something pulls on a joint as a spring or a cable does, for which there is no term",
     SATURATION: "the logged torque is not proportional to the torque, as when a motor saturates",
