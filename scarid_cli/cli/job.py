@@ -15,9 +15,10 @@ import click
 from scarid_cli import __version__
 from scarid_cli.cli.chain import Place
 from scarid_cli.cli.command_line import command_line
+from scarid_cli.cli.remarks import Remarks
 from scarid_cli.cli.robots import another, misfit
 from scarid_cli.cli.selecting import selection_of
-from scarid_cli.cli.terminal import is_terminal, styled
+from scarid_cli.cli.terminal import is_terminal
 from scarid_cli.errors import CORRECT, TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
@@ -54,6 +55,7 @@ class Job:
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
         self.notes: list[str] = []
+        self.remarks = Remarks(place.say)
         self._selection = selection_of(options)
         self._offers = "missing" in options  # whether the command has --missing
         self._lacking: list[tuple[str, Lacking]] = []
@@ -213,7 +215,8 @@ class Job:
         """The table, reported with --verbose."""
         if self._verbose:
             rate = f"{1.0 / table.period:.6g} Hz, " if table.period else ""
-            self.say(f"{table.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}")
+            text = f"{table.name}: {table.meta.kind}, {rate}columns {', '.join(table.columns)}"
+            self.place.say(printable(text))
         return table
 
     def described(self, robot: str) -> str:
@@ -262,18 +265,17 @@ class Job:
         return replace(table, meta=replace(table.meta, history=(*table.meta.history, entry)))
 
     def say_notes(self) -> None:
-        """Report what was noted on the inputs, once no error can be the only line any more."""
+        """Report what was noted on the inputs."""
         while self.notes:
             self.say(self.notes.pop(0))
 
     def say(self, message: str, verdict: str = "") -> None:
-        """Report a line to the user, on standard error.
+        """Report a line to the user, on standard error, once the run has ended well.
 
         On a terminal it begins in the colour of the `verdict`, if it begins with one.
         """
         if not self.quiet:
-            start = styled(verdict, verdict, 2) if verdict else ""
-            self.place.say(f"{start}{printable(message.removeprefix(verdict))}")
+            self.remarks.keep(message, verdict)
 
 
 @contextlib.contextmanager
@@ -284,6 +286,7 @@ def job(options: dict[str, Any]) -> Iterator[Job]:
         with all_or_none(run.outputs):
             yield run
             run.say_notes()
+        run.remarks.tell()
     finally:
         for source in run.sources:
             source.close()

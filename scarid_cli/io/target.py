@@ -39,7 +39,6 @@ class Target:
         elif _is_stdout(path):
             self._fd = os.dup(1)
         elif is_regular(self._place):
-            self._remove_abandoned()
             self._part = self._place.with_name(f".{self._place.name}.{os.getpid()}{PART}")
             self._fd = self._open(self._part, os.O_CREAT | os.O_TRUNC)
         else:
@@ -97,6 +96,8 @@ class Target:
             self._close()
         except OSError as error:
             raise self._failure(error) from None
+        if self._put:
+            self._remove_abandoned()
         self._forget()
 
     def discard(self) -> None:

@@ -51,7 +51,10 @@ def test_an_output_that_replaces_a_file_keeps_its_mode_and_follows_a_link(
 
 
 def test_the_rest_of_a_killed_run_is_told_and_removed(shell: Run, tmp_path: Path) -> None:
-    """That of a run which is still there is left alone, and so is any other file."""
+    """That of a run which is still there is left alone, and so is any other file.
+
+    A run that is refused says nothing but why.
+    """
     mine = tmp_path / f".a.csv.{os.getpid()}.part"
     others = [mine, tmp_path / ".a.csv.x.part", tmp_path / ".b.csv.999999999.part"]
     abandoned = tmp_path / ".a.csv.999999999.part"
@@ -60,6 +63,10 @@ def test_the_rest_of_a_killed_run_is_told_and_removed(shell: Run, tmp_path: Path
         path.write_text("a part")
         os.utime(path, (0.0, 0.0))
     young.write_text("perhaps of a run on another machine")
+    failing = shell("printf 't,q1\\n0,1\\n1,x\\n' | scarid filter -o a.csv")
+    assert failing.status == 65
+    assert failing.err.count("\n") == 1
+    assert abandoned.exists()
     result = shell("scarid trajgen --duration 3 -q -o a.csv")
     assert result.status == 0
     assert ".a.csv.999999999.part" in result.err

@@ -23,6 +23,7 @@ from faults.trials import (
     REFUSAL,
     REFUSED,
     RIGHT,
+    UNNOTICED,
     Trial,
     folder_of,
     removed,
@@ -90,22 +91,26 @@ def interrupted(count: int) -> Iterator[tuple[str, str]]:
     for k in range(count):
         form = ("csv", "arrow", "parquet")[k % 3]
         if form not in rights:
-            _piped(form, folder, None)
+            assert not any(_piped(form, folder, None)[0])
             rights[form] = (folder / "out.parquet").read_bytes()
         stage, number = int(rng.integers(3)), SIGNALS[int(rng.integers(len(SIGNALS)))]
         moment = float(rng.uniform(0.0, 1.5))
         (folder / "out.parquet").unlink(missing_ok=True)
-        statuses = _piped(form, folder, (stage, number, moment))
+        statuses, errors = _piped(form, folder, (stage, number, moment))
+        result = _of_processes(folder, statuses, errors, (stage, number))
         yield (
             f"{form}, {number.name} to {STAGES[stage][0]} after {moment:.2f} s",
-            _judged(folder, rights[form], statuses, form, number),
+            result or _of_output(folder, rights[form], statuses, (form, stage, number)),
         )
         for part in folder.glob(".*.part"):
             part.unlink()
     removed(folder)
 
 
-def _piped(form: str, folder: Path, hit: tuple[int, signal.Signals, float] | None) -> list[int]:
+def _piped(
+    form: str, folder: Path, hit: tuple[int, signal.Signals, float] | None
+) -> tuple[list[int], list[bytes]]:
+    """The status of each stage, and what it said."""
     processes: list[subprocess.Popen[bytes]] = []
     for i, words in enumerate(STAGES):
         last = i == len(STAGES) - 1
@@ -121,27 +126,39 @@ def _piped(form: str, folder: Path, hit: tuple[int, signal.Signals, float] | Non
         time.sleep(hit[2])
         if processes[hit[0]].poll() is None:
             processes[hit[0]].send_signal(hit[1])
-    for process in processes:
-        assert process.stderr
-        process.stderr.read()
-    return [process.wait() for process in processes]
+    errors = [process.stderr.read() for process in processes if process.stderr]
+    return [process.wait() for process in processes], errors
 
 
-def _judged(folder: Path, right: bytes, statuses: list[int], form: str, number: int) -> str:
-    out = folder / "out.parquet"
-    if any(status == 1 for status in statuses):
-        return EXIT_1
-    if any(status < 0 and -status not in (*SIGNALS, signal.SIGPIPE) for status in statuses):
-        return CRASHED
-    if list(folder.glob(".*.part")) and number not in (signal.SIGKILL, signal.SIGHUP):
-        return LEFT
+def _of_processes(
+    folder: Path, statuses: list[int], errors: list[bytes], hit: tuple[int, signal.Signals]
+) -> str:
+    """What must not be of how the stages ended; nothing if all is well.
+
+    Only the stage that was hit may end by the signal, and others because of it.
+    """
+    expected = {0, *REFUSED, -signal.SIGPIPE}
+    for i, status in enumerate(statuses):
+        if status not in expected | ({-hit[1]} if i == hit[0] else set()):
+            return CRASHED if status < 0 else EXIT_1
+    if any(error.count(b"\n") > 1 for error in errors):
+        return LINES
+    by_hand = hit[1] in (signal.SIGKILL, signal.SIGHUP) and hit[0] == len(STAGES) - 1
+    return LEFT if list(folder.glob(".*.part")) and not by_hand else ""
+
+
+def _of_output(
+    folder: Path, right: bytes, statuses: list[int], hit: tuple[str, int, signal.Signals]
+) -> str:
+    """The outcome that the output shows; without one, a stage must have failed at the end."""
+    out, (form, stage, number) = folder / "out.parquet", hit
     if not out.exists():
-        return KILLED
+        return KILLED if statuses[-1] else OTHER
     if out.read_bytes() == right:
         return RIGHT
     # The end of CSV is not marked: a stage that could not say that it was killed leaves a short one.
     silent = form == "csv" and number in (signal.SIGKILL, signal.SIGHUP)
-    return KILLED if silent else OTHER
+    return UNNOTICED if silent and stage < len(STAGES) - 1 else OTHER
 
 
 def together(count: int) -> Iterator[tuple[str, str]]:

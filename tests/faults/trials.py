@@ -56,25 +56,25 @@ class Ended:
 
 def ended(trial: Trial) -> Ended:
     """Run the command in a fork of this process, which has imported everything already."""
-    error = trial.folder / ".error"
+    read, write = os.pipe()  # a file would fall under the limits of a trial
     number = os.fork()
     if not number:
-        _child(trial, error)
+        _child(trial, write)
+    os.close(write)
+    with open(read, errors="replace") as error:  # noqa: PTH123 (a descriptor)
+        text = error.read()
     _, status, usage = os.wait4(number, 0)
-    code = os.waitstatus_to_exitcode(status)
-    text = error.read_text(errors="replace")
-    error.unlink()
-    return Ended(code, text, usage.ru_maxrss / 1024.0)
+    return Ended(os.waitstatus_to_exitcode(status), text, usage.ru_maxrss / 1024.0)
 
 
-def _child(trial: Trial, error: Path) -> None:
+def _child(trial: Trial, error: int) -> None:
     from scarid_cli.__main__ import main
 
     status = 1
     try:
         os.chdir(trial.folder)
-        for fd, path, flags in ((0, os.devnull, os.O_RDONLY), (1, STDOUT, os.O_CREAT | os.O_WRONLY | os.O_TRUNC),
-                                (2, str(error), os.O_CREAT | os.O_WRONLY | os.O_TRUNC)):  # fmt: skip
+        os.dup2(error, 2)
+        for fd, path, flags in ((0, os.devnull, os.O_RDONLY), (1, STDOUT, os.O_CREAT | os.O_WRONLY | os.O_TRUNC)):  # fmt: skip
             os.dup2(os.open(path, flags, 0o600), fd)
         # Those of this process may be kept by pytest.
         sys.stdout, sys.stderr = (os.fdopen(fd, "w", closefd=False) for fd in (1, 2))

@@ -27,7 +27,9 @@ def decimated(rows: Rows, factor: int) -> Rows:
     samples.
     """
     if factor >= max(rows.samples, 2):
-        raise TooShort(f"one row in {factor} of a log of {rows.samples} is none; give a longer log")
+        raise TooShort(
+            f"one row in {factor:.9g} of a log of {rows.samples} is none; give a longer log"
+        )
     sections = cheby1(ORDER, RIPPLE, CUTOFF_OF_NYQUIST / factor, output="sos")
     parts = []
     for run in runs(rows.at):
