@@ -16,7 +16,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     STRIBECK,
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import REVERSALS, Effect
+from scarid_cli.algorithms.statistics.effects import CERTAIN, REVERSALS, Effect
 from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS
 from scarid_cli.arrays import Array, Marks
 
@@ -63,16 +63,20 @@ def errors_in(size: float) -> str:
 
 
 def notes_of(names: Sequence[str], diagnostics: Diagnostics) -> list[str]:
-    """What the model lacks most clearly, and the parameters whose intervals are wider for it."""
+    """What the model lacks most clearly, and the parameters whose intervals are wider for it.
+
+    With so many alternatives, one is significant by chance more often than a single one would be.
+    """
+    level = CERTAIN / max(1, len(diagnostics.effects))
     scatter = diagnostics.scatter[: len(names)]
     found = [
         effect
         for effect in diagnostics.effects
-        if effect.name in ADVICE and effect.significant() and np.any(_wide(effect, scatter))
+        if effect.name in ADVICE and effect.significant(level) and np.any(_wide(effect, scatter))
     ]
     if not found:
         return []
-    best = max(found, key=lambda effect: float(np.max(np.abs(effect.bias) / scatter)))
+    best = max(found, key=lambda effect: float(np.max(np.abs(effect.apart) / scatter)))
     wide = [name for name, x in zip(names, _wide(best, scatter), strict=True) if x]
     allow = "interval" if len(wide) == 1 else "intervals"
     verb = "allows" if len(wide) == 1 else "allow"
@@ -80,8 +84,8 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics) -> list[str]:
 
 
 def _wide(effect: Effect, scatter: Array) -> Marks:
-    """Which parameters have a bias that exceeds their errors."""
-    return np.asarray(np.abs(effect.bias) > scatter)
+    """Which parameters have a bias that exceeds their errors, because of this alternative alone."""
+    return np.asarray(np.minimum(np.abs(effect.bias), np.abs(effect.apart)) > scatter)
 
 
 def percents(parts: Iterable[float]) -> str:
