@@ -7,7 +7,6 @@ import shlex
 import shutil
 from pathlib import Path
 
-import pyarrow.parquet as pq
 from steps import places
 from steps.commands import Result, failure, of_each, run
 from steps.plan import Log, Plan, Robot
@@ -57,7 +56,7 @@ def _identified(
 
 def _facts(parameters: Path) -> Result:
     """What the tables of the fleet say of an identification."""
-    table = pq.read_table(parameters)
+    table = places.columns(parameters)
     extra = json.loads(table.schema.metadata[b"scarid"])["extra"]
     found = {key: extra.get(key) for key in FACTS}
     found["reasons"] = "; ".join(extra.get("reasons", []))

@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 from steps.plan import Log, Plan, Robot
 
 MADE = {
@@ -40,6 +42,12 @@ def table(folder: Path, log: Log) -> Path:
     path = folder / f"{log.name}.parquet"
     path.parent.mkdir(parents=True, exist_ok=True)
     return path
+
+
+def columns(path: Path) -> pa.Table:
+    """A table that a command wrote; `pyarrow.parquet.read_table` would import twice as much."""
+    with pq.ParquetFile(path) as file:
+        return file.read(use_threads=False)
 
 
 def results(plan: Plan, robot: Robot, step: str, group: str = "") -> Path:

@@ -7,7 +7,6 @@ import os
 import shlex
 from pathlib import Path
 
-import pyarrow.parquet as pq
 from steps import places
 from steps.commands import Result, failure, of_each, run
 from steps.plan import Log, Plan, Robot
@@ -49,7 +48,7 @@ def _validated(plan: Plan, robot: Robot, log: Log, motion: Path, names: list[str
     found: Result = {"status": 0, "reference": names[0], "messages": messages}
     if ran.status:
         return found | failure(ran)
-    table = pq.read_table(own / "metrics.parquet")
+    table = places.columns(own / "metrics.parquet")
     change = json.loads(table.schema.metadata[b"scarid"])["extra"].get("change", {})
     found |= {"change": change.get("verdict"), "change_reason": change.get("reason")}
     return found | {"r2_validated": table.column("r2").to_pylist()}
