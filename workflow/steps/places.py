@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,13 @@ def cleared(plan: Plan, robot: Robot, log: Log, step: str) -> Path:
         for part in folder.glob(f".{name}.*.part"):
             part.unlink()
     return folder
+
+
+def description(robot: Robot) -> Iterator[str | Path]:
+    """The name of the robot's description, and the file if it is one."""
+    yield robot.description
+    if (file := Path(robot.description)).is_file():
+        yield file
 
 
 def work(plan: Plan, robot: Robot, group: str, what: str) -> Path:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from steps import places
 from steps.commands import Result, failure, of_each, run
+from steps.journal import Journal
 from steps.plan import Log, Plan, Robot
 from steps.reference import others
 
@@ -20,9 +21,11 @@ def validate(plan: Plan, robot: Robot, group: str) -> None:
     identified = places.read(places.results(plan, robot, "identify", group))
     against = places.read(places.results(plan, robot, "reference"))
     motions = places.work(plan, robot, group, "motions")
+    logs = plan.logs(robot, group)
+    of_log = {log.name: result for log, result in zip(logs, identified, strict=True)}
 
-    def step(entry: tuple[Log, Result]) -> Result:
-        log, before = entry
+    def step(log: Log) -> Result:
+        before = of_log[log.name]
         places.cleared(plan, robot, log, "validate")
         if "estimates" not in before:
             return {"status": before["status"]}
@@ -30,8 +33,19 @@ def validate(plan: Plan, robot: Robot, group: str) -> None:
         found = _validated(plan, robot, log, places.table(motions, log), names) if names else OK
         return found | _page(plan, robot, log, _needs_a_look(log, before, found, against), found)
 
-    entries = list(zip(plan.logs(robot, group), identified, strict=True))
-    places.write(places.results(plan, robot, "validate", group), of_each(step, entries))
+    def resumed(log: Log) -> Result:
+        own = places.folder_of(plan, robot, log)
+        return journal.resumed(log, step, [own / name for name in places.MADE["validate"]], [])
+
+    inputs = [
+        places.results(plan, robot, "identify", group),
+        places.results(plan, robot, "reference"),
+    ]
+    options = [*places.description(robot), robot.pipe["validate"], plan.pages]
+    journal = Journal(places.work(plan, robot, group, "validate"), [*inputs, *options])
+    found = of_each(resumed, logs)
+    places.write(places.results(plan, robot, "validate", group), found)
+    journal.close()
 
 
 def _validated(plan: Plan, robot: Robot, log: Log, motion: Path, names: list[str]) -> Result:
