@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import shlex
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
-import pyarrow.parquet as pq
 from steps import places
 from steps.commands import Result, failure, of_each, run
+from steps.journal import Journal
 from steps.plan import Log, Plan, Robot
 from steps.prepare import prepare
 
@@ -37,9 +38,23 @@ def identify(plan: Plan, robot: Robot, group: str) -> None:
         measurement.unlink(missing_ok=True)
         return found
 
-    found = of_each(step, plan.logs(robot, group))
+    def resumed(log: Log) -> Result:
+        own = places.folder_of(plan, robot, log)
+        made = [own / name for name in places.MADE["identify"]]
+        return journal.resumed(log, step, made, [places.table(motions, log)])
+
+    journal = Journal(places.work(plan, robot, group, "identify"), _inputs(plan, robot))
+    found = of_each(resumed, plan.logs(robot, group))
     shutil.rmtree(measurements)
     places.write(places.results(plan, robot, "identify", group), found)
+    journal.close()
+
+
+def _inputs(plan: Plan, robot: Robot) -> Iterator[str | Path]:
+    """What the results depend on beside the logs."""
+    yield from places.description(robot)
+    yield from (robot.pipe[name] for name in ("convert", "resample", "differentiate", "identify"))
+    yield places.results(plan, robot, "tune")
 
 
 def _identified(
@@ -57,7 +72,7 @@ def _identified(
 
 def _facts(parameters: Path) -> Result:
     """What the tables of the fleet say of an identification."""
-    table = pq.read_table(parameters)
+    table = places.columns(parameters)
     extra = json.loads(table.schema.metadata[b"scarid"])["extra"]
     found = {key: extra.get(key) for key in FACTS}
     found["reasons"] = "; ".join(extra.get("reasons", []))

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 from steps.plan import Log, Plan, Robot
 
 MADE = {
@@ -30,6 +33,13 @@ def cleared(plan: Plan, robot: Robot, log: Log, step: str) -> Path:
     return folder
 
 
+def description(robot: Robot) -> Iterator[str | Path]:
+    """The name of the robot's description, and the file if it is one."""
+    yield robot.description
+    if (file := Path(robot.description)).is_file():
+        yield file
+
+
 def work(plan: Plan, robot: Robot, group: str, what: str) -> Path:
     """The folder of a group's tables of one kind, which do not stay."""
     return plan.out / "jobs" / robot.name / f"{group}.{what}"
@@ -40,6 +50,12 @@ def table(folder: Path, log: Log) -> Path:
     path = folder / f"{log.name}.parquet"
     path.parent.mkdir(parents=True, exist_ok=True)
     return path
+
+
+def columns(path: Path) -> pa.Table:
+    """A table that a command wrote; `pyarrow.parquet.read_table` would import twice as much."""
+    with pq.ParquetFile(path) as file:
+        return file.read(use_threads=False)
 
 
 def results(plan: Plan, robot: Robot, step: str, group: str = "") -> Path:

@@ -7,7 +7,6 @@ import os
 from pathlib import Path
 
 import numpy as np
-import pyarrow.parquet as pq
 from steps import places
 from steps.commands import Result, run
 from steps.plan import Log, Plan, Robot
@@ -127,7 +126,7 @@ def _compared(plan: Plan, robot: Robot, first: Log, logs: list[Log], messages: l
     if ran.status:
         messages.append(ran.error)
         return {"compared": {}}
-    table = pq.read_table(place)
+    table = places.columns(place)
     facts = json.loads(table.schema.metadata[b"scarid"])["extra"]["comparisons"]
     compared: dict[str, Result] = {
         paths[fact["table"]]: {

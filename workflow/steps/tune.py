@@ -7,7 +7,6 @@ import shutil
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-import pyarrow.parquet as pq
 from steps import places
 from steps.commands import Result, failure, run
 from steps.plan import TRIED, Log, Plan, Robot
@@ -74,7 +73,7 @@ def _tuned(robot: Robot, log: Log, measurement: Path, settings: Path) -> Result:
 
 def _cutoff(trials: Path) -> float | None:
     """The chosen cut-off [Hz], if the trials judge one by scatter."""
-    for row in pq.read_table(trials).to_pylist():
+    for row in places.columns(trials).to_pylist():
         if row["best"] and row["settings"].startswith("cutoff="):
             return float(row["settings"].split()[0].partition("=")[2])
     return None

@@ -7,9 +7,9 @@ import os
 import shlex
 from pathlib import Path
 
-import pyarrow.parquet as pq
 from steps import places
 from steps.commands import Result, failure, of_each, run
+from steps.journal import Journal
 from steps.plan import Log, Plan, Robot
 from steps.reference import others
 
@@ -21,9 +21,11 @@ def validate(plan: Plan, robot: Robot, group: str) -> None:
     identified = places.read(places.results(plan, robot, "identify", group))
     against = places.read(places.results(plan, robot, "reference"))
     motions = places.work(plan, robot, group, "motions")
+    logs = plan.logs(robot, group)
+    of_log = {log.name: result for log, result in zip(logs, identified, strict=True)}
 
-    def step(entry: tuple[Log, Result]) -> Result:
-        log, before = entry
+    def step(log: Log) -> Result:
+        before = of_log[log.name]
         places.cleared(plan, robot, log, "validate")
         if "estimates" not in before:
             return {"status": before["status"]}
@@ -31,8 +33,19 @@ def validate(plan: Plan, robot: Robot, group: str) -> None:
         found = _validated(plan, robot, log, places.table(motions, log), names) if names else OK
         return found | _page(plan, robot, log, _needs_a_look(log, before, found, against), found)
 
-    entries = list(zip(plan.logs(robot, group), identified, strict=True))
-    places.write(places.results(plan, robot, "validate", group), of_each(step, entries))
+    def resumed(log: Log) -> Result:
+        own = places.folder_of(plan, robot, log)
+        return journal.resumed(log, step, [own / name for name in places.MADE["validate"]], [])
+
+    inputs = [
+        places.results(plan, robot, "identify", group),
+        places.results(plan, robot, "reference"),
+    ]
+    options = [*places.description(robot), robot.pipe["validate"], plan.pages]
+    journal = Journal(places.work(plan, robot, group, "validate"), [*inputs, *options])
+    found = of_each(resumed, logs)
+    places.write(places.results(plan, robot, "validate", group), found)
+    journal.close()
 
 
 def _validated(plan: Plan, robot: Robot, log: Log, motion: Path, names: list[str]) -> Result:
@@ -49,7 +62,7 @@ def _validated(plan: Plan, robot: Robot, log: Log, motion: Path, names: list[str
     found: Result = {"status": 0, "reference": names[0], "messages": messages}
     if ran.status:
         return found | failure(ran)
-    table = pq.read_table(own / "metrics.parquet")
+    table = places.columns(own / "metrics.parquet")
     change = json.loads(table.schema.metadata[b"scarid"])["extra"].get("change", {})
     found |= {"change": change.get("verdict"), "change_reason": change.get("reason")}
     return found | {"r2_validated": table.column("r2").to_pylist()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from math import exp
 
 import numpy as np
@@ -126,12 +127,18 @@ def holm(tails: Array) -> Array:
 
 def freedom_of(errors: Array, half: Array) -> Array:
     """Degrees of freedom, from standard errors and half the widths of their 95 % intervals."""
-    known = [quantile(0.975, n) for n in range(1, int(MOST_FREEDOM) + 1)]
+    known = _quantiles()
     with np.errstate(divide="ignore", invalid="ignore"):
         quantiles = np.nan_to_num(half / errors, nan=0.0, posinf=0.0)
     # the quantile falls with the degrees of freedom; half a percent is closer than the formula is
-    places = np.searchsorted(-np.array(known), -quantiles)
+    places = np.searchsorted(-known, -quantiles)
     return np.asarray(np.clip(places + 1, 1, MOST_FREEDOM), dtype=np.float64)
+
+
+@cache  # a trend may have hundreds of tables
+def _quantiles() -> Array:
+    """The quantiles of 97.5 % for 1, 2, ... degrees of freedom."""
+    return np.array([quantile(0.975, n) for n in range(1, int(MOST_FREEDOM) + 1)])
 
 
 def _joint(first: Estimate, second: Estimate, difference: Array, freedom: Array) -> Joint | None:
