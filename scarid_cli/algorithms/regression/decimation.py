@@ -28,7 +28,7 @@ def decimated(rows: Rows, factor: int) -> Rows:
     """
     if factor >= max(rows.samples, 2):
         raise TooShort(
-            f"one row in {factor:.9g} of a log of {rows.samples} is none; give a longer log"
+            f"one row in {factor:.12g} of a log of {rows.samples} is none; give a longer log"
         )
     sections = cheby1(ORDER, RIPPLE, CUTOFF_OF_NYQUIST / factor, output="sos")
     parts = []
