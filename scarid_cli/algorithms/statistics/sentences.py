@@ -28,7 +28,7 @@ ADVICE = {
     STRIBECK: "friction decreases with speed (add Stribeck friction with --estimator separable)",
     LOAD: "friction grows with the torque that a joint transmits, for which there is no term",
     SPRING: "something pulls on a joint as a spring or a cable does, for which there is no term",
-    SATURATION: "the logged torque is not proportional to the torque, as when a motor saturates",
+    SATURATION: "the logged torque is not proportional to the real one, as when a motor saturates",
     DRIFT: "the torque drifts during the log",
     ENCODERS: "a position has an error that depends on the angle (an offset of the zero, or an "
     "eccentric encoder)",
