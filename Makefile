@@ -137,7 +137,7 @@ PROFILE ?= local
 
 $(BATCH)/installed: $(BUILD_FILES)
 	@test -x $(BATCH)/bin/python || $(PYTHON) -m venv $(BATCH)
-	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[batch]'
+	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[batch,logs,urdf]'
 	@touch $@
 
 $(BATCH)/tested: $(BATCH)/installed
