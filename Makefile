@@ -20,7 +20,7 @@
 # make batch CONFIG=fleet.toml   many logs of several robots, restartable; PROFILE=slurm on a cluster
 # make test-batch     the batch by Snakemake: killed, restarted, the same bytes
 # make test-slurm     the same on a Slurm that runs on this machine alone
-# make bench-batch LOGS=1000   a pipe, then, and a batch of a simulated fleet
+# make bench-batch LOGS=1000   a pipe, then, and a batch of a simulated fleet; PARTS="growth killed"
 # make docs     generate docs/tables.md from schemas/
 # make samples  generate the small log and its parameters under samples/
 # make clean    remove everything that the other targets made
@@ -137,7 +137,7 @@ PROFILE ?= local
 
 $(BATCH)/installed: $(BUILD_FILES)
 	@test -x $(BATCH)/bin/python || $(PYTHON) -m venv $(BATCH)
-	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[batch]'
+	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[batch,logs,urdf]'
 	@touch $@
 
 $(BATCH)/tested: $(BATCH)/installed
@@ -156,7 +156,7 @@ test-slurm: $(BATCH)/tested
 
 LOGS ?= 1000
 bench-batch: $(VENV)/installed $(BATCH)/installed
-	$(BIN)/python benchmarks/batch.py $(LOGS)
+	$(BIN)/python benchmarks/batch.py $(LOGS) $(PARTS)
 
 docs: $(VENV)/installed
 	$(BIN)/python -m scarid_cli.reporting.schemas > docs/tables.md

@@ -1,7 +1,8 @@
-"""Shell pipes, `then`, and batches: `make bench-batch LOGS=1000`.
+"""Shell pipes, `then`, and batches: `make bench-batch LOGS=1000`, or some `PARTS="growth killed"`.
 
 The machine may be shared, so processor seconds stand beside wall-clock seconds, and everything that
-is compared runs in turns. A fleet is simulated once and kept in build/fleet.
+is compared runs in turns; the least of some rounds counts. Fleets are simulated once and kept in
+build/. A thousand logs take twenty minutes on two cores that do nothing else.
 """
 
 from __future__ import annotations
@@ -17,17 +18,20 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
+from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
 import pyarrow.parquet as pq
-from fleet import DRIFTING, fleet
+from fleet import DRIFTING, START, fleet
 
 ROOT = Path(__file__).parent.parent
 BIN = Path(sys.executable).parent
 BATCH = Path(os.environ.get("BATCH_PYTHON", ROOT / ".venv-batch" / "bin" / "python"))
 BUILD = ROOT / "build"
 ROUNDS = 5
+OF_BATCHES = 2  # rounds
+SIX_JOINTS = 16  # logs
 SIX = ROOT / "samples" / "robots" / "ur10e.toml"
 PIPES = {
     "filter, differentiate, identify": ("filter --cutoff 20 LOG", "differentiate", "identify -q"),
@@ -48,14 +52,19 @@ def spent(run: Callable[[], object]) -> Spent:
     return time.perf_counter() - start, cpu
 
 
+def environment(**more: str) -> dict[str, str]:
+    """The environment with these variables; modules are compiled once, on one core each."""
+    found = {**os.environ, **more, "PYTHONPYCACHEPREFIX": str(BUILD / "pycache")}
+    found.pop("PYTHONDONTWRITEBYTECODE", None)
+    return {**found, "OMP_NUM_THREADS": "1"}
+
+
 def shell(line: str, folder: Path) -> None:
     """Run a line of a shell; what it prints is dropped."""
-    environment = {**os.environ, "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}"}
-    environment |= {"SCARID_FORMAT": "arrow", "PYTHONPYCACHEPREFIX": str(BUILD / "pycache")}
-    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    path = f"{BIN}{os.pathsep}{os.environ['PATH']}"
     subprocess.run(
         ["bash", "-o", "pipefail", "-c", line],
-        cwd=folder, env=environment, check=True,
+        cwd=folder, env=environment(PATH=path, SCARID_FORMAT="arrow"), check=True,
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
 
@@ -100,16 +109,18 @@ def least(lines: tuple[str, ...], folder: Path) -> list[Spent]:
 
 def in_one_process(config: Path) -> None:
     """All steps of a batch, one after the other."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT / "workflow"), "OMP_NUM_THREADS": "1"}
     words = [BATCH, "-m", "steps", "all", config.name]
-    subprocess.run(words, cwd=config.parent, env=environment, check=True)
+    path = environment(PYTHONPATH=str(ROOT / "workflow"))
+    subprocess.run(words, cwd=config.parent, env=path, check=True)
 
 
 def batch(config: Path) -> subprocess.Popen[bytes]:
     """A batch by Snakemake on all cores, without the page of the fleet."""
     words = [BATCH, ROOT / "workflow" / "batch.py", config, "outcome/fleet.parquet"]
     quiet = subprocess.DEVNULL
-    return subprocess.Popen(words, stdout=quiet, stderr=quiet, start_new_session=True)
+    return subprocess.Popen(
+        words, stdout=quiet, stderr=quiet, start_new_session=True, env=environment()
+    )
 
 
 def finished(process: subprocess.Popen[bytes]) -> None:
@@ -139,23 +150,51 @@ def by_commands(config: Path, count: int, joined: str) -> None:
 
 def growth(counts: list[int]) -> None:
     """What a log costs in batches of different sizes, in one process and by Snakemake."""
-    print(
-        "\nBatches of four robots, logs of 4,000 rows, 250 a job: seconds a log, wall and processor"
-    )
-    print("   logs  one process   Snakemake    part of all cores' throughput (by processor time)")
-    cores = os.cpu_count() or 1
+    print("\nBatches of four robots, logs of 4,000 rows, 250 a job")
     for count in counts:
-        config = fleet(BUILD / f"fleet{count}", count, group=250, pages="none")
+        batches(fleet(BUILD / f"fleet{count}", count, group=250, pages="none"), count)
+
+
+def batches(config: Path, count: int) -> None:
+    """A batch in one process and by Snakemake, in turns: seconds a log, wall and processor."""
+    one, snakemake = [], []
+    for _ in range(OF_BATCHES):
         fresh(config)
-        wall, cpu = spent(lambda config=config: in_one_process(config))
+        one.append(spent(lambda: in_one_process(config)))
         fresh(config)
-        wall_of_batch, cpu_of_batch = spent(lambda config=config: finished(batch(config)))
-        print(
-            f"  {count:5}  {wall / count:5.3f} {cpu / count:5.3f}  {wall_of_batch / count:5.3f}"
-            f" {cpu_of_batch / count:5.3f}   {wall / wall_of_batch / cores:5.2f}"
-            f" ({cpu / cpu_of_batch:.2f})",
-            flush=True,
-        )
+        snakemake.append(spent(lambda: finished(batch(config))))
+    (wall, cpu), (own_wall, own_cpu) = (tuple(map(min, zip(*x, strict=True)))
+                                        for x in (one, snakemake))  # fmt: skip
+    cores = os.cpu_count() or 1
+    print(
+        f"  {count:5} logs: one process {wall / count:.3f} {cpu / count:.3f},"
+        f" Snakemake {own_wall / count:.3f} {own_cpu / count:.3f};"
+        f" {count / own_wall / cores:.2f} logs a second and core,"
+        f" {wall / own_wall / cores:.2f} of all cores' throughput"
+        f" ({cpu / own_cpu:.2f} by processor time)",
+        flush=True,
+    )
+
+
+def six_joints(count: int) -> None:
+    """The same for logs of 20,000 rows of six joints, in jobs of a quarter."""
+    folder = BUILD / "six"
+    (folder / "logs").mkdir(parents=True, exist_ok=True)
+    for seed in range(count):
+        log = folder / "logs" / f"{START + timedelta(days=seed)}.csv"
+        if not log.exists():
+            move = f"trajgen -q --robot {SIX} --duration 20 --seed {seed}"
+            rates = f"--log-rate 1000 --control-rate 1000 --seed {seed}"
+            part = log.with_suffix(".part.csv")
+            shell(f"scarid {move} then simulate -q --robot {SIX} {rates} -o {part}", folder)
+            part.replace(log)
+    config = folder / "fleet.toml"
+    config.write_text(
+        f'group = {-(-count // 4)}\npages = "none"\n[robots.ur10e]\nrobot = "{SIX}"\n'
+        'logs = "logs/*.csv"\n'
+    )
+    print("\nBatches of one robot, logs of 20,000 rows and six joints, a quarter of them a job")
+    batches(config, count)
 
 
 def fresh(config: Path) -> None:
@@ -180,14 +219,6 @@ def found(config: Path) -> None:
     counts: dict[str, Counter[str]] = {}
     for row in rows:
         log = truth[f"{row['robot']}/{row['log']}.csv"]
-        kind = (
-            f"spoiled: {log['spoil']}"
-            if log["spoil"]
-            else "another payload"
-            if log["payload"]
-            else ""
-        )
-        kind = kind or ("drifting friction" if log["robot"] == DRIFTING else "as it was")
         counts.setdefault(done_to(log), Counter())[verdict(row)] += 1
     print("\nWhat was done to a log, and what its row says")
     for kind in sorted(counts):
@@ -218,18 +249,23 @@ def verdict(row: dict[str, Any]) -> str:
 
 
 def killed(config: Path, seed: int) -> None:
-    """Kill a batch at a random moment, restart it, and compare the bytes with those before."""
+    """Kill a batch at a random moment, restart it, and compare with an uninterrupted one."""
+    fresh(config)
+    wall, _ = spent(lambda: finished(batch(config)))
     before = outcome(config)
     fresh(config)
     process = batch(config)
-    seconds = random.Random(seed).uniform(10.0, 60.0)
+    seconds = random.Random(seed).uniform(0.1, 0.9) * wall
     time.sleep(seconds)
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     done = len([*(config.parent / "outcome" / "logs").glob("*/*/parameters.parquet")])
-    finished(batch(config))
+    again, _ = spent(lambda: finished(batch(config)))
     same = "the same bytes" if outcome(config) == before else "OTHER BYTES"
-    print(f"\nKilled after {seconds:.0f} s with {done} logs identified, and restarted: {same}")
+    print(
+        f"\nUninterrupted {wall:.0f} s; killed after {seconds:.0f} s with {done} logs identified,"
+        f" restarted and ended after another {again:.0f} s: {same} in {len(before)} files"
+    )
 
 
 def outcome(config: Path) -> dict[str, bytes]:
@@ -238,15 +274,33 @@ def outcome(config: Path) -> dict[str, bytes]:
     return {str(path): path.read_bytes() for path in paths if path.name != ".lock"}
 
 
-def main(most: int) -> None:
-    pipes(BUILD / "pipes")
+def ended(config: Path) -> Path:
+    """The configuration, after its batch."""
+    if not (config.parent / "outcome" / "fleet.parquet").exists():
+        finished(batch(config))
+    return config
+
+
+PARTS = ("pipes", "six", "growth", "found", "ways", "killed")
+
+
+def main(most: int, parts: tuple[str, ...]) -> None:
+    """The parts of the benchmark, with fleets of at most so many logs."""
     counts = [count for count in (10, 100, 1000, 10_000) if count <= most]
-    growth(counts or [most])
-    config = BUILD / f"fleet{(counts or [most])[-1]}" / "fleet.toml"
-    found(config)
-    ways(config, 20)
-    killed(config, 1)
+    counts = counts if most in counts else [*counts, most]
+    config = fleet(BUILD / f"fleet{most}", most, group=250, pages="none")
+    run: dict[str, Callable[[], None]] = {
+        "pipes": lambda: pipes(BUILD / "pipes"),
+        "six": lambda: six_joints(min(SIX_JOINTS, most)),
+        "growth": lambda: growth(counts),
+        "found": lambda: found(ended(config)),
+        "ways": lambda: ways(ended(config), min(20, most // 4)),
+        "killed": lambda: killed(config, most),
+    }
+    for part in parts:
+        run[part]()
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 1000)
+    number, *chosen = sys.argv[1:] or ["1000"]
+    main(int(number), tuple(chosen) or PARTS)

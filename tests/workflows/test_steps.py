@@ -125,6 +125,20 @@ def test_a_single_log_has_nothing_to_be_compared_with(tmp_path: Path) -> None:
     assert (tmp_path / "outcome" / row["page"]).exists()
 
 
+def test_a_batch_in_which_every_log_fails_has_its_tables(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("t,q1\n0,1\n")
+    config = tmp_path / "fleet.toml"
+    config.write_text('[robots.one]\nrobot = "scara2"\nlogs = "*.csv"\n')
+    done = in_one_process(config)
+    assert (done.returncode, done.stderr) == (0, "")
+    out = tmp_path / "outcome"
+    assert pq.read_table(out / "fleet.parquet").column("status").to_pylist() == [65]
+    assert pq.read_table(out / "estimates.parquet").num_rows == 0
+    words = [sys.executable, "-m", "scarid_cli", "report", "--fleet", str(out), "--html"]
+    page = subprocess.run([*words, str(out / "fleet.html")], capture_output=True, check=False)
+    assert (page.returncode, (out / "fleet.html").exists()) == (0, True), page.stderr
+
+
 def test_a_log_that_kills_its_process_is_a_row() -> None:
     """In a process of its own, because the step forks."""
     script = """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -122,8 +121,9 @@ def _table(kind: str, rows: list[Row], joints: int) -> Table:
             fields.append(pa.field(f"{stem}_{i + 1}", field.type))
             columns.append([_at(row.get(stem), i) for row in rows])
     meta = Metadata(kind=kind, version=schema.version)
-    table = table_of(kind, pa.schema(fields), zip(*columns, strict=True), meta)
-    return table if rows else replace(table, batches=iter(()))
+    if not rows:
+        return Table(kind, pa.schema(fields), meta, iter(()))
+    return table_of(kind, pa.schema(fields), zip(*columns, strict=True), meta)
 
 
 def _at(values: list[Any] | None, index: int) -> Any:
