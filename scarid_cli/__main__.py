@@ -9,13 +9,16 @@ import sys
 import warnings
 from types import FrameType
 
+# Until all is imported, an interrupt ends the process without a traceback.
+_interrupted = signal.signal(signal.SIGINT, signal.SIG_DFL)
+
 # numpy starts a thread per processor for a linear algebra that is never large here.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import click
+import click  # noqa: E402
 
-from scarid_cli.cli import chain, scarid
-from scarid_cli.errors import (
+from scarid_cli.cli import chain, scarid  # noqa: E402
+from scarid_cli.errors import (  # noqa: E402
     BAD_DATA,
     BROKEN_PIPE,
     BUG,
@@ -24,9 +27,10 @@ from scarid_cli.errors import (
     USAGE,
     ScaridError,
 )
-from scarid_cli.printable import printable
+from scarid_cli.printable import printable  # noqa: E402
 
 TERMINATED = 128 + signal.SIGTERM
+signal.signal(signal.SIGINT, _interrupted)
 
 
 class Terminated(BaseException):

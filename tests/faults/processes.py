@@ -135,9 +135,12 @@ def _of_processes(
 ) -> str:
     """What must not be of how the stages ended; nothing if all is well.
 
-    Only the stage that was hit may end by the signal, and others because of it.
+    Only the stage that was hit may end by the signal, and others because of it. What the
+    interpreter says if it is interrupted before it has reached a line of ours is not judged.
     """
     expected = {0, *REFUSED, -signal.SIGPIPE}
+    if b"KeyboardInterrupt" in errors[hit[0]] and b"/scarid_cli/" not in errors[hit[0]]:
+        return ""
     for i, status in enumerate(statuses):
         if status not in expected | ({-hit[1]} if i == hit[0] else set()):
             return CRASHED if status < 0 else EXIT_1
