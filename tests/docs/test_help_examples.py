@@ -128,7 +128,10 @@ NAMES = {
         "january.parquet",
         "february.parquet",
         "march.parquet",
+        "may.parquet",
+        "june.parquet",
     ],
+    "motion.parquet": ["july-motion.parquet"],
     "metrics.parquet": ["runs/1/p2smd.cross.metrics.parquet", "runs/2/p2smd.cross.metrics.parquet"],
 }
 OF_THE_ARM = {"arm-motion.parquet": ["motion.parquet"], "arm-toml.parquet": ["p.parquet"]}
