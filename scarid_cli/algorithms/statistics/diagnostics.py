@@ -78,19 +78,13 @@ def diagnose(
     scatter = errors * trial.longer()
     effects = trial.effects(found.fit.estimates, model)
     gains = gain_sensitivities(whole.total, weights)[:, :own]
-    shifts = np.array([e.bias for e in effects]).reshape(-1, own)
-    fit, moves = found.fit.part(slice(own)), [(e.name, e.direction(scatter[:own])) for e in effects]
-    matrix = _matrix(fit, scatter[:own], [*(move for _, move in moves), *gain_error * gains])
-    # What other columns gain the parameters lose: the torque on this motion remains what it was.
-    other = [move for name, move in moves if name not in TORQUES]
-    torque_matrix = _matrix(fit, scatter[:own], [*other, *gain_error * gains])
-    widest = np.max(shifts**2, axis=0, initial=0.0) + np.sum((gain_error * gains) ** 2, axis=0)
+    stated = _stated(found.fit.part(slice(own)), scatter[:own], effects, gain_error * gains)
     return Diagnostics(
         covariance=covariance and covariance.part(own),
         blocks=blocks,
         scatter=scatter,
-        errors=np.sqrt(scatter[:own] ** 2 + np.nan_to_num(widest)),
-        matrix=matrix,
+        errors=stated.errors,
+        matrix=stated.matrix,
         joints=residuals(rows, found.fit.estimates, record),
         effects=effects,
         gains=gains,
@@ -98,11 +92,40 @@ def diagnose(
             whole,
             weights,
             found.fit.estimates,
-            torque_matrix,
-            _matrix(fit, scatter[:own], []),
+            stated.of_torque,
+            stated.of_noise,
             model,
             rows.motion[0],
         ),
+    )
+
+
+@dataclass(frozen=True)
+class _Stated:
+    """The errors (own) and covariances (own, own) of the estimates that are stated.
+
+    `matrix` is of all that is allowed for, `of_torque` of what matters for the torque on this
+    motion, and `of_noise` of the noise alone.
+    """
+
+    errors: Array
+    matrix: Array
+    of_torque: Array
+    of_noise: Array
+
+
+def _stated(fit: Fit, scatter: Array, effects: tuple[Effect, ...], gains: Array) -> _Stated:
+    """From the errors of the noise, the effects of alternatives, and the moves by wrong gains."""
+    shifts = np.array([effect.bias for effect in effects]).reshape(-1, len(scatter))
+    widest = np.max(shifts**2, axis=0, initial=0.0) + np.sum(gains**2, axis=0)
+    moves = [(effect.name, effect.direction(scatter)) for effect in effects]
+    # What other columns gain the parameters lose: the torque on this motion remains what it was.
+    lasting = [move for name, move in moves if name not in TORQUES]
+    return _Stated(
+        errors=np.sqrt(scatter**2 + np.nan_to_num(widest)),
+        matrix=_matrix(fit, scatter, [*(move for _, move in moves), *gains]),
+        of_torque=_matrix(fit, scatter, [*lasting, *gains]),
+        of_noise=_matrix(fit, scatter, []),
     )
 
 
