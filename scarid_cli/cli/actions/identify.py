@@ -94,12 +94,17 @@ def run(
     for remark in reach.remarks(arm, table.period):
         job.say(f"warning: {remark}")
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
-    facts, verdict = summary_lines(arm.name, name, result.meta.extra)
-    job.say(facts)
-    job.say(verdict, result.meta.extra["verdict"])
-    if treatment.align and job.out.format == "csv":
-        job.say("CSV does not keep the delay: write -o FILE.parquet for validate to apply it")
+    _tell(job, arm.name, name, result.meta.extra, aligned=treatment.align)
     return _status(job, require, result.meta.extra)
+
+
+def _tell(job: Job, robot: str, name: str, extra: dict[str, Any], *, aligned: bool) -> None:
+    """Say what was found, and the verdict on it."""
+    facts, verdict = summary_lines(robot, name, extra)
+    job.say(facts)
+    job.say(verdict, extra["verdict"])
+    if aligned and job.out.format == "csv":
+        job.say("CSV does not keep the delay: write -o FILE.parquet for validate to apply it")
 
 
 def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
