@@ -33,6 +33,12 @@ def cleared(plan: Plan, robot: Robot, log: Log, step: str) -> Path:
     return folder
 
 
+def swept(folder: Path) -> None:
+    """Remove what commands that were killed left in a folder."""
+    for part in folder.glob(".*.part"):
+        part.unlink(missing_ok=True)
+
+
 def description(robot: Robot) -> Iterator[str | Path]:
     """The name of the robot's description, and the file if it is one."""
     yield robot.description
