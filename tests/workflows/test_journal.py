@@ -84,6 +84,12 @@ def test_a_killed_job_goes_on_and_ends_in_the_same_bytes(tmp_path: Path) -> None
     for step in ("tune", "identify", "reference", "validate"):
         assert job(tmp_path, step).wait() == 0
     expected = content(tmp_path)
+    robot = tmp_path / "outcome" / "robots" / "arm"
+    for left in ("trials.parquet", ".settings.toml.x.part", ".compare.parquet.x.part"):
+        (robot / left).write_text("half a table of a killed command")
+    for step in ("tune", "reference"):
+        assert job(tmp_path, step).wait() == 0
+    assert content(tmp_path) == expected
     assert not (work / "0001.identify").exists()
     for step, left in (("identify", "motions"), ("validate", "logs")):
         (work / f"0001.{step}.json").unlink()

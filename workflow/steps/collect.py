@@ -23,6 +23,7 @@ Row = dict[str, Any]
 
 def collect(plan: Plan) -> None:
     """Write the tables, and the messages of each log."""
+    places.swept(plan.out)
     logs: list[Row] = []
     estimates: list[Row] = []
     robots: list[Row] = []

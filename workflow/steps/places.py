@@ -28,9 +28,16 @@ def cleared(plan: Plan, robot: Robot, log: Log, step: str) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     for name in MADE[step]:
         (folder / name).unlink(missing_ok=True)
-        for part in folder.glob(f".{name}.*.part"):
+        for part in folder.glob(f".{name}.*"):
             part.unlink()
     return folder
+
+
+def swept(folder: Path) -> None:
+    """Remove what commands that were killed left in a folder."""
+    for pattern in (".*.part", ".*.before"):
+        for part in folder.glob(pattern):
+            part.unlink(missing_ok=True)
 
 
 def description(robot: Robot) -> Iterator[str | Path]:

@@ -120,6 +120,7 @@ def _steady(identified: list[Entry]) -> list[Log]:
 def _compared(plan: Plan, robot: Robot, first: Log, logs: list[Log], messages: list[str]) -> Result:
     """The comparison of every log with the reference, by the name of the log."""
     place = plan.out / "robots" / robot.name / "compare.parquet"
+    places.swept(place.parent)
     paths = {str(_parameters(plan, robot, log)): log.name for log in logs if log != first}
     ran = run(["compare", str(_parameters(plan, robot, first)), *paths, "-o", str(place)], messages)
     del messages[1:]  # thousands of lines, which the table has as well

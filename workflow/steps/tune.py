@@ -21,7 +21,9 @@ def tune(plan: Plan, robot: Robot) -> None:
     """Tune on the first log that passes the check, else on the one that comes nearest to it."""
     settings = plan.out / "robots" / robot.name / "settings.toml"
     settings.parent.mkdir(parents=True, exist_ok=True)
-    settings.unlink(missing_ok=True)
+    places.swept(settings.parent)
+    for place in (settings, _trials(settings)):
+        place.unlink(missing_ok=True)
     found: Result = {"status": OK, "tuned_on": None, "cutoff": None, "messages": []}
     if robot.tuned:
         folder = places.work(plan, robot, "tune", "logs")
@@ -60,7 +62,7 @@ def _candidates(robot: Robot, folder: Path) -> Iterator[tuple[Log, Path]]:
 
 def _tuned(robot: Robot, log: Log, measurement: Path, settings: Path) -> Result:
     messages: list[str] = []
-    trials = settings.with_name("trials.parquet")
+    trials = _trials(settings)
     words = ["tune", str(measurement), "--robot", robot.description]
     words += [*shlex.split(robot.pipe["tune"]), "--save", str(settings), "-o", str(trials)]
     ran = run(words, messages)
@@ -69,6 +71,10 @@ def _tuned(robot: Robot, log: Log, measurement: Path, settings: Path) -> Result:
     found = {"status": OK, "tuned_on": log.name, "cutoff": _cutoff(trials), "messages": messages}
     trials.unlink()
     return found
+
+
+def _trials(settings: Path) -> Path:
+    return settings.with_name("trials.parquet")
 
 
 def _cutoff(trials: Path) -> float | None:
