@@ -93,22 +93,26 @@ def torque_error(name: str, truth: Array, seed: int, estimates: Array) -> float:
 
 
 @dataclass(frozen=True)
-class Run:
-    """What one log gives: torque errors, and how the blind procedure judges itself."""
+class Judged:
+    """What the blind procedure finds in one log, and how it judges itself.
 
-    blind: float
-    hindsight: tuple[float, ...]  # of each cut-off; inf where it leaves too few rows
-    default: float
+    `torque` is the error of the predicted torque, and `off` the errors of the estimates, of those
+    whose errors are stated, in units of these. `inside` is the share of the intervals that contain
+    the true value. `noise` [rad or m] is that of the positions.
+    """
+
+    torque: float
+    off: Array
     inside: float
     wrong: bool
     good: bool
     width: float
+    noise: float
 
 
-def run(name: str, condition: Condition, seed: int) -> Run:
-    """One log of a robot under a condition."""
+def judged(name: str, truth: Array, measured: Table, seed: int) -> Judged:
+    """`scarid identify --robot NAME LOG` on a log of a robot with these parameters."""
     robot = robot_named(name)
-    measured, truth = log(robot, condition, seed), truth_of(robot, condition)
     motion, found, _ = motion_of(again(measured), robot, lambda: None, [])
     treatment = Treatment(counting=_counting(motion), align=True)
     solver = ESTIMATORS.load("wls")()
@@ -119,20 +123,39 @@ def run(name: str, condition: Condition, seed: int) -> Run:
         for c in ("estimate", "robust_error", "low", "high")
     )
     known = np.isfinite(errors)
-    off = np.abs(estimates - truth)[known] / errors[known]
+    off = (estimates - truth)[known] / errors[known]
     good = result.meta.extra["verdict"] == "good"
-    off_by = partial(torque_error, name, truth, seed)
-    return Run(
-        blind=off_by(estimates),
-        hindsight=tuple(
-            np.inf if other is None else off_by(other)
-            for other in hindsight(robot, measured, found.noise)
-        ),
-        default=off_by(default(robot, measured)),
+    return Judged(
+        torque=torque_error(name, truth, seed, estimates),
+        off=off,
         inside=float(np.mean((low <= truth)[known] & (truth <= high)[known])),
-        wrong=bool(good and np.any(off > _many(len(truth)))),
+        wrong=bool(good and np.any(np.abs(off) > _many(len(truth)))),
         good=bool(good),
         width=float(result.meta.extra["widened"] or np.nan),
+        noise=found.noise,
+    )
+
+
+@dataclass(frozen=True)
+class Run:
+    """A log: what the blind procedure finds, and the torque errors of others."""
+
+    blind: Judged
+    hindsight: tuple[float, ...]  # of each cut-off; inf where it leaves too few rows
+    default: float
+
+
+def run(name: str, condition: Condition, seed: int) -> Run:
+    """One log of a robot under a condition."""
+    robot = robot_named(name)
+    measured, truth = log(robot, condition, seed), truth_of(robot, condition)
+    blind = judged(name, truth, measured, seed)
+    off_by = partial(torque_error, name, truth, seed)
+    others = hindsight(robot, measured, blind.noise)
+    return Run(
+        blind=blind,
+        hindsight=tuple(np.inf if other is None else off_by(other) for other in others),
+        default=off_by(default(robot, measured)),
     )
 
 
@@ -180,13 +203,13 @@ def line(name: str, condition: Condition, seeds: range) -> str:
     runs = [run(name, condition, seed) for seed in seeds]
 
     def values(what: str) -> Array:
-        return np.array([getattr(one, what) for one in runs], dtype=np.float64)
+        return np.array([getattr(one.blind, what) for one in runs], dtype=np.float64)
 
-    cutoffs = np.log(values("hindsight"))  # (logs, cut-offs)
-    blind = np.log(values("blind"))
-    others = (cutoffs.mean(axis=0).min(), cutoffs.min(axis=1), np.log(values("default")))
+    cutoffs = np.log([one.hindsight for one in runs])  # (logs, cut-offs)
+    blind, default = np.log(values("torque")), np.log([one.default for one in runs])
+    others = (cutoffs.mean(axis=0).min(), cutoffs.min(axis=1), default)
     figures = [
-        f"{100.0 * np.median(values('blind')):.2g}",
+        f"{100.0 * np.median(values('torque')):.2g}",
         *[f"{np.exp(np.mean(blind - other)):.2f}" for other in others],
         *[f"{100.0 * np.mean(values(what)):.0f}" for what in ("inside", "wrong", "good")],
         f"{np.median(values('width')):.2f}",
