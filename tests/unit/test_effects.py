@@ -25,6 +25,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     STRIBECK,
     Model,
     away_from_reversals,
+    torque_columns,
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect, thinned
@@ -153,6 +154,15 @@ def drifting(motion: Array) -> Array:
 
 def test_a_drift_of_the_torque_is_found() -> None:
     assert effect(axis(drifting), DRIFT).significant()
+
+
+def test_a_drift_has_no_mean_and_a_spring_has_one() -> None:
+    """An offset is the mean over the log, but the torque of a spring where it is slack."""
+    rows = replace(axis(), motion=axis().motion + 0.3)
+    columns = torque_columns(rows, None, AXIS.apriori)
+    assert abs(columns[DRIFT].mean()) < 1e-9
+    assert columns[SPRING].shape == (rows.samples, 1, 2)
+    assert columns[SPRING][:, 0, 1].mean() == pytest.approx(rows.motion[0].mean())
 
 
 def test_what_the_model_has_is_no_alternative() -> None:
