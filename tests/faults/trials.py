@@ -9,6 +9,7 @@ import signal
 import sys
 import tempfile
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -82,6 +83,7 @@ def _child(trial: Trial, error: int) -> None:
         signal.alarm(SECONDS)
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         trial.before()
+        warnings.simplefilter("ignore")  # as the installed command does
         status = main(list(trial.words))
         sys.stdout.flush()
         sys.stderr.flush()
