@@ -22,6 +22,7 @@ from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array, Marks, Numbers
 
 INTERVAL = 0.1  # s: rows are summed over such intervals
+MOST = 600  # intervals: those of longer logs, whose fit absorbs little, are longer
 LAGS = np.array([0.0, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0])  # s
 
 
@@ -51,7 +52,8 @@ class _Sums:
 
     @classmethod
     def of(cls, rows: Rows, weights: Array) -> _Sums:
-        length = max(1, round(INTERVAL / rows.h)) if rows.h > 0.0 else 1
+        longest = int(rows.at[-1] - rows.at[0]) // MOST + 1
+        length = max(longest, round(INTERVAL / rows.h)) if rows.h > 0.0 else 1
         h = length * rows.h
         numbers = intervals(rows.at // length, round(3.0 * LAGS[-1] / h) if h > 0.0 else 1)
         counts = (rows.scales > 0.0).astype(np.float64)
