@@ -15,10 +15,12 @@ SEED = 50_000
 
 def test_the_blind_procedure_is_near_the_best_and_better_than_the_default() -> None:
     found = [run("scara2", Condition("short", duration=SHORT), SEED + n) for n in range(3)]
-    ratios = np.array([[one.blind / min(one.hindsight), one.blind / one.default] for one in found])
+    blind = np.array([one.blind.torque for one in found])
+    ratios = np.array([blind / [min(one.hindsight) for one in found],
+                       blind / [one.default for one in found]]).T  # fmt: skip
     assert np.exp(np.log(ratios[:, 0]).mean()) < 1.4
     assert np.exp(np.log(ratios[:, 1]).mean()) < 1.0
-    assert not any(one.wrong for one in found)
+    assert not any(one.blind.wrong for one in found)
 
 
 @pytest.mark.parametrize("condition", CONDITIONS + UNSEEN, ids=lambda condition: condition.name)
