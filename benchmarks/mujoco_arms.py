@@ -16,9 +16,10 @@ an estimate is off by too many errors.
 from __future__ import annotations
 
 import argparse
-import xml.etree.ElementTree as ET
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
+from pathlib import Path
+from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
@@ -37,18 +38,28 @@ SHARES = ("inside", "good", "wrong")
 STIFFNESS, SHARE = (-1.0, -1.0 / STEP), 0.999  # of the constraint: friction is full above some mm/s
 
 
+def stripped(urdf: Path, axes: list[str]) -> str:
+    """The URDF without meshes, and with all joints fixed that are no axes."""
+    root = ElementTree.parse(urdf).getroot()
+    for link in root.findall("link"):
+        for shape in [*link.findall("visual"), *link.findall("collision")]:
+            link.remove(shape)
+    for joint in root.findall("joint"):
+        if joint.get("name") not in axes:
+            joint.set("type", "fixed")
+        for part in [*joint.findall("mimic"), *joint.findall("dynamics")]:
+            joint.remove(part)
+    extension = ElementTree.SubElement(root, "mujoco")
+    settings = {"fusestatic": "true", "balanceinertia": "false", "inertiafromgeom": "false"}
+    ElementTree.SubElement(extension, "compiler", settings)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
 def model_of(name: str, robot: Robot) -> mujoco.MjModel:
     """The arm in MuJoCo, from its URDF: joints that the robot does not have are fixed."""
     assert robot.body
-    root = ET.parse(URDFS / f"{name}.urdf").getroot()
-    for link in root.iter("link"):
-        for part in [x for x in link if x.tag in ("visual", "collision")]:
-            link.remove(part)
-    for joint in root.iter("joint"):
-        if joint.get("name") not in robot.body.joint_names:
-            joint.set("type", "fixed")
-    ET.SubElement(ET.SubElement(root, "mujoco"), "compiler", fusestatic="true", strippath="true")
-    model = mujoco.MjModel.from_xml_string(ET.tostring(root, encoding="unicode"))
+    text = stripped(URDFS / f"{name}.urdf", robot.body.joint_names)
+    model = mujoco.MjModel.from_xml_string(text)
     model.opt.timestep, model.opt.integrator = STEP, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     joints = range(1, len(robot.joints) + 1)
     model.dof_armature[:] = [joint.torque_limit * INERTIA / ACCELERATION for joint in robot.joints]

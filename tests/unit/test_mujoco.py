@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 from conftest import ROOT
+from mujoco_arms import stripped
 from unit.arms import described_arm
 from unit.plants import closed_loop
 
@@ -35,23 +36,6 @@ def arm(urdf: Path, folder: Path) -> Robot:
         for name, (a, b, c) in zip(names, rows.tolist(), strict=True)
     )
     return described_arm(str(urdf), folder, lines)
-
-
-def stripped(urdf: Path, axes: list[str]) -> str:
-    """The URDF without meshes, and with all joints fixed that are no axes."""
-    root = ElementTree.parse(urdf).getroot()
-    for link in root.findall("link"):
-        for shape in [*link.findall("visual"), *link.findall("collision")]:
-            link.remove(shape)
-    for joint in root.findall("joint"):
-        if joint.get("name") not in axes:
-            joint.set("type", "fixed")
-        for part in [*joint.findall("mimic"), *joint.findall("dynamics")]:
-            joint.remove(part)
-    extension = ElementTree.SubElement(root, "mujoco")
-    settings = {"fusestatic": "true", "balanceinertia": "false", "inertiafromgeom": "false"}
-    ElementTree.SubElement(extension, "compiler", settings)
-    return ElementTree.tostring(root, encoding="unicode")
 
 
 def other(urdf: Path, robot: Robot) -> mujoco.MjModel:

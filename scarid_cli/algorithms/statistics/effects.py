@@ -50,9 +50,14 @@ class Effect:
         return bool(self.largest > point)
 
     @property
+    def counts(self) -> bool:
+        """Whether the intervals allow for it."""
+        return self.name in ALWAYS or self.significant()
+
+    @property
     def bias(self) -> Array:
         """The part of the move that its error does not explain (parameters); 0 if there is none."""
-        if self.name not in ALWAYS and not self.significant():
+        if not self.counts:
             return np.zeros_like(self.moved)
         rest = self.moved**2 - TRUST * self.errors**2
         return np.asarray(np.sign(self.moved) * np.sqrt(np.maximum(np.nan_to_num(rest), 0.0)))
@@ -63,7 +68,7 @@ class Effect:
         It keeps the direction of the move, in which large moves of single parameters may cancel in
         the torque. `scatter` (parameters) are the errors from noise, which make them comparable.
         """
-        if self.name not in ALWAYS and not self.significant():
+        if not self.counts:
             return np.zeros_like(self.moved)
         known = scatter > 0.0
         squares = float(np.sum((self.moved[known] / scatter[known]) ** 2))

@@ -106,14 +106,14 @@ def _columns(
     W = model.regressor(q, dq, ddq)
     carried = np.flatnonzero(model.transmits)
     transmitted = W[:, :, carried] @ theta[carried]
-    rest = model.regressor(q, dq, np.zeros_like(ddq)) @ theta
+    whole, rest = W @ theta, model.regressor(q, dq, np.zeros_like(ddq)) @ theta
     moved = replace(rows, motion=np.stack((q, dq, ddq, rows.motion[3])))
-    first = np.gradient(W @ theta - rest, h, axis=0)
+    first = np.gradient(whole - rest, h, axis=0)
     speed = np.gradient(transmitted, h, axis=0)
     curvature = np.gradient(speed, h, axis=0)
     signals = [diagonal(first), diagonal(curvature)]
     if rows.W.shape[2] > own:
-        delay = delay_column(moved, W @ theta)
+        delay = delay_column(moved, whole)
         W = np.concatenate((W, delay[:, :, None]), axis=2)
     else:
         signals.append(diagonal(delay_column(moved, rest)))

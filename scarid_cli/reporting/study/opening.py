@@ -37,21 +37,23 @@ class Opening:
     caption: str
     figure: Markup
 
+    @classmethod
+    def of(
+        cls, grade: str, headline: str, answers: Sequence[tuple[str, str]], figure: League
+    ) -> Opening:
+        """With the answers that are not empty, and the figure drawn."""
+        given = tuple((question, answer) for question, answer in answers if answer)
+        return cls(grade, headline, given, figure.caption, league.drawn(figure))
+
 
 def opening(ranking: Ranking, colours: dict[str, int]) -> Opening:
     """What a reader who has not seen the study needs to know of it."""
-    best, several = ranking.best, len(ranking.standings) > 1
-    shown = _figure(ranking, colours)
+    best = ranking.best
     answers = [("How well?", _how_well(ranking)), ("May I believe it?", _belief(best))]
-    if several and (counts := counted([(s.name, s.grade) for s in ranking.standings])):
-        answers.append(("And the others?", counts))
-    return Opening(
-        grade=best.grade,
-        headline=_headline(ranking),
-        answers=tuple((q, a) for q, a in answers if a),
-        caption=shown.caption,
-        figure=league.drawn(shown),
-    )
+    if len(ranking.standings) > 1:
+        grades = [(standing.name, standing.grade) for standing in ranking.standings]
+        answers.append(("And the others?", counted(grades)))
+    return Opening.of(best.grade, _headline(ranking), answers, _figure(ranking, colours))
 
 
 def _headline(ranking: Ranking) -> str:

@@ -10,7 +10,6 @@ import numpy as np
 
 from scarid_cli.algorithms.statistics.verdict import DOUBT, GOOD
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
-from scarid_cli.reporting.study import league
 from scarid_cli.reporting.study.league import League, Place, percents
 from scarid_cli.reporting.study.opening import BELIEF, EXPERIMENTS, ROWS, Opening, counted, others
 from scarid_cli.reporting.study.ranking import GRADES, Standing, judge_of
@@ -98,14 +97,7 @@ def opening(found: Ranked) -> Opening:
     answers = [("How well?", _how_well(found)), ("May I believe it?", _belief(best))]
     if len(methods) > 1:
         answers.append(("And the others?", counted([(m.label, m.grade) for m in methods])))
-    figure = _figure(found)
-    return Opening(
-        grade=best.grade,
-        headline=_headline(found),
-        answers=tuple((question, answer) for question, answer in answers if answer),
-        caption=figure.caption,
-        figure=league.drawn(figure),
-    )
+    return Opening.of(best.grade, _headline(found), answers, _figure(found))
 
 
 def _methods(parameters: Sequence[Parameters], metrics: Sequence[Metrics]) -> list[Repeated]:
