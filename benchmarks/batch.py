@@ -86,18 +86,26 @@ def logs(folder: Path) -> Iterator[tuple[str, Path, str]]:
 
 def pipes(folder: Path) -> None:
     """The same stages as a pipe and in one process, in turns; the least of some rounds."""
-    print(f"A pipe and `then`: wall-clock and processor seconds, least of {ROUNDS} rounds in turns")
-    print("  log                   stages       pipe         then       ratios   logs/s and core")
+    print(f"A pipe and `then`: wall-clock and processor seconds, least of {ROUNDS} rounds in turns;")
+    print("`at once`: the ratio of the wall-clock times of one such line on each core")
+    print("  log                   stages       pipe         then       ratios  at once")
     for title, log, robot in logs(folder):
         for stages in PIPES.values():
             named = [stage.replace("LOG", str(log)) for stage in stages]
             named[-1] += robot
             lines = (" | ".join(f"scarid {s}" for s in named), f"scarid {' then '.join(named)}")
             (wall, cpu), (own_wall, own_cpu) = least(lines, folder)
+            (busy, _), (own_busy, _) = least(tuple(map(on_each_core, lines)), folder)
             print(
                 f"  {title:21}{len(stages):5} {wall:6.2f} {cpu:5.2f} {own_wall:6.2f} {own_cpu:5.2f}"
-                f"  {wall / own_wall:4.1f} {cpu / own_cpu:4.1f}   {1 / cpu:5.2f} {1 / own_cpu:5.2f}"
+                f"  {wall / own_wall:4.1f} {cpu / own_cpu:4.1f}  {busy / own_busy:7.1f}",
+                flush=True,
             )
+
+
+def on_each_core(line: str) -> str:
+    """A line of a shell that runs once on each core at the same time."""
+    return f"{' & '.join([f'({line})'] * (os.cpu_count() or 1))} & wait"
 
 
 def least(lines: tuple[str, ...], folder: Path) -> list[Spent]:

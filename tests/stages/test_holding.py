@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 from stages.tables import collected, table
 
-from scarid_cli.algorithms.processes.holding import FIRST, intervals
+from scarid_cli.algorithms.processes.holding import FIRST, held_rows, intervals
 from scarid_cli.algorithms.processes.resampling import Clock
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import doubles
@@ -57,6 +57,14 @@ def test_the_first_row_of_each_is_kept_however_rows_arrive(sizes: tuple[int, ...
     for name in ("q1", "q1_ref"):
         expected = np.interp(found["t"], first, columns[name][~repeats])
         np.testing.assert_allclose(found[name], expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(("limit", "held"), [(5.0, True), (4.75, False)])
+def test_an_interval_is_a_gap_when_it_exceeds_the_limit(limit: float, *, held: bool) -> None:
+    """Without the rows that repeat the first one, five seconds are left until the next value."""
+    values = np.array([[1.0, 1.0, 1.0, 1.0, 1.0, 2.0, 3.0]] * 2)
+    found, _ = held_rows(np.arange(7.0), values, np.zeros(7, dtype=np.int64), limit)
+    assert found.tolist() == [False, *[held] * 4, False, False]
 
 
 def test_rest_and_slow_encoders_are_no_held_samples() -> None:

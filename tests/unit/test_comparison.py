@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
 from scarid_cli.algorithms.statistics.comparison import (
@@ -11,6 +12,7 @@ from scarid_cli.algorithms.statistics.comparison import (
     comparison,
     freedom_of,
     holm,
+    p_values,
     trend,
 )
 from scarid_cli.algorithms.statistics.jackknife import quantile
@@ -35,6 +37,12 @@ def test_holm_as_statsmodels_does_it() -> None:
     with_gap = holm(np.insert(tails, 4, np.nan))
     assert np.isnan(with_gap[4])
     assert np.delete(with_gap, 4) == pytest.approx(expected)
+
+
+def test_p_values_are_those_of_students_t_and_unknown_without_an_error() -> None:
+    differences, errors = np.array([1.0, -3.0, 1.0, 1.0]), np.array([0.5, 1.0, 0.0, np.nan])
+    expected = [2.0 * stats.t.sf(2.0, 7.0), 2.0 * stats.t.sf(3.0, 7.0), np.nan, np.nan]
+    assert p_values(differences, errors, np.full(4, 7.0)) == pytest.approx(expected, nan_ok=True)
 
 
 def test_false_alarms_are_at_most_one_in_twenty() -> None:

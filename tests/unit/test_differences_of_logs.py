@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence
+from scarid_cli.algorithms.changes.explanation import change
+from scarid_cli.algorithms.changes.hypotheses import MOTOR, Hypothesis
 from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
 
 RNG = np.random.default_rng(3)
@@ -44,3 +47,14 @@ def test_scores_of_joined_blocks_scatter_as_their_sums_do(blocks: int, together:
     sums = [scores[i : i + together].sum(axis=0) for i in range(0, blocks, together)]
     factor = len(sums) / (len(sums) - 1) if len(sums) > 1 else 1.0
     assert _scatter(scores, together) == pytest.approx(factor * np.sum(np.square(sums)))
+
+
+def test_what_an_explanation_leaves_is_tested_in_the_other_directions() -> None:
+    """Six directions of unit information, and a change along the first of them."""
+    gradient = np.array([20.0, 0.5, 1.4, 0.3, 1.2, 0.1])
+    nothing = np.zeros((6, 6))
+    difference = Difference(np.eye(6), gradient, nothing, nothing, freedom=11)
+    possible = [Hypothesis(MOTOR, np.eye(6)[:, [i]], ("k",), ("1",), (i + 1,)) for i in range(2)]
+    found = change(difference, possible)
+    assert [e.hypothesis.joints for e in found.explanations] == [(1,)]
+    assert found.left == pytest.approx(stats.f.sf(np.sum(gradient[1:] ** 2) / 5.0, 5, 11))

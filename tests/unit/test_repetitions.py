@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from math import nan
 
@@ -11,6 +12,8 @@ import pytest
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
 from scarid_cli.reporting.naming import Name
+from scarid_cli.reporting.study.league import League, Place, drawn
+from scarid_cli.reporting.study.opening import others
 from scarid_cli.reporting.study.repetitions import opening, ranked
 
 ERRORS = {"kalman": (3.0, 1.0, 2.0, 9.0, 4.0), "2smd": (30.0, 50.0, 40.0, 8.0, 60.0)}
@@ -79,3 +82,23 @@ def test_parameters_alone_and_torques_alone_have_a_first_screen() -> None:
     assert torques.grade == ""
     assert dict(torques.answers)["How well?"].endswith("within 5 % of their norm.")
     assert not ranked([]).methods
+
+
+@pytest.mark.parametrize(
+    ("count", "expected"),
+    [
+        (0, "Best."),
+        (1, "Best; the next, a within 1 %."),
+        (2, "Best; the next, a within 1 %; the last, b within 2 %."),
+        (3, "Best; the next, a within 1 %; the last, c within 3 %."),
+    ],
+)
+def test_the_answer_states_the_next_and_the_last_of_the_others(count: int, expected: str) -> None:
+    ranked_others = [("a", (1.0,)), ("b", (2.0,)), ("c", (3.0,))]
+    assert others("Best", ranked_others[:count]) == expected
+
+
+def test_the_axis_of_the_first_figure_names_its_decades() -> None:
+    places = (Place("a", "s1", "good", (3.0,)), Place("b", "s2", "good", (70.0,)))
+    figure = drawn(League("Errors.", "error", ("joint 1",), places))
+    assert re.findall(r">(1|10|100) %</text>", figure) == ["1", "10", "100"]

@@ -13,7 +13,10 @@ from scarid_cli.reporting.content import sections
 from scarid_cli.reporting.kinds import Metrics, Parameters, Prediction, Trace
 from scarid_cli.reporting.naming import Name
 from scarid_cli.reporting.parts import GAP, PANELS, Bars, Panels, split
+from scarid_cli.reporting.study.blocks import Figure
+from scarid_cli.reporting.study.estimation import over_time
 from scarid_cli.reporting.study.page import PAGE_WIDTH
+from scarid_cli.reporting.study.view import View
 
 
 def test_parameters_stand_beside_each_other_with_the_a_priori_values_of_their_robot() -> None:
@@ -87,6 +90,17 @@ def test_a_transient_does_not_hide_the_convergence() -> None:
     low, high = evolution(transient).panels[0].limits or (0.0, 0.0)
     assert low < min(settled.min(), 3.42) < max(settled.max(), 3.42) < high < 4.0
     assert evolution(settled).panels[0].limits is None
+
+
+def test_running_estimates_are_drawn_at_the_scale_of_those_after_a_tenth_of_the_record() -> None:
+    """Whenever the record begins: a transient does not count, and a peak soon after it does."""
+    t = 100.0 + np.arange(201.0)
+    values = np.where(t < 120.0, 1e4, np.where(t == 121.0, 9.0, 3.0))
+    curves = (np.array([t, values]),) * 8
+    trace = Trace(Name("a", ""), SCARA, tuple(SCARA.names), ("",) * 8, curves, (0.0,) * 8)
+    (chapter,) = over_time(View(None, {"a": 1}), [trace])
+    (figure,) = (block for block in chapter.blocks if isinstance(block, Figure))
+    assert re.findall(r'class="y"[^>]*>([^<]*)<', figure.panels[0]) == ["x"]
 
 
 def test_a_constant_trace_and_one_without_robot_are_drawn() -> None:

@@ -75,6 +75,8 @@ def test_a_description_that_is_not_there_is_refused() -> None:
     ("text", "instead", "complaint"),
     [
         ('title = "EMPS, one prismatic axis"', "", "missing 'title'"),
+        ('title = "EMPS, one prismatic axis"', "title = 3", "title is 3, not a string"),
+        ('title = "EMPS, one prismatic axis"', 'title = ""', "title is '', not a string"),
         ("[[joint]]", "[[axis]]", "axis is not a key of a robot; its keys are title, joint"),
         ("apriori = 95.1089", "", "apriori"),
         ("apriori = 95.1089", 'apriori = "heavy"', "apriori"),
