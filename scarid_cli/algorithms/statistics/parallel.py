@@ -117,14 +117,14 @@ def _columns(
         W = np.concatenate((W, delay[:, :, None]), axis=2)
     else:
         signals.append(diagonal(delay_column(moved, rest)))
-    motion = _turned(window.passed(np.stack((q, dq, ddq)).T))
-    torque = _turned(window.passed(np.stack((transmitted.T, speed.T, curvature.T)).T))
+    motion = np.stack((q, dq, ddq))
+    torque = np.stack((transmitted.T, speed.T, curvature.T))
     sensitivities = Sensitivities.of(model, theta, motion)
     return {
         "W": window.passed(W),
         SIGNALS: window.passed(np.concatenate(signals, axis=2)),
-        ENCODERS: encoder_columns(model, sensitivities, motion),
-        ELASTICITY: elastic_columns(sensitivities, torque),
+        ENCODERS: window.passed(encoder_columns(model, sensitivities, motion)),
+        ELASTICITY: window.passed(elastic_columns(sensitivities, torque)),
         "y": y,
     }
 
