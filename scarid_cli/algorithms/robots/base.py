@@ -18,10 +18,10 @@ from scarid_cli.arrays import Array
 RANDOM_STATES = 400
 ROWS = 4000  # of the regressor at least, with fewer states for robots with many joints
 STATE_RANGE = 3.0  # rad or m, and per s and s2
-# Descriptions round angles to 1.5708 or 3.14159. What such an angle adds is 1e-5 at most, and no log
-# can show it; among 80 URDFs every other rest is below 1e-9 or above 1e-2 (DESIGN.md).
-DEPENDENT = 1e-4  # rest of a column of unit length that counts as none
-ZERO_COLUMN = 1e-5  # times the longest column: a column that counts as zero
+# Descriptions round angles to 1.5708 or 3.14159. What such an angle adds is 1e-5 at most; no log
+# can show it, and among 75 URDFs every other rest is below 1e-9 or above 1e-2 (DESIGN.md).
+DEPENDENT = 1e-4  # of a column: what is left of it counts as nothing
+NOTHING = 1e-5  # of the longest column: a column, or what is left of it, that counts as nothing
 ROUNDING = 1e-12
 MARGIN = 4  # rows per parameter at least
 TOGETHER = 32  # columns that are projected at once, as products of matrices are faster
@@ -61,7 +61,8 @@ def independent(W: Array) -> tuple[list[int], Array]:
     W_dropped = W_kept B; it is zero for columns that are kept or always zero.
     """
     lengths = np.linalg.norm(W, axis=0)
-    columns = np.flatnonzero(lengths > ZERO_COLUMN * lengths.max(initial=0.0))
+    nothing = NOTHING * lengths.max(initial=0.0)
+    columns = np.flatnonzero(lengths > nothing)
     basis = np.empty((len(W), len(columns)), order="F")
     kept: list[int] = []
     for start in range(0, len(columns), TOGETHER):
@@ -71,7 +72,7 @@ def independent(W: Array) -> tuple[list[int], Array]:
         for i, own in zip(numbers.tolist(), rests.T, strict=True):
             rest = _rest(own, basis[:, first : len(kept)])
             size = float(np.linalg.norm(rest))
-            if size > DEPENDENT:
+            if size > max(DEPENDENT, nothing / lengths[i]):
                 basis[:, len(kept)] = rest / size
                 kept.append(i)
     # In the basis of the kept columns, the equations are as few as these are.
