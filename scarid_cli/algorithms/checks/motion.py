@@ -16,11 +16,10 @@ from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.tuning.likelihood import noise_of
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
 from scarid_cli.algorithms.tuning.scatter import HIGHEST, LOWEST
+from scarid_cli.algorithms.tuning.spectrum import bandwidth
 from scarid_cli.arrays import Array, Marks
 
 FEWEST = 64  # rows of a segment from which a spectrum has a few points in each octave
-POWER = 0.95  # of the power of the velocity lies below the bandwidth of a motion
-ABOVE = 10.0  # times the noise's density, from which on the density is that of the motion
 HARMONICS = 8.0  # times that bandwidth: its products and their derivatives, and reversals, pass
 
 
@@ -102,20 +101,3 @@ def _regular(t: Array, signals: Array, period: float) -> Array:
         return np.ascontiguousarray(signals)
     grid = t[0] + period * np.arange(int((t[-1] - t[0]) / period) + 1)
     return np.array([np.interp(grid, t, x) for x in signals])
-
-
-def bandwidth(x: Array, h: float, derivative: int) -> float:
-    """The frequency [Hz] below which POWER of a signal's (or its derivative's) power lies.
-
-    x (rows) is sampled every h [s]. Frequencies at which the density does not exceed that of white
-    noise, found from the highest quarter of all frequencies, do not count. 0 for a signal at rest.
-    """
-    trend = np.linspace(x[0], x[-1], len(x))
-    density = np.abs(np.fft.rfft((x - trend) * np.hanning(len(x)))) ** 2
-    floor = density[-(len(density) // 4) :].mean()
-    frequency = np.fft.rfftfreq(len(x), h)
-    power = np.where(density > ABOVE * floor, density, 0.0) * frequency ** (2 * derivative)
-    total = np.cumsum(power)
-    if not total[-1] > 0.0:
-        return 0.0
-    return float(frequency[int(np.searchsorted(total, POWER * total[-1]))])

@@ -19,12 +19,14 @@ import numpy as np
 from scarid_cli.algorithms.regression.information import inverse_deviations
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
+from scarid_cli.algorithms.tuning.spectrum import bandwidth
 from scarid_cli.arrays import Array, Numbers
 
 STEP = 2.0**0.25  # from one cut-off to the next
 PARTS = 20  # of the record, each left out once
 ROWS_PER_PARAMETER = 10.0  # independent rows at the first cut-off
 LOWEST = 0.5  # Hz
+OF_MOTION = 2.0  # times its bandwidth, at which the low-pass takes .4 % from an acceleration
 HIGHEST = 0.2  # of the sampling rate
 ENOUGH = 2.0  # times the least scatter, at which the sequence ends
 FEWEST = 8  # cut-offs before it may end
@@ -84,9 +86,15 @@ def chosen(points: Sequence[Scatter]) -> Choice:
 
 
 def _first(robot: Robot, segments: Sequence[Segment], h: float) -> float:
-    """The cut-off from which there are ten independent rows for each parameter."""
+    """The lowest cut-off: with ten independent rows for each parameter, and above the motion.
+
+    Below the bandwidth of the motion the parameters may scatter little, and are wrong nevertheless.
+    """
     rows = sum(s.q.size for s in segments)
-    return max(LOWEST, ROWS_PER_PARAMETER * len(robot.parameters) / (2.0 * rows * h))
+    longest = max(segments, key=lambda segment: segment.q.shape[1])
+    motion = OF_MOTION * max(bandwidth(q, h, derivative=1) for q in longest.q)
+    independent = ROWS_PER_PARAMETER * len(robot.parameters) / (2.0 * rows * h)
+    return max(LOWEST, independent, min(motion, 0.5 * HIGHEST / h))
 
 
 def _scatter(robot: Robot, parts: Sequence[Lowpassed], cutoff: float) -> Scatter:

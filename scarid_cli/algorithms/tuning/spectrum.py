@@ -1,0 +1,27 @@
+"""The bandwidth of a signal, from its spectrum."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scarid_cli.arrays import Array
+
+POWER = 0.95  # of the power of the velocity lies below the bandwidth of a motion
+ABOVE = 10.0  # times the noise's density, from which on the density is that of the motion
+
+
+def bandwidth(x: Array, h: float, derivative: int) -> float:
+    """The frequency [Hz] below which POWER of a signal's (or its derivative's) power lies.
+
+    x (rows) is sampled every h [s]. Frequencies at which the density does not exceed that of white
+    noise, found from the highest quarter of all frequencies, do not count. 0 for a signal at rest.
+    """
+    trend = np.linspace(x[0], x[-1], len(x))
+    density = np.abs(np.fft.rfft((x - trend) * np.hanning(len(x)))) ** 2
+    floor = density[-(len(density) // 4) :].mean()
+    frequency = np.fft.rfftfreq(len(x), h)
+    power = np.where(density > ABOVE * floor, density, 0.0) * frequency ** (2 * derivative)
+    total = np.cumsum(power)
+    if not total[-1] > 0.0:
+        return 0.0
+    return float(frequency[int(np.searchsorted(total, POWER * total[-1]))])
