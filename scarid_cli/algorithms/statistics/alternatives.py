@@ -19,9 +19,9 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.terms import Mass, Term
 from scarid_cli.arrays import Array, Marks
 
-OFFSET, ASYMMETRY, STRIBECK = "offset", "asymmetry", "Stribeck"
+OFFSET, ASYMMETRY, STRIBECK, CURVATURE = "offset", "asymmetry", "Stribeck", "curvature"
 LOAD, SPRING, SATURATION, DRIFT = "load", "spring", "saturation", "drift"
-TORQUES = (OFFSET, ASYMMETRY, STRIBECK, LOAD, SPRING, SATURATION, DRIFT)
+TORQUES = (OFFSET, ASYMMETRY, STRIBECK, CURVATURE, LOAD, SPRING, SATURATION, DRIFT)
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
 FADED = 0.3  # of the root-mean-square velocity: where the Stribeck effect has decayed
 BESIDE_FRICTION = ("offset", "stribeck")  # terms that are not friction alone, but go with it
@@ -64,11 +64,12 @@ def torque_columns(rows: Rows, model: Model | None, estimates: Array) -> dict[st
     q, v = rows.motion[0].T, rows.motion[1].T
     time = np.broadcast_to(rows.h * (rows.at - rows.at[0])[:, None], v.shape)
     predicted = rows.W @ estimates
-    fade = FADED * np.sqrt(np.mean(v**2, axis=0)) + 1e-300
+    usual = np.sqrt(np.mean(v**2, axis=0)) + 1e-300
     columns = {
         OFFSET: diagonal(np.ones_like(v)),
         ASYMMETRY: diagonal(np.abs(v)),
-        STRIBECK: diagonal(np.sign(v) * np.exp(-((v / fade) ** 2))),
+        STRIBECK: diagonal(np.sign(v) * np.exp(-((v / (FADED * usual)) ** 2))),
+        CURVATURE: diagonal(np.sign(v) * np.exp(-((v / usual) ** 2))),
         SPRING: np.concatenate((diagonal(np.ones_like(q)), diagonal(q)), axis=2),
         SATURATION: diagonal(predicted * np.abs(predicted)),
         DRIFT: diagonal(time - time.mean(axis=0)),

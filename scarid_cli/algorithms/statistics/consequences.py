@@ -37,27 +37,34 @@ class Consequences:
     inertia: Array
 
 
+@dataclass(frozen=True)
+class Uncertainty:
+    """The uncertainty of the first `own` estimates.
+
+    `torque` (own, own) is the covariance of what matters for the torque on this motion, and `noise`
+    (own, own) that of the noise alone. `biases` (alternatives, own) are moves of the estimates that
+    leave the torque on this motion as it is.
+    """
+
+    torque: Array
+    noise: Array
+    biases: Array
+
+
 def consequences(
     record: Blocks,
     weights: Array,
     estimates: Array,
-    covariance: Array,
-    noise: Array,
+    uncertainty: Uncertainty,
     model: Model | None,
     poses: Array,
 ) -> Consequences:
-    """The consequences of a covariance (own, own) of the first `own` estimates.
-
-    noise (own, own): the part of the covariance that is due to noise alone.
-    poses: positions of the joints (joints, samples) [rad or m].
-    """
-    own = len(covariance)
-    torque, of_noise = (_torque(record.total, x) for x in (covariance, noise))
-    nothing = np.full(len(weights), np.nan)
-    inertia = nothing
+    """What the uncertainty means at these poses (joints, samples) [rad or m]."""
+    torque, noise = (_torque(record.total, x) for x in (uncertainty.torque, uncertainty.noise))
+    inertia = np.full(len(weights), np.nan)
     if model is not None and poses.size:
-        inertia = _inertia(model, estimates[:own], covariance, poses)
-    return Consequences(_held_out(record, weights, estimates), torque, of_noise, inertia)
+        inertia = _inertia(model, estimates[: len(uncertainty.torque)], uncertainty, poses)
+    return Consequences(_held_out(record, weights, estimates), torque, noise, inertia)
 
 
 def _held_out(record: Blocks, weights: Array, estimates: Array) -> Array:
@@ -90,8 +97,11 @@ def _torque(products: Array, covariance: Array) -> Array:
         return np.asarray(np.sqrt(np.maximum(errors, 0.0) / products[:, -2, -2]))
 
 
-def _inertia(model: Model, estimates: Array, covariance: Array, poses: Array) -> Array:
-    """The error of the diagonal of the inertia matrix, relative to it (joints)."""
+def _inertia(model: Model, estimates: Array, uncertainty: Uncertainty, poses: Array) -> Array:
+    """The error of the diagonal of the inertia matrix, relative to it (joints).
+
+    The largest of the biases counts, as for the errors of the estimates.
+    """
     q = np.ascontiguousarray(poses[:, :: max(1, poses.shape[1] // POSES)])
     rest, found = np.zeros_like(q), []
     still = model.regressor(q, rest, rest)
@@ -99,7 +109,9 @@ def _inertia(model: Model, estimates: Array, covariance: Array, poses: Array) ->
         ddq = np.zeros_like(q)
         ddq[j] = 1.0
         rows = (model.regressor(q, rest, ddq) - still)[:, j]
-        errors = np.sqrt(np.maximum(np.einsum("si,ik,sk->s", rows, covariance, rows), 0.0))
+        squares = np.maximum(np.einsum("si,ik,sk->s", rows, uncertainty.torque, rows), 0.0)
+        largest = np.max((uncertainty.biases @ rows.T) ** 2, axis=0, initial=0.0)
+        errors = np.sqrt(squares + largest)
         with np.errstate(divide="ignore", invalid="ignore"):
             found.append(median(errors / np.abs(rows @ estimates)))
     return np.array(found)

@@ -17,6 +17,7 @@ from scarid_cli.algorithms.statistics.alternatives import TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.consequences import (
     Consequences,
+    Uncertainty,
     consequences,
     gain_sensitivities,
 )
@@ -92,8 +93,7 @@ def diagnose(
             whole,
             weights,
             found.fit.estimates,
-            stated.of_torque,
-            stated.of_noise,
+            stated.uncertainty,
             model,
             rows.motion[0],
         ),
@@ -102,16 +102,11 @@ def diagnose(
 
 @dataclass(frozen=True)
 class _Stated:
-    """The errors (own) and covariances (own, own) of the estimates that are stated.
-
-    `matrix` is of all that is allowed for, `of_torque` of what matters for the torque on this
-    motion, and `of_noise` of the noise alone.
-    """
+    """The errors (own) and the covariance (own, own) of the estimates that are stated."""
 
     errors: Array
     matrix: Array
-    of_torque: Array
-    of_noise: Array
+    uncertainty: Uncertainty
 
 
 def _stated(fit: Fit, scatter: Array, effects: tuple[Effect, ...], gains: Array) -> _Stated:
@@ -124,8 +119,11 @@ def _stated(fit: Fit, scatter: Array, effects: tuple[Effect, ...], gains: Array)
     return _Stated(
         errors=np.sqrt(scatter**2 + np.nan_to_num(widest)),
         matrix=_matrix(fit, scatter, [*(move for _, move in moves), *gains]),
-        of_torque=_matrix(fit, scatter, [*lasting, *gains]),
-        of_noise=_matrix(fit, scatter, []),
+        uncertainty=Uncertainty(
+            torque=_matrix(fit, scatter, [*lasting, *gains]),
+            noise=_matrix(fit, scatter, []),
+            biases=shifts[[effect.name in TORQUES for effect in effects]],
+        ),
     )
 
 

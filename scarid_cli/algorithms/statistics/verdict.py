@@ -26,7 +26,8 @@ PART = 0.01  # of an estimate, by which it may move however small its error is
 NOISE = 3.0  # times the torque noise: a joint with a smaller torque counts as not driven
 BLOCKS = 5.0  # effective blocks, below which errors cannot be stated
 HELD_OUT = 1.5  # times the residual of the fit that the one of held-out parts may reach
-VAGUE = 0.1  # of the torque: half the interval above which it counts as not known
+VAGUE = 0.1  # of the torque: half the interval from noise above which it counts as not known
+UNKNOWN = 0.3  # of the torque: the same, of the interval that allows for all alternatives
 UNTESTED = "the estimates were not tested for bias"
 DEPENDENT = "the estimates depend on the soft sensor"
 APART = "torque and motion are not those of one instant"
@@ -157,8 +158,8 @@ def _vague(evidence: Evidence) -> list[str]:
         f"the log determines the torque of joint {i} only within {percents([width * error])}"
         if np.isfinite(error)
         else f"the uncertainty of the torque of joint {i} is not known"
-        for i, error in enumerate(found.noise, start=1)
-        if not width * error <= VAGUE
+        for i, (noise, error) in enumerate(zip(found.noise, found.torque, strict=True), start=1)
+        if not (width * noise <= VAGUE and width * error <= UNKNOWN)
     ]
     reasons += [
         f"parts of the log that were left out of the fit are predicted with {ratio:.2g} times the "
@@ -217,7 +218,7 @@ def _summary(evidence: Evidence) -> str:
     found, width = evidence.diagnostics.consequences, _width(evidence)
     parts = [known]
     if np.isfinite(found.torque).all():
-        parts.append(f"torque within {percents(width * found.torque)}")
+        parts.append(f"torque of such a motion within {percents(width * found.torque)}")
     if np.isfinite(found.inertia).all():
         parts.append(f"inertia within {percents(width * found.inertia)}")
     r2 = [joint.r2 for joint in evidence.diagnostics.joints]
