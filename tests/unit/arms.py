@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -53,6 +54,21 @@ def seven_axes(centre: str = "0.01 0.02 0.1") -> str:
             f'<link name="l{i}"><inertial><origin xyz="{centre}"/><mass value="{m}"/>'
             f'<inertia ixx="{0.01 * m}" ixy="0" ixz="0" iyy="{0.01 * m}" iyz="0"'
             f' izz="{0.004 * m}"/></inertial></link>'
+        )
+    return "".join([*parts, "</robot>"])
+
+
+def turned_axes(angles: Sequence[Sequence[float]]) -> str:
+    """The URDF of an arm whose joints turn about z, each turned by roll, pitch and yaw [rad]."""
+    parts = ['<robot name="turned"><link name="l0"/>']
+    for i, turn in enumerate(angles, start=1):
+        parts.append(
+            f'<joint name="j{i}" type="revolute"><parent link="l{i - 1}"/><child link="l{i}"/>'
+            f'<origin xyz="0 {0.2 * (i % 2)} {0.2 * (1 - i % 2)}"'
+            f' rpy="{" ".join(map(str, turn))}"/><axis xyz="0 0 1"/>'
+            '<limit lower="-3" upper="3" effort="99" velocity="9"/></joint>'
+            f'<link name="l{i}"><inertial><origin xyz="0.01 0.02 0.1"/><mass value="1"/>'
+            '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
         )
     return "".join([*parts, "</robot>"])
 

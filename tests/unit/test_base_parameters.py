@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from unit.arms import URDF, described_arm, long_chain
+from unit.arms import URDF, described_arm, long_chain, turned_axes
 
 from scarid_cli.algorithms.robots.base import independent
 from scarid_cli.algorithms.robots.coupled import CoupledInertia
@@ -67,6 +67,19 @@ def test_base_parameters_are_those_of_a_planar_arm_and_always_the_same(urdf: str
     motion = np.random.default_rng(2).standard_normal((3, 2, 100))
     W = robot.regressor(*motion).reshape(-1, len(robot.parameters))
     assert np.linalg.matrix_rank(W) == len(robot.parameters)
+
+
+@pytest.mark.parametrize("digits", [15, 5, 4])
+def test_rounded_angles_of_a_urdf_add_no_parameters(digits: int, tmp_path: Path) -> None:
+    """Seven axes at right angles have 43 of links, 5 of motors, and 3 of friction each."""
+    right, half = np.pi / 2.0, np.pi
+    turns = [(0, 0, 0), *[(right, 0, half)] * 2, (right, 0, 0), (-right, half, 0), (right, 0, 0)]
+    rounded = [[round(x, digits) for x in turn] for turn in (*turns, (-right, half, 0))]
+    path = tmp_path / "seven.urdf"
+    path.write_text(turned_axes(rounded))
+    parameters = load(str(path)).parameters
+    assert sum(isinstance(p.term, StandardTerm) for p in parameters) == 43
+    assert len(parameters) == 43 + 5 + 3 * 7
 
 
 def test_dependent_columns_are_counted_to_those_before_them() -> None:

@@ -17,6 +17,7 @@ from scarid_cli.algorithms.regression.rows import Rows, led, rows_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.alignment import aligned, shifted
 from scarid_cli.algorithms.statistics.alternatives import (
+    CURVATURE,
     DRIFT,
     LOAD,
     OFFSET,
@@ -112,6 +113,11 @@ def stribeck(motion: Array) -> Array:
     return DRIVE * np.sign(motion[1]) * np.exp(-((motion[1] / 0.1) ** 2))
 
 
+def bent(motion: Array) -> Array:
+    """Friction that decreases over all of the usual speeds."""
+    return 4.0 * DRIVE * np.sign(motion[1]) * np.exp(-((motion[1] / 0.25) ** 2))
+
+
 def loaded(motion: Array) -> Array:
     """Friction that grows by 5 % of the force of inertia."""
     _, dq, ddq = motion
@@ -133,6 +139,7 @@ def saturated(motion: Array) -> Array:
     ("tau", "name"),
     [
         (stribeck, STRIBECK),
+        (bent, CURVATURE),
         (loaded, LOAD),
         (pulled, SPRING),
         (saturated, SATURATION),

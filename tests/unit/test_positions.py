@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
+from unit.arms import URDF
 from unit.regressions import estimated
 
 from scarid_cli.algorithms.estimators import ls
@@ -84,6 +86,21 @@ def diagnosed(logged: Array, true: Array) -> tuple[Diagnostics, Array]:
     fit = estimated(ls.Estimator(), rows)
     found = diagnose(rows, fit, len(ARM.parameters), model=MODEL)
     return found, np.abs(fit.fit.estimates - ARM.apriori)
+
+
+def test_errors_of_encoders_that_other_parameters_express_are_not_tested(tmp_path: Path) -> None:
+    """The zero of joint 2 turns the frame of link 2, and its first moments express that."""
+    pytest.importorskip("pinocchio")
+    path = tmp_path / "two.urdf"
+    path.write_text(URDF.replace("TYPE", "revolute"))
+    arm, true = load(str(path)), motion()
+    assert {"mx2", "mz2"} <= set(arm.names)
+    tau = arm.torques(arm.regressor(*true), arm.apriori)
+    noise = 0.02 * np.random.default_rng(0).standard_normal(tau.shape)
+    rows = rows_of(arm, np.stack((*true, tau + noise)), np.arange(tau.shape[1]), H)
+    model = Model(arm, list(range(len(arm.names))))
+    found = diagnose(rows, estimated(ls.Estimator(), rows), len(arm.names), model=model)
+    assert [effect.tests for effect in found.effects if effect.name == ENCODERS] == [5]
 
 
 def eccentric(true: Array) -> Array:

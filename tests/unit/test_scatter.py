@@ -73,6 +73,14 @@ def test_the_search_ends_where_the_scatter_has_doubled() -> None:
     assert np.all(np.array(found)[scatter.FEWEST : -1] <= 2.0 * least[scatter.FEWEST : -1])
 
 
+@pytest.mark.parametrize("factor", [1.0, 4.0])
+def test_the_first_cutoff_is_twice_the_bandwidth_of_the_motion(factor: float) -> None:
+    """95 % of the power of these velocities lies below the fastest sine, 4.3 rad/s."""
+    faster = arm(100.0)
+    first = scatter.curve(SCARA, [faster], H / factor)[0].cutoff
+    assert first == pytest.approx(factor * 2.0 * 4.3 / (2.0 * np.pi), rel=0.02)
+
+
 def test_noise_of_the_positions_lowers_the_cutoff() -> None:
     fine, coarse = (
         scatter.chosen(scatter.curve(SCARA, [arm(noise=x)], H)).cutoff for x in (1e-6, 3e-4)

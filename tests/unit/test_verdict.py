@@ -74,8 +74,8 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         (
             {},
             "good",
-            "8 of 8 parameters known within 30 %, torque within 0.2, 0.4 %, inertia within 0.61, "
-            "0.81 %, R2 0.9990, 0.9990, condition number 20",
+            "8 of 8 parameters known within 30 %, torque within 0.2, 0.4 % on such motions, "
+            "inertia within 0.61, 0.81 %, R2 0.9990, 0.9990, condition number 20",
         ),
         (
             {"effects": (effect(PARALLEL, **FAR),)},
@@ -122,6 +122,16 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             consequence(noise=np.array([0.1, 0.0])),
             "doubtful",
             "determines the torque of joint 1 only within 20 %",
+        ),
+        (
+            consequence(torque=np.array([0.1, 0.1])),
+            "good",
+            "torque within 20, 20 % on such motions",
+        ),
+        (
+            consequence(torque=np.array([0.1, 0.2])),
+            "doubtful",
+            "determines the torque of joint 2 only within 40 %",
         ),
         (
             consequence(held_out=np.array([1.0, 2.5])),

@@ -154,12 +154,13 @@ def _moved(evidence: Evidence, effect: Effect) -> str:
 def _vague(evidence: Evidence) -> list[str]:
     """Joints whose torque is not known, or not predicted within its noise."""
     found, width = evidence.diagnostics.consequences, _width(evidence)
+    intervals = zip(width * found.noise, width * found.torque, strict=True)
     reasons = [
-        f"the log determines the torque of joint {i} only within {percents([width * error])}"
-        if np.isfinite(error)
+        f"the log determines the torque of joint {i} only within {percents([max(noise, whole)])}"
+        if np.isfinite(noise + whole)
         else f"the uncertainty of the torque of joint {i} is not known"
-        for i, (noise, error) in enumerate(zip(found.noise, found.torque, strict=True), start=1)
-        if not (width * noise <= VAGUE and width * error <= UNKNOWN)
+        for i, (noise, whole) in enumerate(intervals, start=1)
+        if not (noise <= VAGUE and whole <= UNKNOWN)
     ]
     reasons += [
         f"parts of the log that were left out of the fit are predicted with {ratio:.2g} times the "
@@ -218,7 +219,7 @@ def _summary(evidence: Evidence) -> str:
     found, width = evidence.diagnostics.consequences, _width(evidence)
     parts = [known]
     if np.isfinite(found.torque).all():
-        parts.append(f"torque of such a motion within {percents(width * found.torque)}")
+        parts.append(f"torque within {percents(width * found.torque)} on such motions")
     if np.isfinite(found.inertia).all():
         parts.append(f"inertia within {percents(width * found.inertia)}")
     r2 = [joint.r2 for joint in evidence.diagnostics.joints]
