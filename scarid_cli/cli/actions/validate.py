@@ -19,7 +19,7 @@ from scarid_cli.stages import validate as stage
 from scarid_cli.stages.changes import known
 from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.parameters import identified
-from scarid_cli.stages.pooling import Entry, together
+from scarid_cli.stages.pooling import Entry, pooled_identifications
 
 
 def run(
@@ -41,7 +41,7 @@ def run(
     table, arm = read_logs(job, files, stated, partial(_read, job), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
     treatment = for_motion(table.meta, treatment, given)
-    model, before = together([_stored(table, arm) for table in tables])
+    model, before = pooled_identifications([_stored(table, arm) for table in tables])
     result = stage.validate(
         job.recorded(table),
         model,
