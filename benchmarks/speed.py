@@ -7,6 +7,7 @@ import re
 import sys
 import time
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -197,7 +198,13 @@ def estimators() -> None:
     y = x @ theta + 0.1 * rng.standard_normal(rows)
     print(f"\nRecursive least squares, ns per row of eight parameters, {rows} rows")
     # statsmodels has a diffuse initialisation, padasip starts from P0 = 100 I.
-    for name, peer, p0 in (("padasip", padasip, 1e2), ("statsmodels", statsmodels, 1e9)):
+    for name, peer, p0, extra in (
+        ("padasip", padasip, 1e2, "compare"),
+        ("statsmodels", statsmodels, 1e9, "test"),
+    ):
+        if not find_spec(name):
+            print(f"  {name:14} skipped, as it is not installed: pip install -e '.[{extra}]'")
+            continue
         difference = np.abs(np.asarray(peer(x, y)) / ours(x, y, p0, trace=False) - 1.0).max()
         theirs = best(lambda: peer(x, y), rows)  # noqa: B023
         plainly, tracing = (
