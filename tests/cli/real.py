@@ -21,6 +21,16 @@ def described_six_axes(real_logs: Path, place: Path) -> Path:
     return real_logs / "staubli_tx40"
 
 
+def one_after_the_other(identify: str) -> str:
+    """Commands that identify the logs TRAIN, each going on where the one before ended, to p.csv."""
+    first, second, third = TRAIN
+    return (
+        f"{identify} --save s.npz {first}.csv > /dev/null &&"
+        f" {identify} --from s.npz --save s.npz {second}.csv > /dev/null &&"
+        f" {identify} --from s.npz {third}.csv -o p.csv"
+    )
+
+
 def far_from_published(table: str, folder: Path) -> set[str]:
     """Base parameters that are more than two published deviations off."""
     estimates = {
