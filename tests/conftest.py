@@ -79,9 +79,18 @@ def scarid(capfd: pytest.CaptureFixture[str]) -> Callable[..., Result]:
 Shell = Callable[..., Result]
 
 
+BIN = Path(sys.executable).parent  # where the installed scarid is
+
+
 @pytest.fixture(scope="session")
 def warm() -> Iterator[Path]:
-    """A folder whose `scarid` needs no imports of its own (tests/warm)."""
+    """A folder whose `scarid` needs no imports of its own (tests/warm).
+
+    Where coverage is measured (`make mutants`), the `scarid` of users: what a fork runs is lost.
+    """
+    if "COVERAGE_PROCESS_START" in os.environ:
+        yield BIN
+        return
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         client = folder / "scarid"
@@ -104,7 +113,7 @@ def shell_in(folder: Path, program: Path) -> Shell:
 
     The `scarid` is the one in the folder `program`.
     """
-    path = os.pathsep.join((str(program), str(Path(sys.executable).parent), os.environ["PATH"]))
+    path = os.pathsep.join((str(program), str(BIN), os.environ["PATH"]))
     environment = {**os.environ, "PATH": path, "NO_COLOR": "1", "SAMPLES": str(ROOT / "samples")}
     environment.pop("SCARID_FORMAT", None)
 
@@ -133,4 +142,4 @@ def shell(tmp_path: Path, warm: Path) -> Shell:
 @pytest.fixture
 def users_shell(tmp_path: Path) -> Shell:
     """The same with `scarid` as users start it, for tests of the process itself."""
-    return shell_in(tmp_path, Path(sys.executable).parent)
+    return shell_in(tmp_path, BIN)
