@@ -17,121 +17,73 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
+import outcomes
 
-from scarid_cli.io.table import METADATA_KEY, Metadata
-
-Columns = dict[str, list[Any]]
 UNITS = {"ZZ": "kg m2", "MX": "kg m", "Fv": "N m s/rad", "Fs": "N m"}
-
-
-def write(folder: Path, kind: str, columns: Columns) -> None:
-    """One table of a batch, as the workflow writes it."""
-    meta = {METADATA_KEY: Metadata(kind=kind).to_json()}
-    pq.write_table(pa.table(columns).replace_schema_metadata(meta), folder / f"{kind}.parquet")
+DONE, FAILED, CHANGED = range(3)
+Row = dict[str, Any]
 
 
 def fleet(folder: Path, logs: int, robots: int, joints: int) -> None:
     """The three tables, from a fixed seed."""
     rng = np.random.default_rng(1)
-    rows: dict[str, Columns] = {"fleet": {}, "estimates": {}, "robots": {}}
+    rows: dict[str, list[Row]] = {"fleet": [], "estimates": [], "robots": []}
     for number in range(1, robots + 1):
-        name, count = f"robot{number:02d}", logs // robots
-        states = rng.choice(3, count, p=(0.94, 0.04, 0.02))  # done, failed, changed
-        drifts = number == 2
+        name, drifts = f"robot{number:02d}", number == 2
+        states = rng.choice((DONE, FAILED, CHANGED), logs // robots, p=(0.94, 0.04, 0.02))
         for order, state in enumerate(states, 1):
-            add(rows["fleet"], log_row(rng, name, order, int(state), joints))
-            if state != 1:
-                for row in estimates(rng, name, order, int(state), joints, drift=drifts):
-                    add(rows["estimates"], row)
-        add(rows["robots"], robot_row(name, states, drift=drifts))
-    for kind, columns in rows.items():
-        write(folder, kind, columns)
+            rows["fleet"].append(log_row(rng, name, order, state, joints))
+            if state != FAILED:
+                rows["estimates"] += estimates(rng, name, order, state, joints, drift=drifts)
+        rows["robots"].append(robot_row(name, states, drift=drifts))
+    outcomes.write(folder, **rows)
 
 
-def add(columns: Columns, row: dict[str, Any]) -> None:
-    for name, value in row.items():
-        columns.setdefault(name, []).append(value)
-
-
-def log_row(
-    rng: np.random.Generator, robot: str, order: int, state: int, joints: int
-) -> dict[str, Any]:
-    """A log that is done (0), failed (1) or changed (2)."""
-    failed, changed = state == 1, state == 2
-    day = str(np.datetime64("2024-01-01") + order)
-    error = f"scarid convert: logs/{robot}/{day}.csv, row {order}: found 12 values, expected 11"
-    reason = "another payload or set-up (ZZ2 +0.04 +- 0.00018 kg m2); this explains 100 %"
-    r2 = {f"r2_{i}": None if failed else 1.0 - rng.gamma(2.0, 0.004) for i in range(1, joints + 1)}
-    return {
-        "robot": robot,
-        "log": day,
-        "file": f"logs/{robot}/{day}.csv",
-        "date": day,
-        "order": order,
-        "status": 65 if failed else 0,
-        "step": "convert" if failed else None,
-        "error": error if failed else None,
-        "check": None if failed else "ok",
-        "verdict": None if failed else "good",
-        "reasons": None if failed else "7 of 8 parameters known within 30 %, torque within 0.2 %",
-        "samples": None if failed else 20000,
-        "condition_number": None if failed else float(rng.normal(250.0, 30.0)),
-        "delay": None if failed else float(rng.normal(5e-4, 5e-5)),
-        "delay_error": None if failed else 8e-5,
-        **r2,
-        "reference": None if failed else "2024-01-02",
-        "change": None if failed else ("changed" if changed else "unchanged"),
-        "change_reason": reason if changed else None,
-        "compare": None if failed else ("differs" if changed else "agrees"),
-        "differing": "ZZ2" if changed else None,
-        "p_value": None if failed else 1e-9 if changed else 0.5,
-        "page": None if failed else f"logs/{robot}/{day}/report.html",
+def log_row(rng: np.random.Generator, robot: str, order: int, state: int, joints: int) -> Row:
+    """A log that is done, has failed or has changed."""
+    day = outcomes.date(order)
+    if state == FAILED:
+        error = f"scarid convert: logs/{robot}/{day}.csv, row {order}: found 12 values, expected 11"
+        return outcomes.failed(robot, order, error)
+    found = {
+        "reasons": "7 of 8 parameters known within 30 %, torque within 0.2 %",
+        "samples": 20000,
+        "condition_number": rng.normal(250.0, 30.0),
+        "delay": rng.normal(5e-4, 5e-5),
+        "p_value": 0.5,
+        "page": f"logs/{robot}/{day}/report.html",
+        **{f"r2_{i}": 1.0 - rng.gamma(2.0, 0.004) for i in range(1, joints + 1)},
     }
+    if state == CHANGED:
+        reason = "another payload or set-up (ZZ2 +0.04 +- 0.00018 kg m2); this explains 100 %"
+        found |= {"change": "changed", "change_reason": reason}
+        found |= {"compare": "differs", "differing": "ZZ2", "p_value": 1e-9}
+    return outcomes.done(robot, order, **found)
 
 
 def estimates(
     rng: np.random.Generator, robot: str, order: int, state: int, joints: int, *, drift: bool
-) -> list[dict[str, Any]]:
+) -> list[Row]:
     """Four parameters of each joint."""
     rows = []
     for joint in range(1, joints + 1):
         for name, unit in UNITS.items():
-            value = 1.0 + 0.001 * order * (drift and name == "Fs")
-            value += 0.2 * (state == 2 and name == "ZZ" and joint == 2)
-            estimate, half = value + float(rng.normal(0.0, 0.01)), 0.02
-            rows.append(
-                {
-                    "robot": robot,
-                    "log": f"{order}",
-                    "order": order,
-                    "parameter": f"{name}{joint}",
-                    "unit": unit,
-                    "estimate": estimate,
-                    "robust_error": 0.01,
-                    "low": estimate - half,
-                    "high": estimate + half,
-                    "errors": (estimate - 1.0) / 0.014,
-                }
-            )
+            value = 1.0 + 0.001 * order * (drift and name == "Fs") + rng.normal(0.0, 0.01)
+            value += 0.2 * (state == CHANGED and name == "ZZ" and joint == 2)
+            rows.append(outcomes.estimate(robot, order, f"{name}{joint}", value, unit=unit))
     return rows
 
 
-def robot_row(name: str, states: np.ndarray, *, drift: bool) -> dict[str, Any]:
-    count, failed = len(states), int((states == 1).sum())
-    return {
-        "robot": name,
-        "description": f"{name}.toml",
-        "logs": count,
-        "identified": count - failed,
-        "failed": failed,
-        "reference": "2024-01-02",
-        "trend": f"trend over the {count} tables, per table: Fs1 +0.001 N m (45 errors)"
+def robot_row(name: str, states: np.ndarray, *, drift: bool) -> Row:
+    count, failed = len(states), int((states == FAILED).sum())
+    trend = f"trend over the {count} tables, per table: Fs1 +0.001 N m (45 errors)"
+    found = (
+        {"trend": trend, "trending": "Fs1"}
         if drift
-        else f"no trend over the {count} tables",
-        "trending": "Fs1" if drift else None,
-    }
+        else {"trend": f"no trend over the {count} tables"}
+    )
+    counts = {"logs": count, "identified": count - failed, "failed": failed}
+    return outcomes.robot(name, description=f"{name}.toml", **counts, **found)
 
 
 def run(folder: Path, logs: int, robots: int, joints: int) -> None:

@@ -197,18 +197,25 @@ def estimators() -> None:
     y = x @ theta + 0.1 * rng.standard_normal(rows)
     print(f"\nRecursive least squares, ns per row of eight parameters, {rows} rows")
     # statsmodels has a diffuse initialisation, padasip starts from P0 = 100 I.
-    for name, peer, p0 in (("padasip", padasip, 1e2), ("statsmodels", statsmodels, 1e9)):
-        difference = np.abs(np.asarray(peer(x, y)) / ours(x, y, p0, trace=False) - 1.0).max()
-        theirs = best(lambda: peer(x, y), rows)  # noqa: B023
-        plainly, tracing = (
-            best(lambda trace=trace: ours(x, y, p0, trace=trace), rows)  # noqa: B023
-            for trace in (False, True)
-        )
-        print(
-            f"  {name:14} {theirs:6.0f}; scarid {plainly:.0f}, {theirs / plainly:.0f} times as "
-            f"fast; with the estimates after each row {tracing:.0f}, {theirs / tracing:.0f} times "
-            f"as fast; the estimates differ by {difference:.1g} of themselves at most"
-        )
+    for peer, p0, extra in ((padasip, 1e2, "compare"), (statsmodels, 1e9, "test")):
+        if importlib.util.find_spec(peer.__name__):
+            print(f"  {peer.__name__:14} {beside(peer, p0, x, y)}")
+        else:
+            print(f"  {peer.__name__:14} skipped: for it, pip install --editable '.[{extra}]'")
+
+
+def beside(peer: Callable[[Array, Array], Any], p0: float, x: Array, y: Array) -> str:
+    """Time and estimates of a peer beside ours."""
+    difference = np.abs(np.asarray(peer(x, y)) / ours(x, y, p0, trace=False) - 1.0).max()
+    theirs = best(lambda: peer(x, y), len(x))
+    plainly, tracing = (
+        best(lambda trace=trace: ours(x, y, p0, trace=trace), len(x)) for trace in (False, True)
+    )
+    return (
+        f"{theirs:6.0f}; scarid {plainly:.0f}, {theirs / plainly:.0f} times as "
+        f"fast; with the estimates after each row {tracing:.0f}, {theirs / tracing:.0f} times "
+        f"as fast; the estimates differ by {difference:.1g} of themselves at most"
+    )
 
 
 def ours(x: Array, y: Array, p0: float, *, trace: bool) -> Array:

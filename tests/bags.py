@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from mcap_ros2.writer import Writer
 
+START = 1_700_000_000 * 10**9  # ns, of a recording
+MILLISECOND = 10**6  # ns
 HEADER = """std_msgs/Header header
 """
 PARTS = """

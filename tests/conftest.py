@@ -6,7 +6,8 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -75,17 +76,51 @@ def scarid(capfd: pytest.CaptureFixture[str]) -> Callable[..., Result]:
     return run
 
 
-@pytest.fixture
-def shell(tmp_path: Path) -> Callable[..., Result]:
-    """Run a shell pipe in a directory of its own; its status is that of the first that failed."""
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+Shell = Callable[..., Result]
+
+
+BIN = Path(sys.executable).parent  # where the installed scarid is
+
+
+@pytest.fixture(scope="session")
+def warm() -> Iterator[Path]:
+    """A folder whose `scarid` needs no imports of its own (tests/warm).
+
+    Where coverage is measured (`make mutants`), the `scarid` of users: what a fork runs is lost.
+    """
+    if "COVERAGE_PROCESS_START" in os.environ:
+        yield BIN
+        return
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        client = folder / "scarid"
+        text = (ROOT / "tests/warm/client.py").read_text("utf-8")
+        client.write_text(f"#!{sys.executable} -IS\n{text}", "utf-8")
+        client.chmod(0o755)
+        with subprocess.Popen(
+            [sys.executable, ROOT / "tests/warm/server.py", folder / "socket"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        ) as server:
+            assert server.stdout
+            assert server.stdout.readline() == b"ready\n"
+            yield folder
+            server.communicate()
+
+
+def shell_in(folder: Path, program: Path) -> Shell:
+    """Run shell pipes in a folder; their status is that of the first that failed.
+
+    The `scarid` is the one in the folder `program`.
+    """
+    path = os.pathsep.join((str(program), str(BIN), os.environ["PATH"]))
     environment = {**os.environ, "PATH": path, "NO_COLOR": "1", "SAMPLES": str(ROOT / "samples")}
     environment.pop("SCARID_FORMAT", None)
 
     def run(pipe: str, **more: str) -> Result:
         done = subprocess.run(
             ["bash", "-o", "pipefail", "-c", pipe],
-            cwd=tmp_path,
+            cwd=folder,
             env={**environment, **more},
             stdin=subprocess.DEVNULL,
             capture_output=True,
@@ -96,3 +131,15 @@ def shell(tmp_path: Path) -> Callable[..., Result]:
         return Result(done.returncode, done.stdout, done.stderr)
 
     return run
+
+
+@pytest.fixture
+def shell(tmp_path: Path, warm: Path) -> Shell:
+    """A shell in a directory of its own; its `scarid` forks, with all imports done."""
+    return shell_in(tmp_path, warm)
+
+
+@pytest.fixture
+def users_shell(tmp_path: Path) -> Shell:
+    """The same with `scarid` as users start it, for tests of the process itself."""
+    return shell_in(tmp_path, BIN)

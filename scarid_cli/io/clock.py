@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import BadData, bad_data, bad_row
-from scarid_cli.io.table import SEGMENT, Instant, Table, segments_of, steps_of, together
+from scarid_cli.io.table import SEGMENT, Instant, Table, concatenated, segments_of, steps_of
 
 # An interval may differ from the period by this fraction, and the mean interval by that one: a
 # derivative would be wrong by as much.
@@ -71,7 +71,7 @@ def _from_two_samples(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBa
     for batch in batches:
         if not batch.num_rows:
             continue
-        held = [together([*held, batch])]
+        held = [concatenated([*held, batch])]
         if _first_step(held[0]) is not None:
             break
     yield from held

@@ -195,7 +195,7 @@ def with_columns(batch: pa.RecordBatch, schema: pa.Schema, new: dict[str, Any]) 
     return pa.RecordBatch.from_arrays([column(name) for name in schema.names], schema=schema)
 
 
-def together(batches: Sequence[pa.RecordBatch]) -> pa.RecordBatch:
+def concatenated(batches: Sequence[pa.RecordBatch]) -> pa.RecordBatch:
     """Batches of one schema as a single one; at least one of them has rows."""
     if len(batches) == 1:
         return batches[0]

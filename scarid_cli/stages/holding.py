@@ -11,7 +11,7 @@ from scarid_cli.algorithms.processes.filling import SEARCH
 from scarid_cli.algorithms.processes.holding import FIRST, held_rows, repeating
 from scarid_cli.arrays import Array
 from scarid_cli.io.schemas import numbered
-from scarid_cli.io.table import Table, matrix, segments_of, together
+from scarid_cli.io.table import Table, concatenated, matrix, segments_of
 
 
 def measured(table: Table) -> list[str]:
@@ -45,7 +45,7 @@ class FirstIntervals:
         batch = batch.slice(0, SEARCH - self._rows)
         if not batch.num_rows:
             return
-        rows = together([batch] if self._last is None else [self._last, batch])
+        rows = concatenated([batch] if self._last is None else [self._last, batch])
         t, *values = matrix(rows, ["t", *self._columns])
         fresh = t
         if self._columns:
@@ -89,7 +89,7 @@ class Holding:
 
     def _passed(self, batch: pa.RecordBatch) -> Iterator[pa.RecordBatch]:
         first = self._waiting is None
-        rows = together([batch] if self._waiting is None else [self._waiting, batch])
+        rows = concatenated([batch] if self._waiting is None else [self._waiting, batch])
         t, *values = matrix(rows, ["t", *self._columns])
         held, waiting = held_rows(t, np.array(values), segments_of(rows), self._limit)
         self.count += int(held.sum())

@@ -16,7 +16,7 @@ from scarid_cli.stages.parameters import Identified
 Entry = tuple[str, Identified, Known]  # the name of a table, and its content
 
 
-def together(tables: Sequence[Entry]) -> tuple[Identified, Known]:
+def pooled_identifications(tables: Sequence[Entry]) -> tuple[Identified, Known]:
     """The parameters of all tables, weighted by their information, and what is known of the logs.
 
     Each table must have the evidence of its log, and the same columns as the others.

@@ -24,11 +24,11 @@ from scarid_cli.io.table import (
     SEGMENT,
     Instant,
     Table,
+    concatenated,
     integers,
     matrix,
     segments_of,
     steps_of,
-    together,
     with_columns,
 )
 from scarid_cli.stages.holding import FirstIntervals, Holding, measured
@@ -199,7 +199,7 @@ class Interpolation:
             self.held = piece.slice(0, 1)
             piece, t, x = piece.slice(1), t[1:], x[:, 1:]
         assert self.state
-        rows = together([self.held, piece])
+        rows = concatenated([self.held, piece])
         times = np.concatenate((self.state.t, t))
         self.state, at, found = self.resampler.step(self.state, t, x)
         self.held = rows.slice(len(times) - len(self.state.t))
@@ -235,7 +235,7 @@ class Decimation:
             self.state = self.decimator.init(first, len(self.numbers))
             self.held, self.at = batch.slice(0, 0), first
             self.start = start
-        self.held = together([self.held, batch])
+        self.held = concatenated([self.held, batch])
         self.state, numbers, found = self.decimator.step(self.state, x)
         return self._joined(numbers, found)
 

@@ -13,7 +13,7 @@ from scarid_cli.algorithms.processes.filling import READINGS, SEARCH, Readings, 
 from scarid_cli.algorithms.processes.holding import repeating
 from scarid_cli.arrays import Array, Marks, Numbers
 from scarid_cli.io.schemas import numbered
-from scarid_cli.io.table import Table, matrix, segments_of, together, with_columns
+from scarid_cli.io.table import Table, concatenated, matrix, segments_of, with_columns
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class Filling:
             yield from self._ready(self._waiting.slice(0, 0), ended=True)
 
     def _ready(self, batch: pa.RecordBatch, *, ended: bool) -> Iterator[pa.RecordBatch]:
-        rows = together([batch] if self._waiting is None else [self._waiting, batch])
+        rows = concatenated([batch] if self._waiting is None else [self._waiting, batch])
         t, *columns = matrix(rows, ["t", *self.slower.columns])
         values, segments = np.array(columns), segments_of(rows)
         later = np.diff(t, prepend=-np.inf) > 0.0

@@ -19,10 +19,10 @@ CASES = sorted(path.parent.name for path in HERE.glob("*/cmd"))
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_pipe_prints_what_it_should(
-    case: str, shell: Callable[..., Result], samples: Path
+    case: str, users_shell: Callable[..., Result], samples: Path
 ) -> None:
     folder = HERE / case
-    result = shell((folder / "cmd").read_text("utf-8"))
+    result = users_shell((folder / "cmd").read_text("utf-8"))
     assert_alike(result.out, (folder / "expout").read_text("utf-8"))
     reported = result.err.replace(str(samples), "SAMPLES")
     assert_alike(reported, (folder / "experr").read_text("utf-8"))

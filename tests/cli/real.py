@@ -9,29 +9,26 @@ import struct
 from pathlib import Path
 
 import pytest
+from parts import TX40
 
 TRAIN = ("143524", "143601", "154220")  # logs of the pendulum
-
-TX40 = """title = "Staubli TX40"
-urdf = "{folder}/tx40_mdh_modified.urdf"
-[[joint]]
-[[joint]]
-[[joint]]
-[[joint]]
-[[joint]]
-[[joint]]
-terms = ["viscous", "coulomb", "offset"]
-[[coupling]]
-joints = [5, 6]
-"""
 
 
 def described_six_axes(real_logs: Path, place: Path) -> Path:
     """The folder of the log, with a description of the robot in this place."""
     pytest.importorskip("pinocchio")
-    folder = (real_logs / "staubli_tx40").resolve()
-    (place / "tx40.toml").write_text(TX40.format(folder=folder))
-    return folder
+    (place / "tx40.toml").write_text(TX40)
+    return real_logs / "staubli_tx40"
+
+
+def one_after_the_other(identify: str) -> str:
+    """Commands that identify the logs TRAIN, each going on where the one before ended, to p.csv."""
+    first, second, third = TRAIN
+    return (
+        f"{identify} --save s.npz {first}.csv > /dev/null &&"
+        f" {identify} --from s.npz --save s.npz {second}.csv > /dev/null &&"
+        f" {identify} --from s.npz {third}.csv -o p.csv"
+    )
 
 
 def far_from_published(table: str, folder: Path) -> set[str]:

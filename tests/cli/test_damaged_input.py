@@ -224,12 +224,12 @@ def test_malformed_metadata_is_bad_data(document: bytes, scarid: Run, tmp_path: 
 
 @pytest.mark.parametrize("error", [">&-", "/dev/full"])
 def test_the_status_is_that_of_the_failure_when_standard_error_is_closed_or_full(
-    error: str, shell: Run, tmp_path: Path
+    error: str, users_shell: Run, tmp_path: Path
 ) -> None:
     (tmp_path / "bad.csv").write_text("t,q1\n0,1\n")
     words = "2>&-" if error == ">&-" else f"2> {error}"
-    assert shell(f"scarid filter bad.csv {words}").status == 65
-    assert shell(f"scarid trajgen --duration 3 {words}").status == 0
+    assert users_shell(f"scarid filter bad.csv {words}").status == 65
+    assert users_shell(f"scarid trajgen --duration 3 {words}").status == 0
 
 
 def test_a_damaged_state_is_bad_data(scarid: Run, samples: Path, tmp_path: Path) -> None:

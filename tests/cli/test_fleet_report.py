@@ -10,6 +10,7 @@ from pathlib import Path
 import fleets
 import pytest
 from conftest import Result, refused
+from outcomes import done, estimate, failed, robot, write
 from reports import markdown_rows
 
 Run = Callable[..., Result]
@@ -76,20 +77,20 @@ def test_the_script_is_given_the_estimates_with_their_intervals(outcome: Path, s
 
 
 def test_parameters_that_are_hardly_known_are_left_out(tmp_path: Path, scarid: Run) -> None:
-    known = [fleets.estimate("r", i, "Fs1", 1.0) for i in (1, 2)]
-    vague = [fleets.estimate("r", i, "Fv1", 1.0, robust_error=0.31) for i in (1, 2)]
-    logs, robots = [fleets.done("r", 1), fleets.done("r", 2)], [fleets.robot("r")]
-    folder = fleets.write(tmp_path / "o", fleet=logs, estimates=known + vague, robots=robots)
+    known = [estimate("r", i, "Fs1", 1.0) for i in (1, 2)]
+    vague = [estimate("r", i, "Fv1", 1.0, robust_error=0.31) for i in (1, 2)]
+    logs, robots = [done("r", 1), done("r", 2)], [robot("r")]
+    folder = write(tmp_path / "o", fleet=logs, estimates=known + vague, robots=robots)
     parameters = fleets.data(page_of(folder, scarid))["robots"][0]["parameters"]
     assert [p["name"] for p in parameters] == ["Fs1"]
 
 
 def test_text_from_the_tables_is_never_markup(tmp_path: Path, scarid: Run) -> None:
     reason = {"change": "changed", "change_reason": RUDE, "differing": RUDE, "page": RUDE}
-    logs = [fleets.failed(RUDE, 1, RUDE), fleets.done(RUDE, 2, log=RUDE, **reason)]
-    estimates = [fleets.estimate(RUDE, 2, RUDE, 1.0, unit=RUDE)]
-    robots = [fleets.robot(RUDE, trend=RUDE, trending=RUDE)]
-    folder = fleets.write(tmp_path / "o", fleet=logs, estimates=estimates, robots=robots)
+    logs = [failed(RUDE, 1, RUDE), done(RUDE, 2, log=RUDE, **reason)]
+    estimates = [estimate(RUDE, 2, RUDE, 1.0, unit=RUDE)]
+    robots = [robot(RUDE, trend=RUDE, trending=RUDE)]
+    folder = write(tmp_path / "o", fleet=logs, estimates=estimates, robots=robots)
     html = folder / "fleet.html"
     result = scarid("report", "--fleet", folder, "--html", html, "--title", RUDE)
     assert result.status == 0
@@ -112,8 +113,11 @@ def test_nothing_is_loaded_from_elsewhere(outcome: Path, scarid: Run) -> None:
 
 
 def test_a_page_of_a_log_is_always_below_the_folder(tmp_path: Path, scarid: Run) -> None:
-    logs = [fleets.done("r", 1, page="javascript:alert(1)"), fleets.done("r", 2, page="//a.b/c")]
-    folder = fleets.write(tmp_path / "o", fleet=logs, estimates=[], robots=[fleets.robot("r")])
+    logs = [
+        done("r", 1, page="javascript:alert(1)"),
+        done("r", 2, page="//a.b/c"),
+    ]
+    folder = write(tmp_path / "o", fleet=logs, estimates=[], robots=[robot("r")])
     found = fleets.data(page_of(folder, scarid))["logs"]["page"]
     assert found == ["./javascript%3Aalert%281%29", ".///a.b/c"]
 
@@ -130,8 +134,8 @@ def test_the_same_bytes_twice(outcome: Path, scarid: Run) -> None:
 
 
 def test_a_fleet_of_failures_has_a_page(tmp_path: Path, scarid: Run) -> None:
-    logs = [fleets.failed("r", i, "scarid convert: a.csv: no such file") for i in (1, 2)]
-    folder = fleets.write(tmp_path / "o", fleet=logs, estimates=[], robots=[fleets.robot("r")])
+    logs = [failed("r", i, "scarid convert: a.csv: no such file") for i in (1, 2)]
+    folder = write(tmp_path / "o", fleet=logs, estimates=[], robots=[robot("r")])
     page = page_of(folder, scarid)
     assert len(static_rows(page)) == 2
     assert fleets.data(page)["robots"][0]["parameters"] == []
@@ -156,12 +160,12 @@ def test_a_folder_that_lacks_a_table_is_refused(name: str, outcome: Path, scarid
 
 def test_a_table_of_another_kind_is_refused(outcome: Path, scarid: Run) -> None:
     (outcome / "robots.parquet").rename(outcome / "fleet.parquet")
-    fleets.write(outcome, robots=[fleets.robot("r")])
+    write(outcome, robots=[robot("r")])
     refused(scarid("report", "--fleet", outcome), 65, "fleet.parquet, column log")
 
 
 def test_an_empty_fleet_is_refused(tmp_path: Path, scarid: Run) -> None:
-    folder = fleets.write(tmp_path / "o", fleet=[], estimates=[], robots=[])
+    folder = write(tmp_path / "o", fleet=[], estimates=[], robots=[])
     refused(scarid("report", "--fleet", folder), 65, "fleet.parquet", "no rows")
 
 

@@ -103,7 +103,7 @@ def test_every_format_and_way_in_gives_the_same_bytes(
 
 
 @pytest.mark.parametrize("chain", IN_A_SHELL)
-def test_processes_give_the_same_bytes_too(chain: str, shell: Run) -> None:
+def test_processes_give_the_same_bytes_too(chain: str, users_shell: Run) -> None:
     made = [
         f"scarid convert --format {name} $SAMPLES/scara2.csv -o log.{extension}"
         for name, extension in FORMATS.items()
@@ -114,7 +114,7 @@ def test_processes_give_the_same_bytes_too(chain: str, shell: Run) -> None:
     ways += [f"export SCARID_FORMAT=arrow; {chain.replace('LOG', 'log.csv')} | scarid convert"
              " --format csv"]  # fmt: skip
     script = " && ".join([*made, *(f"({way}) > {k}.out" for k, way in enumerate(ways))])
-    result = shell(f"{script} && cat *.out | wc -l && sha256sum *.out | cut -c1-64 | sort -u")
+    result = users_shell(f"{script} && cat *.out | wc -l && sha256sum *.out | cut -c1-64 | sort -u")
     assert result.status == 0, result.err
     lines, *digests = result.out.splitlines()
     assert int(lines) >= 3 * len(ways)

@@ -138,12 +138,12 @@ def test_a_report_that_fails_leaves_no_folder_of_figures(
     assert not (tmp_path / "figures").exists()
 
 
-def test_an_output_to_closed_standard_output_by_its_path_is_a_failure(shell: Run) -> None:
-    result = shell("scarid trajgen --duration 3 -q -o /dev/stdout >&-")
+def test_an_output_to_closed_standard_output_by_its_path_is_a_failure(users_shell: Run) -> None:
+    result = users_shell("scarid trajgen --duration 3 -q -o /dev/stdout >&-")
     assert result.status == 74
     assert result.err.count("\n") == 1
 
 
-def test_standard_output_can_be_given_by_its_path(shell: Run) -> None:
-    expected = shell("scarid trajgen --duration 3 -q")
-    assert shell("scarid trajgen --duration 3 -q -o /dev/stdout | cat").out == expected.out
+def test_standard_output_can_be_given_by_its_path(users_shell: Run) -> None:
+    expected = users_shell("scarid trajgen --duration 3 -q")
+    assert users_shell("scarid trajgen --duration 3 -q -o /dev/stdout | cat").out == expected.out

@@ -17,8 +17,8 @@ Shell = Callable[..., Result]
 SCARID = Path(sys.executable).parent / "scarid"
 
 
-def test_the_readme_pipe_prints_eight_parameters(shell: Shell) -> None:
-    result = shell(
+def test_the_readme_pipe_prints_eight_parameters(users_shell: Shell) -> None:
+    result = users_shell(
         "scarid trajgen --robot scara2 --seed 1 | scarid simulate | scarid filter |"
         " scarid differentiate --method p2smd | scarid identify | column -s, -t"
     )
@@ -29,53 +29,55 @@ def test_the_readme_pipe_prints_eight_parameters(shell: Shell) -> None:
     ]  # fmt: skip
 
 
-def test_a_reader_that_leaves_ends_the_writer_in_silence(shell: Shell) -> None:
-    result = shell("scarid trajgen -q --duration 2000 | head -1; echo ${PIPESTATUS[0]}")
+def test_a_reader_that_leaves_ends_the_writer_in_silence(users_shell: Shell) -> None:
+    result = users_shell("scarid trajgen -q --duration 2000 | head -1; echo ${PIPESTATUS[0]}")
     assert result.out.splitlines()[1] == "141"
     assert result.err == ""
 
 
 @pytest.mark.parametrize("command", ["trajgen", "trajgen --help", "--version"])
-def test_a_full_disk_is_one_line_and_74(command: str, shell: Shell) -> None:
-    result = shell(f"scarid {command} > /dev/full")
+def test_a_full_disk_is_one_line_and_74(command: str, users_shell: Shell) -> None:
+    result = users_shell(f"scarid {command} > /dev/full")
     assert result.status == 74
     assert result.err.count("\n") == 1
     assert "No space left on device" in result.err
 
 
 @pytest.mark.parametrize("command", ["trajgen", "--version"])
-def test_a_closed_standard_output_is_74(command: str, shell: Shell) -> None:
-    result = shell(f"scarid {command} >&-")
+def test_a_closed_standard_output_is_74(command: str, users_shell: Shell) -> None:
+    result = users_shell(f"scarid {command} >&-")
     assert result.status == 74
     assert result.err.count("\n") == 1
 
 
-def test_a_closed_standard_output_does_not_matter_with_an_output_file(shell: Shell) -> None:
-    assert shell("scarid trajgen -q --duration 2 -o t.csv >&- && test -s t.csv").status == 0
+def test_a_closed_standard_output_does_not_matter_with_an_output_file(users_shell: Shell) -> None:
+    assert users_shell("scarid trajgen -q --duration 2 -o t.csv >&- && test -s t.csv").status == 0
 
 
-def test_a_directory_that_is_not_there_is_74(shell: Shell) -> None:
-    result = shell("scarid trajgen -o nowhere/t.csv")
+def test_a_directory_that_is_not_there_is_74(users_shell: Shell) -> None:
+    result = users_shell("scarid trajgen -o nowhere/t.csv")
     assert result.status == 74
     assert result.err.count("\n") == 1
 
 
-def test_standard_input_cannot_be_two_tables(shell: Shell) -> None:
-    result = shell("scarid validate --parameters - < $SAMPLES/scara2.parameters.csv")
+def test_standard_input_cannot_be_two_tables(users_shell: Shell) -> None:
+    result = users_shell("scarid validate --parameters - < $SAMPLES/scara2.parameters.csv")
     assert result.status == 2
     assert "standard input can be read only once" in result.err
 
 
-def test_devices_are_written_directly(shell: Shell) -> None:
-    assert shell("scarid trajgen -o /dev/null && test -c /dev/null").status == 0
-    assert shell("scarid trajgen -o /dev/full").status == 74
+def test_devices_are_written_directly(users_shell: Shell) -> None:
+    assert users_shell("scarid trajgen -o /dev/null && test -c /dev/null").status == 0
+    assert users_shell("scarid trajgen -o /dev/full").status == 74
 
 
-def test_a_bad_row_stops_every_later_stage_of_a_csv_pipe(shell: Shell, tmp_path: Path) -> None:
+def test_a_bad_row_stops_every_later_stage_of_a_csv_pipe(
+    users_shell: Shell, tmp_path: Path
+) -> None:
     rows = [f"{k / 200},0.1,0.2,1,1" for k in range(100_000)]
     rows[90_000] = "200,nan,0.2,1,1"
     (tmp_path / "log.csv").write_text("\n".join(["t,q1,q2,tau1,tau2", *rows, ""]))
-    result = shell(
+    result = users_shell(
         "scarid filter log.csv | scarid differentiate | scarid identify -o parameters.csv;"
         " echo ${PIPESTATUS[@]}"
     )

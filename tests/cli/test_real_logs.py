@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from cli.real import TRAIN, described_six_axes, far_from_published
+from cli.real import TRAIN, described_six_axes, far_from_published, one_after_the_other
 from conftest import Result
 
 Shell = Callable[..., Result]
@@ -200,11 +200,8 @@ def test_a_vertical_arm_is_identified_from_three_logs_and_predicts_the_fourth(
     """Measured before with other tools: R2 .869 and .967 on the test run, at 5 Hz."""
     made = " && ".join(pendulum(run, real_logs) for run in (*TRAIN, "154548"))
     identify = "scarid identify -q --robot planar2-gravity --estimator wls"
-    first, second, third = TRAIN
     result = shell(
-        f"{made} && {identify} --save s.npz {first}.csv > /dev/null &&"
-        f" {identify} --from s.npz --save s.npz {second}.csv > /dev/null &&"
-        f" {identify} --from s.npz {third}.csv -o p.csv && cut -d, -f3 p.csv | head -5 | tail -4 &&"
+        f"{made} && {one_after_the_other(identify)} && cut -d, -f3 p.csv | head -5 | tail -4 &&"
         " scarid validate --robot planar2-gravity --parameters p.csv 154548.csv | tail -2"
     )
     assert result.status == 0, result.err
@@ -223,11 +220,8 @@ def test_a_vertical_arm_is_identified_online(shell: Shell, real_logs: Path) -> N
         for run in (*TRAIN, "154548")
     )
     identify = "scarid identify -q --robot planar2-gravity"
-    first, second, third = TRAIN
     result = shell(
-        f"{made} && {identify} --save s.npz {first}.csv > /dev/null &&"
-        f" {identify} --from s.npz --save s.npz {second}.csv > /dev/null &&"
-        f" {identify} --from s.npz {third}.csv -o p.csv &&"
+        f"{made} && {one_after_the_other(identify)} &&"
         " scarid validate --robot planar2-gravity --parameters p.csv 154548.csv | tail -2"
     )
     assert result.status == 0, result.err

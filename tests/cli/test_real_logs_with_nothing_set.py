@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from cli.real import TRAIN, described_six_axes, far_from_published, ur10_log
+from cli.real import TRAIN, described_six_axes, far_from_published, one_after_the_other, ur10_log
 from conftest import Result
 
 from scarid_cli.algorithms.robots.reading import load
@@ -84,11 +84,8 @@ def test_a_vertical_arm_as_with_other_tools(shell: Shell, real_logs: Path, tmp_p
         for run in (*TRAIN, "154548")
     )
     identify = "scarid identify -q --robot planar2-gravity --estimator wls"
-    first, second, third = TRAIN
     result = shell(
-        f"{made} && {identify} --save s.npz {first}.csv > /dev/null &&"
-        f" {identify} --from s.npz --save s.npz {second}.csv > /dev/null &&"
-        f" {identify} --from s.npz {third}.csv -o p.csv &&"
+        f"{made} && {one_after_the_other(identify)} &&"
         " scarid differentiate --method zero-phase --set cutoff=5 154548.csv --format arrow |"
         " tee motion.arrows |"
         " scarid validate -q --robot planar2-gravity --all-rows --parameters p.csv -o m.csv"

@@ -50,13 +50,15 @@ def test_several_motions_give_the_estimates_of_one_after_the_other(
     )
 
 
-def test_the_printed_command_for_several_measurements_gives_the_same_bytes(shell: Shell) -> None:
-    once = shell("scarid identify --robot scara2 --to-time 4 a.csv b.csv")
+def test_the_printed_command_for_several_measurements_gives_the_same_bytes(
+    users_shell: Shell,
+) -> None:
+    once = users_shell("scarid identify --robot scara2 --to-time 4 a.csv b.csv")
     assert once.status == 0, once.err
     found = re.search(r"the same as: (.*)$", once.err, re.MULTILINE)
     assert found
     assert found[1].count("<(scarid differentiate") == 2
-    again = shell(found[1])
+    again = users_shell(found[1])
     assert again.out == once.out
     assert once.err.count("cut-off") == once.err.count("torques lead by") == 1
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cli.real import described_six_axes
 from conftest import Result, refused
 from pyarrow.parquet import read_table
 from unit.arms import URDF, seven_axes, sines
@@ -166,14 +167,7 @@ def test_dropped_parameters_of_a_real_robot_stay_at_zero(
     shell: Shell, tmp_path: Path, real_logs: Path
 ) -> None:
     """Staubli TX40: only sums of inertias, which are positive, cannot be zero."""
-    described = (
-        "title = 'TX40'\nurdf = 'URDF'\n"
-        + 6 * "[[joint]]\n"
-        + ("terms = ['viscous', 'coulomb', 'offset']\n[[coupling]]\njoints = [5, 6]\n")
-    )
-    urdf = real_logs / "staubli_tx40" / "tx40_mdh_modified.urdf"
-    (tmp_path / "tx40.toml").write_text(described.replace("URDF", str(urdf)))
-    log = real_logs / "staubli_tx40" / "tx40_joint_5kHz.parquet"
+    log = described_six_axes(real_logs, tmp_path) / "tx40_joint_5kHz.parquet"
     rows = "--skip 20,20 --decimate 10,10 --drop-slow 0.0501,0.0501,0.075,0.0716,0.0559,0.1222"
     result = shell(
         f"scarid filter --zero-phase --cutoff 100 -c 'q?' {log} --format arrow |"

@@ -110,8 +110,10 @@ def test_a_page_shows_what_its_commands_print(page: str, shell: Shell, tmp_path:
 
 @pytest.mark.skipif(os.environ.get("SCARID_DOCS") != "all", reason="slow: make docs-test")
 @pytest.mark.parametrize("page", [p for p, run in RUN.items() if any(b.slow for b in run)])
-def test_a_page_with_slow_blocks_shows_it_too(page: str, shell: Shell, tmp_path: Path) -> None:
-    check(page, RUN[page], shell, tmp_path)
+def test_a_page_with_slow_blocks_shows_it_too(
+    page: str, users_shell: Shell, tmp_path: Path
+) -> None:
+    check(page, RUN[page], users_shell, tmp_path)
 
 
 def test_most_blocks_are_run_and_many_are_compared() -> None:

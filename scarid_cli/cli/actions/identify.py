@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -25,6 +25,7 @@ from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
+from scarid_cli.io.writer import Document
 from scarid_cli.stages import identify as stage
 from scarid_cli.stages.parameters import identified
 from scarid_cli.stages.reach import Reach
@@ -32,78 +33,116 @@ from scarid_cli.stages.reach import Reach
 ONLINE, OFFLINE = "rls", "wls"  # what a motion, and a measurement, are identified by
 
 
+@dataclass(frozen=True)
+class Chosen:
+    """An estimator with its settings, and how it takes the rows."""
+
+    name: str
+    method: Any
+    values: dict[str, float]
+    treatment: Treatment
+
+
 def run(
     job: Job,
     *,
     files: tuple[str, ...],
     robot: str | None,
-    estimator: str | None,
-    initial: str | None,
     variance: str,
-    trace: str | None,
-    resumed: str | None,
-    save: str | None,
     require: str | None,
     **given: Any,
 ) -> int:
     """Write the parameters, and report the verdict; returns the exit status."""
-    name = estimator or ONLINE
-    method = ESTIMATORS.load(name)
-    values = _settings(method, name, given)
-    method(**values)  # refuses settings before anything is read
-    treatment = treatment_of(given)
-    _require_possible(method, name, treatment, trace=trace, resumable=save or resumed)
-    if initial and not method.INITIAL:
-        raise UsageFault(f"--initial: {name} has no initial parameters; leave the option out")
-    side, place = job.side_table(trace), job.side_text(save)
-    resampled = Resampled(job)
-    reading = partial(_read, job, method, resampled)
-    table, arm = read_logs(job, files, robot, reading, skip=given["skip"])
-    arm, treatment = for_robot(arm, treatment, given)
-    if not method.FOLLOWS and not numbered(table.columns, "ddq"):
-        row_by_row = bool(trace or resumed or save)
-        if not (estimator or values or given["forgetting"] or initial or row_by_row):
-            name, method = OFFLINE, ESTIMATORS.load(OFFLINE)
-        if given["align"] is None and method.ALIGNS and not row_by_row:
-            treatment = replace(treatment, align=True)
-        table = motion(job, table, arm, _options(name, treatment), resampled.rates)
-    given["all_rows"] |= method.FOLLOWS
+    asked = _asked(given)
+    side, place = job.side_table(given["trace"]), job.side_text(given["save"])
+    table, arm, chosen = _read_logs(job, files, robot, asked, given)
     reach = Reach(len(arm.joints))
     table = reach.watched(table)
-    treatment = for_motion(table.meta, treatment, given)
-    solver = method(**values, **_single(given["forgetting"], arm.names))
-    start = _initial(job, initial, arm)
-    fixed = _fixed(table, arm, name, solver, treatment, given["smooth_sign"])
+    chosen = _for_motion(table, chosen, given)
+    solver = chosen.method(**chosen.values, **_single(given["forgetting"], arm.names))
+    start = _initial(job, given["initial"], arm)
+    fixed = _fixed(table, arm, chosen, solver, given["smooth_sign"])
     places: list[Checkpoint] = []
     result = stage.identify(
         job.recorded(table),
         arm,
         solver,
         start,
-        treatment=treatment,
+        treatment=chosen.treatment,
         variance=variance,
         trace=side,
-        checkpoint=_restored(resumed, fixed),
+        checkpoint=_restored(given["resumed"], fixed),
         keep=places.append,
     )
     job.write(result)
     if place:
-        from scarid_cli.stages.continuation import saved
-
-        place.write(saved(places[0], fixed))
+        _save(place, places[0], fixed)
     for remark in reach.remarks(arm, table.period):
         job.say(f"warning: {remark}")
-    report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
-    _tell(job, arm.name, name, result.meta.extra, aligned=treatment.align)
+    _tell(job, table, arm.name, chosen, result.meta.extra)
     return _status(job, require, result.meta.extra)
 
 
-def _tell(job: Job, robot: str, name: str, extra: dict[str, Any], *, aligned: bool) -> None:
-    """Say what was found, and the verdict on it."""
-    facts, verdict = summary_lines(robot, name, extra)
+def _asked(given: dict[str, Any]) -> Chosen:
+    """What the options ask for; refuses what is impossible before anything is read."""
+    name = given["estimator"] or ONLINE
+    method = ESTIMATORS.load(name)
+    values = _settings(method, name, given)
+    method(**values)
+    asked = Chosen(name, method, values, treatment_of(given))
+    _require_possible(asked, given)
+    return asked
+
+
+def _read_logs(
+    job: Job, files: tuple[str, ...], robot: str | None, asked: Chosen, given: dict[str, Any]
+) -> tuple[Table, Robot, Chosen]:
+    """The motion of the logs, its robot, and what it is identified by."""
+    resampled = Resampled(job)
+    reading = partial(_read, job, asked.method, resampled)
+    table, arm = read_logs(job, files, robot, reading, skip=given["skip"])
+    arm, treatment = for_robot(arm, asked.treatment, given)
+    chosen = replace(asked, treatment=treatment)
+    if chosen.method.FOLLOWS or numbered(table.columns, "ddq"):
+        return table, arm, chosen
+    chosen = _for_measurement(chosen, given)
+    options = _options(chosen.name, chosen.treatment)
+    return motion(job, table, arm, options, resampled.rates), arm, chosen
+
+
+def _for_measurement(asked: Chosen, given: dict[str, Any]) -> Chosen:
+    """What the recommended procedure adds, unless the rows have to be taken one by one."""
+    if any(given[option] for option in ("trace", "resumed", "save")):
+        return asked
+    chosen = asked
+    if not (given["estimator"] or asked.values or given["forgetting"] or given["initial"]):
+        chosen = replace(asked, name=OFFLINE, method=ESTIMATORS.load(OFFLINE))
+    if given["align"] is None and chosen.method.ALIGNS:
+        chosen = replace(chosen, treatment=replace(chosen.treatment, align=True))
+    return chosen
+
+
+def _for_motion(table: Table, chosen: Chosen, given: dict[str, Any]) -> Chosen:
+    """The same, with the rows of this motion that count; of a reference all do."""
+    all_rows = given["all_rows"] or chosen.method.FOLLOWS
+    treatment = for_motion(table.meta, chosen.treatment, {**given, "all_rows": all_rows})
+    return replace(chosen, treatment=treatment)
+
+
+def _save(place: Document, checkpoint: Checkpoint, fixed: dict[str, Any]) -> None:
+    """Write what --from continues from."""
+    from scarid_cli.stages.continuation import saved  # zipfile takes a while to import
+
+    place.write(saved(checkpoint, fixed))
+
+
+def _tell(job: Job, table: Table, robot: str, chosen: Chosen, extra: dict[str, Any]) -> None:
+    """Say which rows were left out, what was found, and the verdict on it."""
+    report(job, table, chosen.treatment.counting, extra.get("left_out", {}))
+    facts, verdict = summary_lines(robot, chosen.name, extra)
     job.say(facts)
     job.say(verdict, extra["verdict"])
-    if aligned and job.out.format == "csv":
+    if chosen.treatment.align and job.out.format == "csv":
         job.say("CSV does not keep the delay: write -o FILE.parquet for validate to apply it")
 
 
@@ -146,19 +185,21 @@ def _restored(resumed: str | None, fixed: dict[str, Any]) -> Checkpoint | None:
     return restored(resumed, fixed)
 
 
-def _require_possible(
-    method: Any, name: str, treatment: Treatment, *, trace: str | None, resumable: str | None
-) -> None:
+def _require_possible(asked: Chosen, given: dict[str, Any]) -> None:
     """Refuse options that the estimator, or the treatment of the rows, does not allow."""
-    if trace and not method.RECURSIVE:
+    name, method, treatment = asked.name, asked.method, asked.treatment
+    if given["trace"] and not method.RECURSIVE:
         raise UsageFault(f"--trace: {name} has no estimates after every sample; use rls or ekf")
     if treatment.align and not method.ALIGNS:
         raise UsageFault(f"--align cannot be combined with --estimator {name}")
-    if (resumable or trace) and (treatment.holds or method.HOLDS):
+    row_by_row = given["save"] or given["resumed"] or given["trace"]
+    if row_by_row and (treatment.holds or method.HOLDS):
         what = f"--estimator {name}" if method.HOLDS else "--decimate or --align"
         raise UsageFault(
             f"--save, --from and --trace work row by row and cannot be combined with {what}"
         )
+    if given["initial"] and not method.INITIAL:
+        raise UsageFault(f"--initial: {name} has no initial parameters; leave the option out")
 
 
 def _initial(job: Job, initial: str | None, arm: Robot) -> Array:
@@ -177,16 +218,16 @@ def _initial(job: Job, initial: str | None, arm: Robot) -> Array:
 
 
 def _fixed(
-    table: Table, arm: Robot, estimator: str, solver: Any, treatment: Treatment, sign: float | None
+    table: Table, arm: Robot, chosen: Chosen, solver: Any, sign: float | None
 ) -> dict[str, Any]:
     """What must stay the same when a saved estimation is continued, as JSON holds it."""
     known = {name: getattr(solver, name) for name in names_of(solver)}
     return {
         "robot": arm.name,
-        "estimator": estimator,
+        "estimator": chosen.name,
         "period": table.meta.period,
         "settings": json.loads(json.dumps(known)),
-        "slow": list(treatment.slow),
+        "slow": list(chosen.treatment.slow),
         "smooth_sign": sign,
     }
 

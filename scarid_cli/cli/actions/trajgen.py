@@ -47,22 +47,29 @@ def run(
     motion = found.curve if found else _motion(job, arm, limits, home, given)
     trajectory = _joined(motion, arm, limits, home, given)
     stage.checked(trajectory, limits, rate)
-    if narrowed := _narrowed(bounds, limits):
-        job.say(f"joint {narrowed}: the description has narrower limits than given, and these hold")
+    _tell_narrowed(job, bounds, limits)
     meta = Metadata(kind="trajectory", robot=arm.name, period=1.0 / rate)
     job.write(job.recorded(stage.tabulate(trajectory, arm, rate, meta)))
-    about = f"{arm.name}, {trajectory.duration:g} s, {trajectory.summary}"
     if not (found or side):
-        job.say(f"{about}, {stage.conditioning(trajectory, arm, rate)}")
+        job.say(f"{_about(arm, trajectory)}, {stage.conditioning(trajectory, arm, rate)}")
         return
     prediction = Prediction.of(trajectory, arm, rate, wish.noise, wish.known, treatment)
+    _tell(job, _about(arm, trajectory), found, prediction)
+    if side:
+        job.write(job.recorded(prediction.table(replace(meta, period=None))), side)
+
+
+def _about(arm: Robot, trajectory: Trajectory) -> str:
+    return f"{arm.name}, {trajectory.duration:g} s, {trajectory.summary}"
+
+
+def _tell(job: Job, about: str, found: Found | None, prediction: Prediction) -> None:
+    """Say how well the motion excites the robot, and what limits one that was optimised."""
     way = f", the best of {found.starts} starts" if found else ""
     job.say(f"{about}{way}: {prediction.excitation}")
     if found:
         job.say(f"limited by: {found.limited}")
     job.say(prediction.summary)
-    if side:
-        job.write(job.recorded(prediction.table(replace(meta, period=None))), side)
 
 
 def _require_moderate(rate: float, duration: float, times: int) -> None:
@@ -150,11 +157,13 @@ def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
     return Limits(lower, upper, row("--dq-max", own.dq), row("--ddq-max", own.ddq))
 
 
-def _narrowed(asked: Limits, limits: Limits) -> str:
-    """The joints (from 1) for which the description has narrower limits than were asked for."""
+def _tell_narrowed(job: Job, asked: Limits, limits: Limits) -> None:
+    """Say for which joints the description has narrower limits than were asked for."""
     pairs = zip(vars(asked).values(), vars(limits).values(), strict=True)
-    differ = np.any([one != other for one, other in pairs], axis=0)
-    return ", ".join(str(i + 1) for i in np.flatnonzero(differ))
+    differ = np.flatnonzero(np.any([one != other for one, other in pairs], axis=0))
+    if len(differ):
+        joints = ", ".join(str(i + 1) for i in differ)
+        job.say(f"joint {joints}: the description has narrower limits than given, and these hold")
 
 
 def _home(arm: Robot, limits: Limits, given: tuple[float, ...] | None) -> Array:

@@ -16,10 +16,10 @@ from scarid_cli.errors import UsageFault
 from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
 from scarid_cli.stages import validate as stage
-from scarid_cli.stages.changes import known
+from scarid_cli.stages.changes import Known, known
 from scarid_cli.stages.estimates import errors_of
-from scarid_cli.stages.parameters import identified
-from scarid_cli.stages.pooling import Entry, together
+from scarid_cli.stages.parameters import Identified, identified
+from scarid_cli.stages.pooling import Entry, pooled_identifications
 
 
 def run(
@@ -41,7 +41,7 @@ def run(
     table, arm = read_logs(job, files, stated, partial(_read, job), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
     treatment = for_motion(table.meta, treatment, given)
-    model, before = together([_stored(table, arm) for table in tables])
+    model, before = pooled_identifications([_stored(table, arm) for table in tables])
     result = stage.validate(
         job.recorded(table),
         model,
@@ -53,11 +53,16 @@ def run(
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
     if len(tables) > 1:
         job.say(f"pooled the parameters of {len(tables)} identifications, by their information")
+    _tell(job, model, before, result.meta.extra)
+
+
+def _tell(job: Job, model: Identified, before: Known, extra: dict[str, Any]) -> None:
+    """Say which delay was applied, and whether the robot has changed."""
     if model.delay:
         delay = 1e3 * model.delay
         job.say(f"applied the delay that identify fitted: torques lead by {delay:.3g} ms")
     if before.testable:
-        change = result.meta.extra["change"]
+        change = extra["change"]
         job.say(f"{change['verdict']}: {change['reason']}", change["verdict"])
     if before.remark:
         job.say(before.remark)
