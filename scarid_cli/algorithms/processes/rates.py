@@ -15,8 +15,8 @@ from scarid_cli.arrays import Array, median
 ROWS = 10_000  # of a log, whose mean rate is taken, at most
 LATE = 2.5  # periods of two intervals: 2 with a late row, 3 with a missing one
 FEW = 0.1  # of the rows: if more seem to be missing, it is the clock that jitters
-NEAR = 0.002  # of the rate, by which a rounder one may differ from it
-DIGITS = 6
+# Of the rate, by which a rounder one may differ: that of a good clock, and that of any.
+CLOSE, NEAR = 1e-4, 0.005
 
 
 def mean_rate(steps: Array) -> float:
@@ -47,23 +47,20 @@ def lost_rows(steps: Array, period: float) -> Array:
 
 
 def round_rate(rate: float) -> float:
-    """The rate [Hz] or period with the fewest digits near a rate: 400 for 399.97, 1/0.003."""
+    """A rate [Hz] or period of few digits near a rate: 400 for 399.97, 1/0.003 for 333.33."""
     if not (rate > 0.0 and np.isfinite(1.0 / rate)):
         return rate
-    own, inverse = _rounded(rate), 1.0 / _rounded(1.0 / rate)
-    return inverse if _digits(1.0 / rate) < _digits(rate) else own
+    period = _rounded(1.0 / rate, CLOSE, 2)
+    found = _rounded(rate, CLOSE, 3) or (1.0 / period if period else None)
+    return found or _rounded(rate, NEAR, 3) or rate
 
 
-def _rounded(x: float) -> float:
-    return float(f"{x:.{_digits(x)}g}")
-
-
-def _digits(x: float) -> int:
-    """The fewest significant digits of a number near x."""
-    near = (n for n in range(1, DIGITS) if abs(float(f"{x:.{n}g}") - x) <= NEAR * x)
-    return next(near, DIGITS)
+def _rounded(x: float, near: float, digits: int) -> float | None:
+    """The number of the fewest digits that differs from x by at most this part, if there is one."""
+    rounded = (float(f"{x:.{count}g}") for count in range(1, digits + 1))
+    return next((y for y in rounded if abs(y - x) <= near * x), None)
 
 
 def rate_text(rate: float) -> str:
     """The round rate near a rate [Hz], as it is typed."""
-    return f"{round_rate(rate):.{DIGITS}g}"
+    return f"{round_rate(rate):.6g}"
