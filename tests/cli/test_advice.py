@@ -121,3 +121,27 @@ def test_a_header_with_a_nameless_column_can_be_replaced(tmp_path: Path, shell: 
     refused(failed, 65, "column 1: found no name")
     replaced = re.findall(r"`(.*)`", failed.err)[0].replace("NAMES", f"number,{RECORD[0]}")
     assert shell(f"{replaced} | scarid identify").status == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "advised"),
+    [
+        ("identify LOG", False),
+        ("differentiate LOG then identify", False),
+        ("differentiate LOG -o MOTION.csv", False),
+        ("differentiate --method p2smd --no-match LOG then identify", True),
+    ],
+)
+def test_a_motion_that_is_matched_is_not_to_be_matched(
+    words: str, advised: bool, scarid: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor is a measurement, which `identify` matches; a CSV says so by its settling rows only."""
+    module = "scarid_cli.algorithms.statistics.verdict"
+    monkeypatch.setattr(f"{module}._moved", lambda *_: "Fv1 would change")
+    log, motion = ROOT / "samples" / "scara2.csv", tmp_path / "motion"
+    words = words.replace("LOG", str(log)).replace("MOTION", str(motion))
+    found = scarid(*words.split())
+    if "-o" in words:
+        found = scarid("identify", f"{motion}.csv")
+    assert "the estimates depend on the soft sensor" in found.err
+    assert ("use scarid differentiate --match" in found.err) == advised

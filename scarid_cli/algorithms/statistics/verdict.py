@@ -30,6 +30,7 @@ VAGUE = 0.1  # of the torque: half the interval above which it counts as not kno
 UNTESTED = "the estimates were not tested for bias"
 DEPENDENT = "the estimates depend on the soft sensor"
 APART = "torque and motion are not those of one instant"
+UNMATCHED = " (unless the motion is matched, use scarid differentiate --match)"
 FEW = 3  # unknown parameters that are named
 
 
@@ -58,7 +59,8 @@ def meets(required: str, grade: str, reasons: Sequence[str]) -> bool:
 class Evidence:
     """What a verdict is based on; `estimates` and errors are in the order of `names`.
 
-    The verdict does not recommend the options of the `treatment` that are already in use.
+    The verdict does not recommend the options of the `treatment` that are already in use, nor a
+    `matched` motion if this one is known to be so.
     """
 
     names: Sequence[str]
@@ -68,6 +70,7 @@ class Evidence:
     weak: str
     diagnostics: Diagnostics
     treatment: Treatment
+    matched: bool = False
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
@@ -130,7 +133,7 @@ def _biased(evidence: Evidence) -> list[str]:
     if moved := _moved(evidence, found[PARALLEL]):
         reasons.append(
             f"{DEPENDENT}: with derivatives and torques behind the same "
-            f"low-pass, {moved} (unless the motion is matched, use scarid differentiate --match)"
+            f"low-pass, {moved}{'' if evidence.matched else UNMATCHED}"
         )
     if SIGNALS in found and (moved := _moved(evidence, found[SIGNALS])):
         advice = "" if evidence.treatment.align else "; --align fits a delay"
