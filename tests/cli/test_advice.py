@@ -133,7 +133,7 @@ def test_a_header_with_a_nameless_column_can_be_replaced(tmp_path: Path, shell: 
     ],
 )
 def test_a_motion_that_is_matched_is_not_to_be_matched(
-    words: str, advised: bool, scarid: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    words: str, scarid: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, advised: bool
 ) -> None:
     """Nor is a measurement, which `identify` matches; a CSV says so by its settling rows only."""
     module = "scarid_cli.algorithms.statistics.verdict"
