@@ -86,8 +86,8 @@ def logs(folder: Path) -> Iterator[tuple[str, Path, str]]:
 
 def pipes(folder: Path) -> None:
     """The same stages as a pipe and in one process, in turns; the least of some rounds."""
-    print(f"A pipe and `then`: wall-clock and processor seconds, least of {ROUNDS} rounds in turns;")
-    print("`at once`: the ratio of the wall-clock times of one such line on each core")
+    print(f"A pipe and `then`: wall-clock and processor seconds, least of {ROUNDS} rounds in turns")
+    print("(at once: the ratio of the wall-clock times of one such line on each core)")
     print("  log                   stages       pipe         then       ratios  at once")
     for title, log, robot in logs(folder):
         for stages in PIPES.values():

@@ -16,10 +16,11 @@ from scarid_cli import __version__
 from scarid_cli.cli.chain import Place
 from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.remarks import Remarks
+from scarid_cli.cli.remedies import remedies
 from scarid_cli.cli.robots import another, misfit
 from scarid_cli.cli.selecting import selection_of
 from scarid_cli.cli.terminal import is_terminal
-from scarid_cli.errors import CORRECT, TooShort, UsageFault
+from scarid_cli.errors import TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
@@ -57,7 +58,6 @@ class Job:
         self.notes: list[str] = []
         self.remarks = Remarks(place.say)
         self._selection = selection_of(options)
-        self._offers = "missing" in options  # whether the command has --missing
         self._lacking: list[tuple[str, Lacking]] = []
 
     def output(self, path: str, wanted: str | None = None, *, readable: bool = False) -> Output:
@@ -116,16 +116,18 @@ class Job:
             return self._reported(table)
         if schemas.load(kind).sampled:
             table = self.within(table)
-        return self._checked(table, kind, reads, regular=regular)
+        return self._checked(path, table, kind, reads, regular=regular)
 
-    def _checked(self, table: Table, kind: str, reads: Reads | None, *, regular: bool) -> Table:
+    def _checked(
+        self, path: str, table: Table, kind: str, reads: Reads | None, *, regular: bool
+    ) -> Table:
         """The table, whose rows with missing values are treated as --missing says."""
         lacking = None
         if self._selection.missing != REFUSE and schemas.load(kind).sampled:
             lacking = partial(self._without_lacking, table.name)
-        remedy = f"{CORRECT}, or leave such rows out with --missing" if self._offers else CORRECT
+        found = remedies(path, regular=regular)
         return self._reported(
-            checked(table, kind, reads=reads, regular=regular, lacking=lacking, remedy=remedy)
+            checked(table, kind, reads=reads, regular=regular, lacking=lacking, remedies=found)
         )
 
     def _without_lacking(self, name: str, columns: list[str]) -> Lacking:
@@ -165,7 +167,7 @@ class Job:
             return self._reported(table), arm
         if reference:
             columns += [name for name in table.columns if name.endswith("_ref")]
-        return self._checked(table, kind, lambda _: columns, regular=True), arm
+        return self._checked(path, table, kind, lambda _: columns, regular=True), arm
 
     def robot(self, name: str | None, *tables: Table) -> Robot:
         """The robot of this name, else as the first table states, else as SCARID_ROBOT does.

@@ -11,6 +11,7 @@ import pyarrow as pa
 
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import BadData, bad_data, bad_row
+from scarid_cli.io.remedies import Remedy, read_on
 from scarid_cli.io.table import SEGMENT, Instant, Table, concatenated, segments_of, steps_of
 
 # An interval may differ from the period by this fraction, and the mean interval by that one: a
@@ -20,10 +21,11 @@ DRIFT = 0.001
 SHORTEST = 1e-12  # s; squares of the rate of such a clock leave the range of doubles
 
 
-def clocked(table: Table, *, regular: bool) -> Table:
+def clocked(table: Table, *, regular: bool, remedy: Remedy) -> Table:
     """The table, its clock checked to be at the rate of its first two samples.
 
-    The period [s] is put into the metadata. The clock need not be `regular`.
+    The period [s] is put into the metadata. The clock need not be `regular`; if it has to be, the
+    `remedy` is told with what is refused.
     """
     batches = _from_two_samples(table.batches)
     first = next(batches, None)
@@ -40,7 +42,7 @@ def clocked(table: Table, *, regular: bool) -> Table:
         return table
     period = _first_period(first, at, table)
     meta = replace(table.meta, period=period)
-    return replace(table, meta=meta, batches=_regular(table, period))
+    return replace(table, meta=meta, batches=_regular(table, period, remedy))
 
 
 def _first_period(first: pa.RecordBatch, at: int, table: Table) -> float:
@@ -84,7 +86,7 @@ def _first_step(batch: pa.RecordBatch) -> int | None:
     return int(together[0]) if len(together) else None
 
 
-def _regular(table: Table, period: float) -> Iterator[pa.RecordBatch]:
+def _regular(table: Table, period: float, remedy: Remedy) -> Iterator[pa.RecordBatch]:
     """Pass batches on; time that does not advance, or not at the nominal rate, is an error.
 
     At a gap (see segments_of) time may advance by any interval.
@@ -92,6 +94,7 @@ def _regular(table: Table, period: float) -> Iterator[pa.RecordBatch]:
     row = gaps = 0
     start = missing = float("nan")
     last: Instant | None = None
+    most: pa.RecordBatch | None = None
     for batch in table.batches:
         t = batch.column("t").to_numpy()
         first = last is None
@@ -101,17 +104,20 @@ def _regular(table: Table, period: float) -> Iterator[pa.RecordBatch]:
         _check_segments(jumps, table, row + 1)
         after_gap = (jumps > 0) & (steps > 0.0)
         inner = np.where(after_gap, period, steps)[first:]
-        _check_steps(inner, t[first:], table, period, row + 1 + first)
+        if (at := _unlike(inner, period)) is not None:
+            what = remedy(read_on(batch, table.batches))
+            place = row + 1 + first + at
+            raise _wrong_step(float(inner[at]), float(t[first + at]), table, period, place, what)
         missing += float(steps[after_gap].sum())
         gaps += int(after_gap.sum())
         row += batch.num_rows
+        most = max(most or batch, batch, key=len)
         yield batch
     mean = (last[0] - start - missing) / (row - 1 - gaps) if last else period
-    if abs(mean - period) > DRIFT * period:
+    if most is not None and abs(mean - period) > DRIFT * period:
         raise BadData(
             f"{table.name}, column t: found a mean interval of {mean:.9g} s over {row} rows, "
-            f"expected {period:.9g} s like the first; put it on a constant rate with "
-            f"`scarid resample --rate {1.0 / period:.4g}`"
+            f"expected {period:.9g} s like the first; {remedy(most)}"
         )
 
 
@@ -127,20 +133,25 @@ def _check_segments(jumps: Numbers, table: Table, row: int) -> None:
         )
 
 
-def _check_steps(steps: Array, t: Array, table: Table, period: float, row: int) -> None:
+def _unlike(steps: Array, period: float) -> int | None:
+    """The first interval [s] that is not the period, if there is one."""
     with np.errstate(invalid="ignore"):
         bad = ~(np.abs(steps - period) <= JITTER * period)
-    if not bad.any():
-        return
-    at = int(np.argmax(bad))
-    if steps[at] <= 0.0:
-        raise _not_increasing(table.name, t[at], t[at] - steps[at], table.row(row + at))
-    raise bad_data(
+    return int(np.argmax(bad)) if bad.any() else None
+
+
+def _wrong_step(
+    step: float, t: float, table: Table, period: float, row: int, remedy: str
+) -> BadData:
+    """The error for an interval of `step` [s] before time t [s]; `row` is that of the table."""
+    if step <= 0.0:
+        return _not_increasing(table.name, t, t - step, table.row(row))
+    return bad_data(
         table.name,
-        f"an interval of {steps[at]:.6g} s",
+        f"an interval of {step:.6g} s",
         expected=f"{period:.6g} s within {JITTER:.0%}",
-        remedy=f"put it on a constant rate with `scarid resample --rate {1.0 / period:.4g}`",
-        row=table.row(row + at),
+        remedy=remedy,
+        row=table.row(row),
         column="t",
     )
 

@@ -45,7 +45,8 @@ class Refused:
         for index, value in enumerate(values):
             if not self._parses([raw], index):
                 field = self.schema.field(index)
-                return bad_row(self.name, _shown(value), _wanted(field.type), number, field.name)
+                column = field.name or str(index + 1)
+                return bad_row(self.name, _shown(value), _wanted(field.type), number, column)
         return BadData(f"{self.name}, row {number}: not CSV; correct or remove the row")
 
     def _first_bad(self, rows: Sequence[bytes]) -> int:
@@ -91,4 +92,6 @@ def _shown(value: str) -> str:
 def _wanted(kind: pa.DataType) -> str:
     if pa.types.is_string(kind):
         return "text in UTF-8"
+    if pa.types.is_null(kind):
+        return "nothing, as the header has no name for it"
     return "an integer" if pa.types.is_integer(kind) else "a number"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+import shlex
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 
@@ -60,7 +61,11 @@ def _table(source: ByteSource) -> Table:
         body = more
     types = _types(names, body)
     schema = pa.schema(list(zip(names, types, strict=True)))
-    return Table(source.name, schema, Metadata(), _batches(body, lines, schema, source.name))
+    batches = _batches(body, lines, schema, source.name)
+    if not names[-1]:
+        schema = schema.remove(len(names) - 1)
+        batches = (batch.select(schema.names) for batch in batches)
+    return Table(source.name, schema, Metadata(), batches)
 
 
 def _complete_lines(source: ByteSource) -> Iterator[bytes]:
@@ -129,7 +134,8 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
             expected="a header with the names of the columns",
             remedy="name them with `scarid convert --header t,q1,...`",
         )
-    _require_different(names, name)
+    # A line that ends in a comma has a last column without a name, which must be empty.
+    _require_different(names[:-1] if len(names) > 1 and not names[-1] else names, name)
     return names
 
 
@@ -142,7 +148,8 @@ def _require_different(names: list[str], name: str) -> None:
                 name,
                 found,
                 expected="one name per column",
-                remedy="rename the columns in the header",
+                remedy="give each column a name of its own in the first line, or replace it: "
+                f"`tail -n +2 {shlex.quote(name)} | scarid convert --header NAMES`",
                 column=column or str(names.index(column) + 1),
             )
 
@@ -151,7 +158,9 @@ def _types(names: list[str], body: bytes) -> list[pa.DataType]:
     first = next(csv.reader(io.StringIO(body[: _first_row_end(body)].decode(errors="replace"))), [])
     values = first + [""] * (len(names) - len(first))
     return [
-        column_type(name) or (pa.float64() if NUMERIC.match(value) else pa.string())
+        (column_type(name) or (pa.float64() if NUMERIC.match(value) else pa.string()))
+        if name
+        else pa.null()
         for name, value in zip(names, values, strict=False)
     ]
 

@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.errors import CORRECT, bad_data
+from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import ByteSource, unzipped
 from scarid_cli.io.clock import clocked
+from scarid_cli.io.remedies import Remedies, Remedy, read_on
 from scarid_cli.io.selection import Lacking
 from scarid_cli.io.table import SEGMENT, Table, cast
 
@@ -46,15 +47,15 @@ def checked(
     reads: Reads | None = None,
     regular: bool = True,
     lacking: Callable[[list[str]], Lacking] | None = None,
-    remedy: str = CORRECT,
+    remedies: Remedies | None = None,
 ) -> Table:
     """The table, checked to be of a kind: columns, types and units now, values as they arrive.
 
     The columns that the command `reads` must be numbers, there and finite in every row; by default
     these are the columns that the kind knows. Other columns pass as they are. Rows without a value
-    in one of the columns are refused, with this `remedy`, or left out by `lacking`, made for these
-    columns. The clock of a sampled table must be regular, unless `regular` is false; its period [s]
-    is put into the metadata.
+    in one of the columns are refused, or left out by `lacking`, made for these columns. The clock
+    of a sampled table must be regular, unless `regular` is false; its period [s] is put into the
+    metadata. The `remedies` are told with what is refused.
     """
     schema = schemas.load(kind)
     table = conforming(table, kind, reads)
@@ -62,10 +63,11 @@ def checked(
     columns = _columns_to_check(table, schema, reads)
     if lacking:
         table = lacking(columns).removed(table)
-    batches = _valued(table, columns, remedy)
+    remedies = remedies or Remedies()
+    batches = _valued(table, columns, remedies.value)
     if not schema.sampled:
         return replace(table, batches=batches)
-    return clocked(replace(table, batches=batches), regular=regular)
+    return clocked(replace(table, batches=batches), regular=regular, remedy=remedies.clock)
 
 
 def conforming(table: Table, kind: str, reads: Reads | None = None) -> Table:
@@ -145,27 +147,34 @@ def _same_type(given: pa.DataType, known: pa.DataType) -> bool:
     return bool(given == known or (pa.types.is_floating(known) and pa.types.is_integer(given)))
 
 
-def _valued(table: Table, columns: list[str], remedy: str) -> Iterator[pa.RecordBatch]:
+def _valued(table: Table, columns: list[str], remedy: Remedy) -> Iterator[pa.RecordBatch]:
     """Pass batches on; a value of these columns that is missing or not finite is an error."""
     row = 0
     for batch in table.batches:
         for column in columns:
-            _check_values(batch.column(column), table, column, row, remedy)
+            if fault := _fault_of(batch.column(column)):
+                at, found, expected = fault
+                raise bad_data(
+                    table.name,
+                    found,
+                    expected=expected,
+                    remedy=remedy(read_on(batch, table.batches)),
+                    row=table.row(row + at + 1),
+                    column=column,
+                )
         yield batch
         row += batch.num_rows
 
 
-def _check_values(column: pa.Array, table: Table, name: str, row: int, remedy: str) -> None:
-    bad: int | None = None
-    found = "an empty cell"
+def _fault_of(column: pa.Array) -> tuple[int, str, str] | None:
+    """The first row without a value, from 0, with what was found and expected; None without one."""
+    floating = pa.types.is_floating(column.type)
+    expected = "a finite number" if floating else "a value"
     if column.null_count:
-        bad = int(np.argmax(column.is_null().to_numpy(zero_copy_only=False)))
-    elif pa.types.is_floating(column.type):
-        finite = np.isfinite(column.to_numpy())
-        if not finite.all():
-            bad = int(np.argmin(finite))
-            found = str(column[bad].as_py())
-    if bad is not None:
-        expected = "a finite number" if pa.types.is_floating(column.type) else "a value"
-        at = table.row(row + bad + 1)
-        raise bad_data(table.name, found, expected=expected, remedy=remedy, row=at, column=name)
+        empty = column.is_null().to_numpy(zero_copy_only=False)
+        return int(np.argmax(empty)), "an empty cell", expected
+    finite = np.isfinite(column.to_numpy()) if floating else np.ones(1, dtype=np.bool_)
+    if finite.all():
+        return None
+    at = int(np.argmin(finite))
+    return at, str(column[at].as_py()), expected

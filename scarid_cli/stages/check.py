@@ -24,7 +24,7 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
     yield finding
     log = log.scaled(t=factor)
     time = clock.Clock.of(log.t)
-    yield from clock.clock(time)
+    yield from clock.clock(time, log.resampling())
     yield values.missing(log)
     yield clock.held(log)
     yield clock.slower(log)

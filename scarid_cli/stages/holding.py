@@ -11,14 +11,14 @@ from scarid_cli.algorithms.processes.filling import SEARCH
 from scarid_cli.algorithms.processes.holding import FIRST, held_rows, repeating
 from scarid_cli.arrays import Array
 from scarid_cli.io.schemas import numbered
-from scarid_cli.io.table import Table, concatenated, matrix, segments_of
+from scarid_cli.io.table import concatenated, matrix, segments_of
 
 
-def measured(table: Table) -> list[str]:
+def measured(schema: pa.Schema) -> list[str]:
     """The columns that sensors fill; none if there is a single one, which proves nothing."""
-    known = numbered(table.columns, "q", "tau")
-    own = [name for name in table.columns if name.endswith("_measured")]
-    columns = [n for n in (*known, *own) if pa.types.is_floating(table.schema.field(n).type)]
+    known = numbered(schema.names, "q", "tau")
+    own = [name for name in schema.names if name.endswith("_measured")]
+    columns = [n for n in (*known, *own) if pa.types.is_floating(schema.field(n).type)]
     return columns if len(columns) > 1 else []
 
 

@@ -17,7 +17,7 @@ from scarid_cli.algorithms.statistics.outcome import outcome
 from scarid_cli.algorithms.statistics.verdict import combination
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
-from scarid_cli.io.table import Table, number, segment_field, with_columns
+from scarid_cli.io.table import SEGMENT, Table, number, segment_field, with_columns
 from scarid_cli.stages import Sink
 from scarid_cli.stages.parameters import parameters
 from scarid_cli.stages.rows import treated
@@ -65,11 +65,21 @@ def identify(
     if keep:
         keep(checkpoint)
     meta = replace(table.meta, kind="parameters", robot=robot.name)
-    result = parameters(found, robot, meta, treatment, variance=variance)
+    matched = _matched(table)
+    result = parameters(found, robot, meta, treatment, variance=variance, matched=matched)
     if not treatment.counting:
         return result
     extra = {**result.meta.extra, "left_out": left_out.counts}
     return replace(result, meta=replace(result.meta, extra=extra))
+
+
+def _matched(table: Table) -> bool:
+    """Whether a motion is known to be matched: by its bandwidth, or by the rows that settle.
+
+    Any motion with gaps has rows that settle.
+    """
+    settling = "settled" in table.columns and SEGMENT not in table.columns
+    return settling or bool(table.meta.extra.get("bandwidth"))
 
 
 def _check_enough(table: Table, robot: Robot, counted: int) -> None:

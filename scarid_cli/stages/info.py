@@ -11,9 +11,10 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.processes.holding import FIRST, MAX_GAP
+from scarid_cli.algorithms.processes.rates import ROWS, mean_rate, round_rate
 from scarid_cli.arrays import Array, Numbers, median
 from scarid_cli.io import schemas
-from scarid_cli.io.clock import nominal_period
+from scarid_cli.io.clock import DRIFT, nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
 from scarid_cli.printable import printable
 
@@ -179,7 +180,7 @@ class Sampling:
 
     A gap is where a segment begins, or where time advances by more than MAX_GAP periods. `gaps` is
     their number, and `missing` the time that they take in all. The first intervals wait until their
-    median, the period, is known.
+    median, the period, is known; more of them, the `first`, tell the rate of a clock that jitters.
     """
 
     start: float
@@ -189,6 +190,7 @@ class Sampling:
     missing: float = 0.0
     period: float = 0.0
     waiting: list[float] = field(default_factory=list)
+    first: list[float] = field(default_factory=list)
 
     def add(self, steps: Array, jumps: Numbers, end: float) -> None:
         """Count on by the intervals [s] to the next rows, at which segments may begin."""
@@ -199,6 +201,7 @@ class Sampling:
         if self.interval is None and within:
             self.interval = within[0]
         self.waiting += within
+        self.first += within[: ROWS - len(self.first)]
         if self.period or sum(step > 0.0 for step in self.waiting) >= FIRST:
             self.settle()
 
@@ -211,15 +214,24 @@ class Sampling:
         self.missing += sum(long)
         self.waiting.clear()
 
+    @property
+    def nominal(self) -> float:
+        """The period [s] of the first interval; of the mean rate, rounded, if that is another."""
+        period = nominal_period(self.interval or 0.0)
+        rate = mean_rate(np.array(self.first))
+        if not rate or abs(rate * period - 1.0) <= DRIFT:
+            return period
+        return 1.0 / round_rate(rate)
+
     def document(self, rows: int) -> dict[str, Any]:
         """The sampling as JSON holds it; the period [s] is None if time does not increase."""
         between = rows - 1 - self.gaps
         mean = (self.end - self.start - self.missing) / between if between > 0 else 0.0
-        period = nominal_period(self.interval) if self.interval else None
+        period = self.nominal
         return {
             "start": self.start,
             "end": self.end,
-            "period": period if period and period > 0.0 else None,
+            "period": period if period > 0.0 else None,
             "mean_period": mean if mean > 0.0 else None,
             "gaps": self.gaps,
             "missing_time": self.missing,
@@ -230,7 +242,7 @@ class Sampling:
         between = rows - 1 - self.gaps
         if self.interval is None or between < 1:
             return text
-        period = nominal_period(self.interval)
+        period = self.nominal
         mean = (self.end - self.start - self.missing) / between
         if period <= 0.0 or mean <= 0.0:
             return f"{text}, time does not increase"

@@ -13,7 +13,7 @@ from scarid_cli.stages.holding import measured
 def log_of(table: Table, joints: int) -> Log:
     """The log of a table, with nan for what is missing."""
     names = ["t", *of_joints(joints, "q{i}", "tau{i}")]
-    others = [name for name in measured(table) if name not in names]
+    others = [name for name in measured(table.schema) if name not in names]
     names += others
     parts = [matrix(batch, names) for batch in table.batches]
     whole = np.concatenate(parts, axis=1) if parts else np.empty((len(names), 0))

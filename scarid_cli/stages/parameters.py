@@ -83,9 +83,18 @@ class Labels:
 
 
 def parameters(
-    found: Outcome, robot: Robot, meta: Metadata, treatment: Treatment, *, variance: str
+    found: Outcome,
+    robot: Robot,
+    meta: Metadata,
+    treatment: Treatment,
+    *,
+    variance: str,
+    matched: bool = False,
 ) -> Table:
-    """The parameter table, with the verdict in its metadata."""
+    """The parameter table, with the verdict in its metadata.
+
+    `matched` tells that torques and derivatives are known to have passed the same filter.
+    """
     labels = Labels.of(found, robot)
     known_errors = found.diagnostics.covariance
     nan = np.full(len(found.kept), np.nan)
@@ -104,11 +113,13 @@ def parameters(
         columns.append([*written, *labels.names[len(written) :]])
     else:
         schema = schema.remove(schema.get_field_index("stands_for"))
-    extra = _judged(found, robot, labels, treatment) | _facts(found, labels)
+    extra = _judged(found, robot, labels, treatment, matched=matched) | _facts(found, labels)
     return table_of("identify", schema, zip(*columns, strict=True), replace(meta, extra=extra))
 
 
-def _judged(found: Outcome, robot: Robot, labels: Labels, treatment: Treatment) -> dict[str, Any]:
+def _judged(
+    found: Outcome, robot: Robot, labels: Labels, treatment: Treatment, *, matched: bool
+) -> dict[str, Any]:
     """The metadata of the verdict, with the condition numbers that it is based on."""
     fit = found.found.fit
     names = [labels.names[i] for i in labels.kept]
@@ -121,6 +132,7 @@ def _judged(found: Outcome, robot: Robot, labels: Labels, treatment: Treatment) 
         weak=combination(direction, names),
         diagnostics=found.diagnostics,
         treatment=treatment,
+        matched=matched,
     )
     judged = verdict(evidence, robot)
     return {

@@ -65,7 +65,7 @@ def resample(
 def _with_period(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
     """The median of the first intervals between new values [s], and all batches."""
     held: list[pa.RecordBatch] = []
-    first = FirstIntervals(measured(table))
+    first = FirstIntervals(measured(table.schema))
     for batch in table.batches:
         held.append(batch)
         first.add(batch)
@@ -117,7 +117,7 @@ def _rows(
     slower, table = slower_groups(table)
     own, batches = _with_period(table)
     limit = max_gap or max(MAX_GAP * own, period)
-    splitting, holding = Splitting(limit), Holding(measured(table), limit)
+    splitting, holding = Splitting(limit), Holding(measured(table.schema), limit)
     fillings = [Filling(group, max(limit, MAX_GAP * group.interval)) for group in slower]
     factor = _slower_by(period, own)
     numbers = [f.name for f in schema if pa.types.is_floating(f.type) and f.name != "t"]

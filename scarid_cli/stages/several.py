@@ -8,6 +8,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from scarid_cli.algorithms.processes.rates import rate_text
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.clock import DRIFT
 from scarid_cli.io.schemas import numbered
@@ -44,11 +45,12 @@ def _in_all(field: pa.Field, tables: Sequence[Table]) -> bool:
 def _require_alike(first: Table, table: Table) -> None:
     """Refuse a log that cannot be taken together with the first one."""
     if abs(table.period - first.period) > DRIFT * first.period:
+        rate = rate_text(1.0 / max(first.period, table.period))
         raise bad_data(
             table.name,
             f"a period of {table.period:g} s",
             expected=f"{first.period:g} s, as in {first.name}",
-            remedy="put all logs on one rate with `scarid resample --rate`",
+            remedy=f"put all logs on one rate with `scarid resample --rate {rate}`",
         )
     for what, own, other in (
         ("derivatives dq, ddq", *(bool(numbered(t.columns, "ddq")) for t in (table, first))),

@@ -214,3 +214,10 @@ def test_a_direction_that_is_singular_to_rounding_is_found_as_well() -> None:
         assert condition > 1e5
         expected = np.array([1.0, 1.0, 0.0, -1.0]) / np.sqrt(3.0)
         np.testing.assert_allclose(np.abs(direction @ expected), 1.0, rtol=1e-6)
+
+
+def test_a_motion_that_is_matched_is_not_to_be_matched() -> None:
+    advice = "--match"
+    doubtful = evidence(effects=(effect(PARALLEL, moved=-4.0, largest=9.0),))
+    assert advice in verdict(doubtful, SCARA).reasons[0]
+    assert advice not in verdict(replace(doubtful, matched=True), SCARA).reasons[0]

@@ -10,6 +10,7 @@ from scarid_cli.algorithms.checks.finding import Finding, failed, ok, several, w
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.processes.filling import reading_interval
 from scarid_cli.algorithms.processes.holding import MAX_GAP
+from scarid_cli.algorithms.processes.rates import lost_rows, mean_rate
 from scarid_cli.arrays import Array, median
 
 # Hz. Friction and inertia are told apart where the velocity changes within tenths of a second, so
@@ -18,7 +19,6 @@ LOWEST, HIGHEST = 20.0, 200_000.0
 UNITS = ((1e3, "ms"), (1e6, "us"), (1e9, "ns"))  # of a time that is not in seconds
 JITTER = 0.01  # of the period: the limit of `differentiate`, as io.clock has it
 ROUNDING = 1e-6  # of the period: the digits of the time
-LATE = 2.5  # periods of two intervals: 2 with a late row, 3 with a missing one
 GAP = MAX_GAP  # periods
 HELD = 0.001  # of the rows: from one in a thousand on, the velocity has visible steps
 
@@ -38,8 +38,8 @@ class Clock:
 
     @property
     def rate(self) -> float:
-        """Rows per second."""
-        return 1.0 / self.period if self.period else 0.0
+        """Rows per second, as a mean over the log without its gaps."""
+        return mean_rate(self.steps)
 
 
 def unit(clock: Clock) -> tuple[Finding, float]:
@@ -58,19 +58,22 @@ def unit(clock: Clock) -> tuple[Finding, float]:
     return failed("rate", figure, "record at 100 Hz or more"), 1.0
 
 
-def clock(found: Clock) -> list[Finding]:
-    """Findings on time that goes back, repeated times, gaps and jitter."""
+def clock(found: Clock, resampling: str) -> list[Finding]:
+    """Findings on time that goes back, repeated times, gaps and jitter.
+
+    `resampling` is the command that mends what can be mended.
+    """
     steps, period = found.steps, found.period
     if not period:
         return []
     return [
-        _order(steps),
-        _gaps(steps, period),
-        _jitter(steps[(steps > 0.0) & (steps <= GAP * period)], period),
+        _order(steps, resampling),
+        _gaps(steps, period, resampling),
+        _jitter(steps[(steps > 0.0) & (steps <= GAP * period)], period, resampling),
     ]
 
 
-def _order(steps: Array) -> Finding:
+def _order(steps: Array, resampling: str) -> Finding:
     back, repeated = np.count_nonzero(steps < 0.0), np.count_nonzero(steps == 0.0)
     if back:
         return failed(
@@ -80,36 +83,25 @@ def _order(steps: Array) -> Finding:
         return warning(
             "time order",
             several(int(repeated), "repeated time"),
-            "`scarid resample` drops the rows that repeat a time",
+            f"{resampling} drops the rows that repeat a time",
         )
     return ok("time order", "time increases from row to row")
 
 
-def _gaps(steps: Array, period: float) -> Finding:
+def _gaps(steps: Array, period: float, resampling: str) -> Finding:
     """Rows that are missing; long intervals split the log."""
-    lost = _lost(steps, period)
+    lost = lost_rows(steps, period)
     count, places = int(lost.sum()), int(np.count_nonzero(lost))
     if not count:
         return ok("missing rows", "none")
     long = int(np.count_nonzero(steps > GAP * period))
     figure = f"{several(count, 'row')} in {several(places, 'place')}, up to {steps.max():.3g} s"
-    advice = "`scarid resample` interpolates short gaps"
+    advice = f"{resampling} interpolates short gaps"
     advice += f" and splits the log at the {several(long, 'longer one')}" if long else ""
     return warning("missing rows", figure, advice)
 
 
-def _lost(steps: Array, period: float) -> Array:
-    """The number of rows that are missing in each interval.
-
-    A late row makes a long interval beside a short one, and a missing row a long one only.
-    """
-    padded = np.concatenate(([period], steps, [period]))
-    beside = np.minimum(padded[:-2], padded[2:])
-    late = steps + np.minimum(beside, period) <= LATE * period
-    return np.where(late, 0.0, np.maximum(np.round(steps / period) - 1.0, 0.0))
-
-
-def _jitter(steps: Array, period: float) -> Finding:
+def _jitter(steps: Array, period: float, resampling: str) -> Finding:
     """Intervals that differ from a whole number of periods; missing rows are not counted again."""
     whole = period * np.maximum(np.round(steps / period), 1.0)
     far = float(np.max(np.abs(steps - whole), initial=0.0))
@@ -118,8 +110,7 @@ def _jitter(steps: Array, period: float) -> Finding:
     figure = f"at most {1e3 * far:.2g} ms, {100.0 * far / period:.2g} % of the period"
     if far <= JITTER * period:
         return ok("jitter", figure)
-    rate = float(f"{1.0 / period:.3g}")
-    return warning("jitter", figure, f"`scarid resample --rate {rate:g}` gives a constant rate")
+    return warning("jitter", figure, f"{resampling} gives a constant rate")
 
 
 def held(log: Log) -> Finding:
@@ -130,7 +121,7 @@ def held(log: Log) -> Finding:
     figure = f"{several(count, 'row')}, {100.0 * share:.2g} %, with all values of the row before"
     if share <= HELD:
         return ok("held samples", figure if count else "none")
-    advice = "a slower sensor behind a faster logger: `scarid resample` keeps the first of each"
+    advice = f"a slower sensor behind a faster logger: {log.resampling()} keeps the first of each"
     return warning("held samples", figure, advice)
 
 
@@ -146,5 +137,5 @@ def slower(log: Log) -> Finding:
     if not found:
         return ok("slower sensors", "none")
     figure = " and ".join(f"{name} are new every {1e3 * x:.3g} ms" for name, x in found.items())
-    advice = f"`scarid resample --rate {1.0 / period:.6g}` interpolates between their readings"
+    advice = f"{log.resampling()} interpolates between their readings"
     return warning("slower sensors", f"{figure} only, rows every {1e3 * period:.3g} ms", advice)

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from scarid_cli.algorithms.processes.holding import held_in
+from scarid_cli.algorithms.processes.rates import mean_rate, rate_text
 from scarid_cli.arrays import Array, Marks, Numbers
 
 
@@ -46,6 +47,16 @@ class Log:
     def held(self) -> tuple[Marks, float]:
         """Which rows are held samples (rows), and the period of the sensors [s]."""
         return held_in(self.t, self.sensed)
+
+    def resampling(self, *words: str) -> str:
+        """The command with these words that puts the log on a constant rate, that of its sensors.
+
+        Without a rate if time never increases.
+        """
+        held, _ = self.held
+        rate = mean_rate(np.diff(self.t[np.isfinite(self.t) & ~held]))
+        given = ("--rate", rate_text(rate)) if rate else ()
+        return f"`{' '.join(('scarid resample', *given, *words))}`"
 
     @property
     def names(self) -> list[str]:

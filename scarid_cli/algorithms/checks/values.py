@@ -27,7 +27,8 @@ def missing(log: Log) -> Finding:
         return ok("missing values", "none")
     columns = ", ".join(name for name, count in counts.items() if count)
     figure = f"{several(total, 'cell')} empty or not finite, in {columns}"
-    return failed("missing values", figure, "remove these rows, then `scarid resample`")
+    advice = f"{log.resampling('--missing', 'drop')} leaves these rows out, and interpolates"
+    return failed("missing values", figure, advice)
 
 
 def saturation(tau: Array) -> Finding:

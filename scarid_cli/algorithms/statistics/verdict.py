@@ -31,6 +31,7 @@ UNKNOWN = 0.3  # of the torque: the same, of the interval that allows for all al
 UNTESTED = "the estimates were not tested for bias"
 DEPENDENT = "the estimates depend on the soft sensor"
 APART = "torque and motion are not those of one instant"
+UNMATCHED = " (unless the motion is matched, use scarid differentiate --match)"
 FEW = 3  # unknown parameters that are named
 
 
@@ -59,7 +60,8 @@ def meets(required: str, grade: str, reasons: Sequence[str]) -> bool:
 class Evidence:
     """What a verdict is based on; `estimates` and errors are in the order of `names`.
 
-    The verdict does not recommend the options of the `treatment` that are already in use.
+    The verdict does not recommend the options of the `treatment` that are already in use, nor a
+    `matched` motion if this one is known to be so.
     """
 
     names: Sequence[str]
@@ -69,6 +71,7 @@ class Evidence:
     weak: str
     diagnostics: Diagnostics
     treatment: Treatment
+    matched: bool = False
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
@@ -131,7 +134,7 @@ def _biased(evidence: Evidence) -> list[str]:
     if moved := _moved(evidence, found[PARALLEL]):
         reasons.append(
             f"{DEPENDENT}: with derivatives and torques behind the same "
-            f"low-pass, {moved} (unless the motion is matched, use scarid differentiate --match)"
+            f"low-pass, {moved}{'' if evidence.matched else UNMATCHED}"
         )
     if SIGNALS in found and (moved := _moved(evidence, found[SIGNALS])):
         advice = "" if evidence.treatment.align else "; --align fits a delay"
