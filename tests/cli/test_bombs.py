@@ -17,6 +17,8 @@ import pytest
 from conftest import Result, refused
 from scipy.io import savemat
 
+from scarid_cli.io.parts import PART, parts
+
 Run = Callable[..., Result]
 
 ROWS = 5_000_000  # at a ceiling of 20 MB; `make faults` has bombs of gigabytes, and measures memory
@@ -140,6 +142,15 @@ def test_a_large_batch_and_long_texts_arrive_whole(scarid: Run, tmp_path: Path) 
             assert scarid("convert", tmp_path / f"{name}.{ending}").out == expected
         pq.write_table(pa.Table.from_batches([batch]), tmp_path / f"{name}.parquet")
         assert scarid("convert", tmp_path / f"{name}.parquet").out == expected
+
+
+@pytest.mark.parametrize("type_", [pa.string(), pa.string_view()], ids=str)
+def test_a_long_text_is_a_part_by_itself_and_its_neighbours_stay_together(
+    type_: pa.DataType,
+) -> None:
+    texts = pa.array(["a", "b", "c" * (PART + 1), "d"]).cast(type_)
+    found = [part.num_rows for part in parts(pa.record_batch([texts], ["text"]), "log")]
+    assert found == [2, 1, 1]
 
 
 def test_a_broken_message_of_an_arrow_table_is_refused(scarid: Run, tmp_path: Path) -> None:

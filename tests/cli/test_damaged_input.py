@@ -210,9 +210,9 @@ def test_a_clock_of_the_smallest_steps_is_no_bug(scarid: Run, tmp_path: Path) ->
         b'{"history":[],"kind":"../x"}',
         b'{"history":[],"period":"x"}',
         b'{"history":[],"robot":5}',
-        b'{"history":[],"delay":1e101}',
-        b'{"history":[],"delay":true}',
-        b'{"history":[],"delay":"1"}',
+        b'{"history":[],"extra":{"delay":1e101}}',
+        b'{"history":[],"extra":{"delay":true}}',
+        b'{"history":[],"extra":{"delay":"1"}}',
         b"\xff",
     ],
 )

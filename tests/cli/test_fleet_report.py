@@ -62,6 +62,18 @@ def test_the_summary_counts_findings_and_names_what_drifts(outcome: Path, scarid
     assert "1 robot without a finding steady (3 logs)" in text
 
 
+def test_each_of_many_robots_that_need_a_look_has_one_card(tmp_path: Path, scarid: Run) -> None:
+    names = [f"r{i:02d}" for i in range(30)]
+    folder = fleets.write(
+        tmp_path / "o",
+        fleet=[fleets.failed(name, 1, "row 5: found 12 values") for name in names],
+        estimates=[],
+        robots=[fleets.robot(name) for name in names],
+    )
+    cards = re.findall(r'<li class="card">.*?<h3>(.*?)</h3>', page_of(folder, scarid), re.DOTALL)
+    assert sorted(re.sub("<.*?>", "", card) for card in cards) == names
+
+
 def test_the_script_is_given_the_estimates_with_their_intervals(outcome: Path, scarid: Run) -> None:
     found = fleets.data(page_of(outcome, scarid))
     drifting = found["robots"][1]

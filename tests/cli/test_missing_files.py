@@ -12,6 +12,8 @@ from conftest import Result, refused
 
 from scarid_cli.cli import COMMANDS, options
 from scarid_cli.cli import scarid as group
+from scarid_cli.errors import OutputFailure
+from scarid_cli.io.bytesource import ByteSource
 
 Run = Callable[..., Result]
 # What a command line needs besides the option that is tried.
@@ -87,6 +89,22 @@ def test_a_file_without_permission_is_an_input_failure(
     path = tmp_path / f"secret{ending}"
     path.touch(mode=0)
     refused(scarid(*line(words, parameter, path, samples)), 74, f"{path}: Permission denied")
+
+
+def test_a_path_below_a_file_is_an_input_failure(scarid: Run, samples: Path) -> None:
+    path = samples / "scara2.csv" / "log.csv"
+    refused(scarid("info", path), 74, f"{path}: Not a directory")
+
+
+@pytest.mark.parametrize("read", [ByteSource.read, ByteSource.filled])
+def test_a_source_that_fails_is_an_input_failure(
+    read: Callable[[ByteSource, int], object], tmp_path: Path
+) -> None:
+    """A directory can be opened but not read."""
+    source = ByteSource.open(str(tmp_path))
+    with pytest.raises(OutputFailure, match="Is a directory"):
+        read(source, 8)
+    source.close()
 
 
 def test_the_options_that_name_files_are_those_that_are_tried() -> None:

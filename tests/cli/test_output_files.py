@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import errno
+import io
 import os
 import stat
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+import pyarrow as pa
 import pytest
 from conftest import Result
+
+from scarid_cli.io.outgoing import FileWriter, ParquetWriter, StreamWriter
 
 Run = Callable[..., Result]
 
@@ -122,6 +127,29 @@ def test_of_several_outputs_nothing_else_is_left(
         words = ("--save", state, "-o", tmp_path / "p.csv")
         assert scarid("identify", motion, *words).status == 0
     assert {path.name for path in tmp_path.iterdir()} == {"motion.parquet", "state.npz", "p.csv"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "end"),
+    [
+        (StreamWriter, b"\xff\xff\xff\xff\0\0\0\0"),
+        (FileWriter, b"ARROW1"),
+        (ParquetWriter, b"PAR1"),
+    ],
+)
+def test_a_table_that_is_broken_off_is_not_taken_for_a_whole_one(
+    kind: type[StreamWriter | FileWriter | ParquetWriter], end: bytes
+) -> None:
+    """The mark at the end of its format is missing."""
+    batch = pa.record_batch([np.arange(100_000.0)], ["t"])  # more than a group of a file
+    whole, broken = io.BytesIO(), io.BytesIO()
+    for out in (whole, broken):
+        writer = kind(out.write, batch.schema)  # type: ignore[arg-type]
+        writer.write(batch)
+        writer.close() if out is whole else writer.abort()
+    assert len(broken.getvalue()) > 1000
+    assert whole.getvalue().endswith(end)
+    assert not broken.getvalue().endswith(end)
 
 
 def test_a_report_that_fails_leaves_no_folder_of_figures(

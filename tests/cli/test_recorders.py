@@ -75,6 +75,14 @@ def test_a_zipped_log_is_read_by_every_command(shell: Run) -> None:
     assert result.status == 0, result.err
 
 
+def test_a_zipped_stream_is_the_table_in_it(shell: Run) -> None:
+    result = shell(
+        "scarid convert $SAMPLES/scara2.csv -o log.arrows && gzip -k log.arrows &&"
+        " scarid convert log.arrows > a.csv && scarid convert log.arrows.gz | cmp - a.csv"
+    )
+    assert result.status == 0, result.err
+
+
 NAMES = {
     "ur-rtde": (
         "timestamp actual_q_0 actual_q_1 actual_qd_0 actual_qd_1 target_q_0 target_q_1 io\n"

@@ -13,6 +13,20 @@ from conftest import Result, refused
 Run = Callable[..., Result]
 
 
+def test_messages_without_efforts_are_left_out_and_told(scarid: Run, tmp_path: Path) -> None:
+    messages = []
+    for k in range(10):
+        when = START + k * MILLISECOND
+        effort = {"effort": [2.0 * k]} if k % 5 else {}
+        messages.append(("/s", when, state(when, ["a"], position=[float(k)], **effort)))
+    path = write_mcap(tmp_path / "x.mcap", {"/s": STATE}, messages)
+    result = scarid("convert", path)
+    columns, values = table(result.out)
+    assert columns == ["t", "q1", "tau1"]
+    np.testing.assert_array_equal(values[:, 1], [k for k in range(10) if k % 5])
+    assert "2 messages of /s left out: they have no tau (--torque-topic /s joins" in result.err
+
+
 @pytest.mark.parametrize("join", ["linear", "hold"])
 def test_efforts_of_a_slower_topic_are_joined(join: str, scarid: Run, tmp_path: Path) -> None:
     """Positions at 1000 Hz, efforts at 100 Hz from 5.5 ms on: what numpy finds is the same."""

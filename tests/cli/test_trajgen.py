@@ -5,11 +5,15 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import Result, refused
+
+from scarid_cli.cli.actions.trajgen import _require_moderate
+from scarid_cli.errors import UsageFault
 
 Run = Callable[..., Result]
 Shell = Callable[..., Result]
@@ -37,6 +41,12 @@ def elbow(tmp_path: Path) -> Path:
     path = tmp_path / "elbow.toml"
     path.write_text(ELBOW + "".join(PARAMETER.format(i=i) for i in (1, 2)))
     return path
+
+
+@pytest.mark.parametrize(("times", "accepted"), [(1, True), (2, False)])
+def test_as_many_rows_as_can_be_written_are_accepted(times: int, *, accepted: bool) -> None:
+    with nullcontext() if accepted else pytest.raises(UsageFault, match=r"more than 1e\+09 rows"):
+        _require_moderate(1e3, 1e6, times)
 
 
 def columns(table: str) -> Mapping[str, np.ndarray]:

@@ -67,6 +67,16 @@ def test_an_interval_is_a_gap_when_it_exceeds_the_limit(limit: float, *, held: b
     assert found.tolist() == [False, *[held] * 4, False, False]
 
 
+@pytest.mark.parametrize(("limit", "waiting"), [(5.0, 0), (4.75, 5)])
+def test_rows_that_repeat_wait_for_their_end_until_they_are_a_gap(
+    limit: float, waiting: int
+) -> None:
+    """Five seconds are the longest interval, or they are beyond it."""
+    values = np.ones((2, 6))
+    held = held_rows(np.arange(6.0), values, np.zeros(6, dtype=np.int64), limit)
+    assert (held[0].any(), held[1]) == (False, waiting)
+
+
 def test_rest_and_slow_encoders_are_no_held_samples() -> None:
     """A second at rest without noise, and two joints whose encoders change one after another."""
     t = np.arange(4000) * 1e-3

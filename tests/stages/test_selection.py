@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.errors import BadData
 from scarid_cli.io.reader import checked
 from scarid_cli.io.selection import Lacking, Selection, within
-from scarid_cli.io.table import Table
+from scarid_cli.io.table import Table, number
 from scarid_cli.stages.identify import identify
 from scarid_cli.stages.several import joined
 
@@ -138,6 +139,19 @@ def test_segments_of_the_logs_are_numbered_on() -> None:
     found = collected(joined(parts))
     expected = np.repeat([0, 3, 4, 7], [50, 100, 50, 100])
     np.testing.assert_array_equal(found.column("segment"), expected)
+
+
+@pytest.mark.parametrize(
+    ("own", "other", "alike"),
+    [("rad", "rad", True), ("rad", "m", False), ("rad", None, True), (None, None, True)],
+)
+def test_logs_are_joined_unless_they_state_different_units(
+    own: str | None, other: str | None, *, alike: bool
+) -> None:
+    units = (own, other)
+    parts = [replace(log(), schema=log().schema.set(1, number("q1", u))) for u in units]
+    with nullcontext() if alike else pytest.raises(BadData, match="unit m, expected rad"):
+        joined(parts)
 
 
 def test_estimates_from_several_logs_are_those_of_all_their_rows() -> None:

@@ -92,6 +92,11 @@ def test_dependent_columns_are_counted_to_those_before_them() -> None:
     np.testing.assert_allclose(W[:, kept] @ parts[:, [1, 3]], W[:, [1, 3]], atol=1e-12)
 
 
+def test_of_columns_that_are_all_zero_none_is_kept() -> None:
+    kept, parts = independent(np.zeros((50, 3)))
+    assert (kept, parts.shape) == ([], (0, 3))
+
+
 def one_by_one(W: Array) -> list[int]:
     """The columns that are independent of those before them, each tried by itself."""
     kept: list[int] = []

@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from stages.tables import collected, table
 
 from scarid_cli.algorithms.checks import values
+from scarid_cli.algorithms.checks.clock import GAP
 from scarid_cli.algorithms.checks.finding import FAILED, STATUSES, worst
 from scarid_cli.algorithms.checks.log import Log
-from scarid_cli.algorithms.checks.motion import bandwidth
+from scarid_cli.algorithms.checks.motion import Motion, bandwidth
 from scarid_cli.algorithms.checks.movement import repeated_after, smallest_step
 from scarid_cli.algorithms.processes.holding import held_in
 from scarid_cli.algorithms.processes.resampling import Clock
@@ -71,6 +72,29 @@ def test_the_bandwidth_of_a_sine_is_its_frequency(frequency: float, rows: int) -
     x = np.sin(2.0 * np.pi * frequency * 0.005 * np.arange(rows))
     resolution = 1.0 / (0.005 * rows)
     assert bandwidth(x, 0.005, 1) == pytest.approx(frequency, abs=3.0 * resolution)
+
+
+@pytest.mark.parametrize(("periods", "segments"), [(GAP, 1), (GAP + 0.25, 2)])
+def test_a_motion_is_split_at_intervals_beyond_the_longest_one(
+    periods: float, segments: int
+) -> None:
+    """Times are exact in binary, and so is their difference."""
+    t = 0.25 * np.arange(200.0)
+    t[100:] += 0.25 * (periods - 1.0)
+    found = Motion.of(Log(t, np.sin([t]), np.cos([t])), 0.25)
+    assert found
+    assert len(found.segments) == segments
+
+
+@pytest.mark.parametrize("rows", [-3, 0, 3])
+def test_a_delayed_motion_has_the_torques_of_later_rows(rows: int) -> None:
+    k = np.arange(100.0)
+    found = Motion.of(Log(0.01 * k, np.sin([k]), np.array([k])), 0.01)
+    assert found
+    (before,), (after,) = found.segments, found.delayed(rows).segments
+    positions = dict(zip(before.q[0], before.tau[0], strict=True))
+    assert after.q.shape == after.tau.shape == (1, 100 - abs(rows))
+    assert [positions[q] + rows for q in after.q[0]] == after.tau[0].tolist()
 
 
 @pytest.mark.parametrize("period", [150, 400])

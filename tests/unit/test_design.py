@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from scarid_cli.algorithms.design.geometry import Apart, Workspace
 from scarid_cli.algorithms.design.information import Samples
 from scarid_cli.algorithms.design.lagrangian import minimised
 from scarid_cli.algorithms.design.model import Model
+from scarid_cli.algorithms.design.motors import VELOCITY, Part, Shafts
 from scarid_cli.algorithms.design.prediction import Moments, standard_errors, unknown
 from scarid_cli.algorithms.design.problem import Problem, Wanted, kept, margins
 from scarid_cli.algorithms.excitations.quintic import Excitation as Quintic
@@ -25,6 +27,8 @@ from scarid_cli.algorithms.trajectories.curve import Curve, random_curve
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.algorithms.trajectories.spline import SplineBasis
 from scarid_cli.arrays import Array
+from scarid_cli.errors import UsageFault
+from scarid_cli.stages import design
 from scarid_cli.stages.design import Prediction
 
 UR10E = str(ROOT / "samples/robots/ur10e.toml")
@@ -191,6 +195,31 @@ def test_a_curve_shrinks_until_its_torques_keep_their_limits() -> None:
     torques = robot.torques(robot.regressor(*smaller.sample(t)), robot.apriori)
     assert np.all(np.abs(torques).max(axis=1) <= half)
     assert np.abs(torques).max() > 0.0
+
+
+@pytest.mark.parametrize(("factor", "kept"), [(1.0, True), (0.999, False)])
+def test_a_home_is_refused_where_its_torques_are_beyond_their_limits(
+    factor: float, *, kept: bool
+) -> None:
+    """The EMPS at rest needs the force of its offset alone."""
+    robot = load("emps")
+    limit = factor * abs(robot.value("offset"))
+    limited = replace(robot, joints=(replace(robot.joints[0], torque_limit=limit),))
+    with nullcontext() if kept else pytest.raises(UsageFault, match="torque of joint 1"):
+        assert len(design.laws(limited, np.zeros(1), None)) == 1
+
+
+def test_the_slope_of_a_law_that_jumps_is_that_of_its_torque() -> None:
+    """On both sides of the jump and within it; the law falls and rises with the velocity."""
+
+    def law(u: Array) -> Array:
+        return np.asarray(np.sign(u) - np.abs(u) + 0.5 * u * u)
+
+    shaft = Shafts.of([Part(law, VELOCITY, 0, 0, np.ones(1), gain=2.0, jumps=True)])
+    smooth = 0.05
+    u = np.array([[-0.5, -0.06, -0.02, 0.02, 0.06, 0.5]])
+    expected = (shaft.torque(u + STEP, smooth) - shaft.torque(u - STEP, smooth)) / (2.0 * STEP)
+    np.testing.assert_allclose(shaft.slope(u, smooth), expected, rtol=1e-6)
 
 
 def test_predicted_errors_are_those_of_simulated_estimates() -> None:

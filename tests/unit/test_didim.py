@@ -59,9 +59,19 @@ def test_didim_finds_the_parameters_of_the_simulated_robot_without_its_positions
     assert 0.7 < np.sqrt(np.mean(np.square(deviations))) < 1.3
 
 
-def test_didim_is_refused_for_a_robot_that_another_controller_moved() -> None:
-    """The gains printed in the paper do not make the robot follow its reference."""
+@pytest.mark.parametrize(
+    ("kp", "kd", "complaint"),
+    [
+        ((6.5, 155.0), (5.0, 25.0), "not positive definite"),  # the gains printed in the paper
+        ((800.0, 25.0), (1.0, 0.025), "does not converge"),
+        ((8e6, 25e4), (1e6, 25e3), "becomes unstable"),
+    ],
+)
+def test_didim_is_refused_for_a_robot_that_another_controller_moved(
+    kp: tuple[float, ...], kd: tuple[float, ...], complaint: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(didim, "ITERATIONS", 5)  # to be quick: twenty do not converge either
     assert SCARA.control is not None
-    control = replace(SCARA.control, kp=(6.5, 155.0), kd=(5.0, 25.0))
-    with pytest.raises(UsageFault, match="controller of the description"):
-        didim.Estimator().for_robot(replace(SCARA, control=control)).fit([experiment(1)])
+    robot = replace(SCARA, control=replace(SCARA.control, kp=kp, kd=kd))
+    with pytest.raises(UsageFault, match=f"{complaint}.*control"):
+        didim.Estimator().for_robot(robot).fit([experiment(1)])

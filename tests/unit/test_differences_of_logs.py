@@ -7,9 +7,10 @@ import pytest
 from scipy import stats
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence
-from scarid_cli.algorithms.changes.explanation import change
-from scarid_cli.algorithms.changes.hypotheses import MOTOR, Hypothesis
+from scarid_cli.algorithms.changes.explanation import Change, Explanation, change
+from scarid_cli.algorithms.changes.hypotheses import MOTOR, OFFSET, Hypothesis, hypotheses
 from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
+from scarid_cli.algorithms.robots.reading import load
 
 RNG = np.random.default_rng(3)
 N = 4
@@ -58,3 +59,34 @@ def test_what_an_explanation_leaves_is_tested_in_the_other_directions() -> None:
     found = change(difference, possible)
     assert [e.hypothesis.joints for e in found.explanations] == [(1,)]
     assert found.left == pytest.approx(stats.f.sf(np.sum(gradient[1:] ** 2) / 5.0, 5, 11))
+
+
+@pytest.mark.parametrize(
+    ("explanations", "explained", "left", "complete"),
+    [
+        (1, 0.9, 1e-9, True),
+        (1, 0.3, 0.5, True),
+        (1, 0.3, 1e-9, False),
+        (0, 0.0, 0.0, False),
+    ],
+)
+def test_explanations_are_complete_if_they_leave_little_or_nothing_but_noise(
+    explanations: int, explained: float, left: float, *, complete: bool
+) -> None:
+    own = Explanation(Hypothesis(MOTOR, np.eye(6)[:, :1], ("k",), ("1",)), (1.0,), (0.1,))
+    assert Change(1e-9, 3, (own,) * explanations, explained, left).complete is complete
+
+
+@pytest.mark.parametrize("name", ["scara2", "emps"])
+def test_another_offset_is_a_constant_torque_of_its_joint_alone(name: str) -> None:
+    """Whether the robot has a parameter for it, as emps has, or not."""
+    robot = load(name)
+    joints = len(robot.joints)
+    W = robot.regressor(*RNG.standard_normal((3, joints, 20)))
+    others = np.zeros((20, joints, 1 + joints))  # the delay and the motor constants
+    offsets = np.broadcast_to(np.eye(joints), (20, joints, joints))
+    columns = np.concatenate((W, others, offsets), axis=2)
+    found = [h for h in hypotheses(robot) if h.kind == OFFSET]
+    torques = np.concatenate([columns @ h.directions for h in found], axis=2)
+    assert np.array_equal(torques, offsets)
+    assert all(np.count_nonzero(h.directions) == 1 for h in found)

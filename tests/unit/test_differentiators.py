@@ -105,6 +105,8 @@ def test_standing_still_starts_without_a_jump(make: Any, position: float) -> Non
         ("2smd", "eta2", 0.0),
         ("2smd", "eta0", inf),
         ("astd", "gamma", 0.0),
+        ("savgol", "window", 5.0),  # its degree
+        ("savgol-end", "window", 3.0),
     ],
 )
 def test_setting_without_sense_is_refused(name: str, setting: str, value: float) -> None:

@@ -16,7 +16,7 @@ from scarid_cli.algorithms.robots.physical import Physical, nearest, pseudo_iner
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
-from scarid_cli.stages.urdf import document
+from scarid_cli.stages.urdf import SHOWN, _first_few, document
 
 pinocchio = pytest.importorskip("pinocchio")
 pytest.importorskip("cvxpy")
@@ -280,3 +280,11 @@ def test_dropped_parameters_stay_at_zero_where_masses_are_positive(robot: Robot)
     assert np.linalg.norm(others) / 1e-2 < 1.1
     for body in found.bodies:
         assert np.linalg.eigvalsh(pseudo_inertia(body))[0] > 0.0
+
+
+@pytest.mark.parametrize("count", [1, SHOWN, SHOWN + 1, 2 * SHOWN])
+def test_a_list_is_shortened_where_something_is_left_out(count: int) -> None:
+    items = [f"p{i}" for i in range(count)]
+    named = [item for item in _first_few(items).split(", ") if item != "..."]
+    assert named == items[: len(named)]
+    assert _first_few(items).endswith(", ...") == (len(named) < count)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pytest
 from reports import SCARA, a_line, element_of, evolution, parameters
 
 from scarid_cli.algorithms.statistics.prediction import Quality
@@ -57,6 +58,17 @@ def test_the_bars_are_the_largest_known_deviations() -> None:
     assert (bars.names, bars.values, bars.doubt) == (("a", "b"), (40.0, 7.0), 30.0)
 
 
+@pytest.mark.parametrize("count", [1, 4])
+def test_bars_have_as_much_room_above_them_as_below(count: int) -> None:
+    names = tuple(f"m{i}" for i in range(count))
+    plot = Bars("", "", names, (5.0,) * count, (0,) * count, (False,) * count, 30.0)
+    (axes,) = figures._bars(plot).axes
+    edges = [y for bar in axes.patches for y in (bar.get_y(), bar.get_y() + bar.get_height())]
+    bottom, top = axes.get_ylim()
+    assert bottom - max(edges) == pytest.approx(min(edges) - top)
+    assert bottom > max(edges)
+
+
 def test_metrics_and_predictions_of_an_experiment_share_a_section() -> None:
     quality = Quality(r2=0.91237, rmse=1.23456, relative_error=21.0, samples=400)
     results = [
@@ -100,7 +112,8 @@ def test_running_estimates_are_drawn_at_the_scale_of_those_after_a_tenth_of_the_
     trace = Trace(Name("a", ""), SCARA, tuple(SCARA.names), ("",) * 8, curves, (0.0,) * 8)
     (chapter,) = over_time(View(None, {"a": 1}), [trace])
     (figure,) = (block for block in chapter.blocks if isinstance(block, Figure))
-    assert re.findall(r'class="y"[^>]*>([^<]*)<', figure.panels[0]) == ["x"]
+    low, high = map(float, re.findall(r'data-y="(\S+) (\S+)"', figure.panels[0])[0])
+    assert low < 3.0 < 9.0 < high < 10.0
 
 
 def test_a_constant_trace_and_one_without_robot_are_drawn() -> None:

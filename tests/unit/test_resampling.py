@@ -46,6 +46,17 @@ def test_rows_lie_on_straight_lines_between_the_samples() -> None:
         np.testing.assert_allclose(found, np.interp(at, t, values), rtol=1e-12)
 
 
+def test_samples_before_the_next_row_are_not_kept() -> None:
+    """But for the one from which the line to the next row begins."""
+    t, x = jittered()
+    resampler = Resampler(PERIOD)
+    state = resampler.init(t[0], x[:, 0])
+    for k in range(1, len(t), 7):
+        state, at, _ = resampler.step(state, t[k : k + 7], x[:, k : k + 7])
+        assert not np.any(state.t[1:] <= at[-1] + PERIOD)
+        assert state.t[-1] == t[: k + 7][-1]
+
+
 @pytest.mark.parametrize("factor", [2, 5])
 def test_lower_rates_are_those_of_a_kaiser_low_pass(factor: int) -> None:
     """Designed by scipy, over the record turned around its ends, every so many-th sample."""

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.integrate
 import scipy.signal
 from unit.regressions import estimated
 from unit.slow_motions import THETA, P, smooth
@@ -165,6 +166,24 @@ def test_the_forward_model_is_the_plant_s() -> None:
     expected = [(zz2 * b1 - m12 * b2) / determinant, (m11 * b2 - m12 * b1) / determinant]
     accelerations = forward(SCARA, q, dq, tau[:, 0], SCARA.apriori)
     np.testing.assert_allclose(accelerations, expected, rtol=1e-9)
+
+
+def test_the_kalman_filter_predicts_the_motion_over_a_period() -> None:
+    """The differential equation with constant torques, solved by scipy; its third order is left."""
+    robot, h = SCARA.smoothed(0.05), 1e-3
+    q, dq, tau = np.array([[0.3, -0.7], [0.8, -1.1], [40.0, -3.0]])
+
+    def moved(_: float, x: Array) -> Array:
+        ddq = forward(robot, x[:2, None], x[2:, None], tau, SCARA.apriori)[:, 0]
+        return np.concatenate((x[2:], ddq))
+
+    x = np.concatenate((q, dq))
+    expected = scipy.integrate.solve_ivp(moved, (0.0, h), x, rtol=1e-10, atol=1e-14).y[:, -1]
+    solver = ekf.Estimator().for_robot(SCARA)
+    state = np.concatenate((x, SCARA.apriori))
+    found, _ = solver._predicted(state, np.eye(len(state)), tau, h)
+    turn = h * np.concatenate((dq, np.zeros(2)))
+    np.testing.assert_allclose(found[:4] - x - turn, expected - x - turn, rtol=0.1)
 
 
 def test_the_kalman_filter_comes_from_wrong_parameters_to_the_true_ones() -> None:

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from scarid_cli.algorithms.trajectories.joined import approach
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.algorithms.trajectories.via import ViaPath, reach, through
 from scarid_cli.errors import UsageFault
@@ -41,6 +42,18 @@ def test_reach_is_as_far_as_velocity_and_acceleration_allow(
     fastest = 15.0 / 8.0 * far / T / box.dq
     hardest = 10.0 / np.sqrt(3.0) * far / T**2 / box.ddq
     np.testing.assert_allclose(np.maximum(fastest, hardest), 1.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("start", [0.4, 0.5, -0.4])
+@pytest.mark.parametrize("dq", [0.5, 50.0])
+def test_an_approach_is_as_fast_as_a_fifth_of_the_limits(start: float, dq: float) -> None:
+    """Of velocity or of acceleration, whichever is reached first; a row at least."""
+    box = Limits(-np.ones(1), np.ones(1), np.array([dq]), np.array([10.0]))
+    path = approach(np.array([start]), np.array([0.4]), box, 1000.0)
+    _, v, a = path.sample(np.linspace(0.0, path.duration, 2001))
+    reached = max(np.abs(v).max() / box.dq[0], np.abs(a).max() / box.ddq[0])
+    assert reached == pytest.approx(0.2 if start != 0.4 else 0.0, rel=0.02)
+    assert path.duration >= 1e-3
 
 
 def test_velocity_and_acceleration_are_the_slopes_of_the_position() -> None:
