@@ -21,6 +21,7 @@ from scarid_cli.io.table import SEGMENT, Table, number, segment_field, with_colu
 from scarid_cli.stages import Sink
 from scarid_cli.stages.parameters import parameters
 from scarid_cli.stages.rows import treated
+from scarid_cli.stages.times import Times
 
 
 def identify(
@@ -52,6 +53,8 @@ def identify(
         state = estimator.init(initial)
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
     left_out = checkpoint.left_out
+    times = Times(table, checkpoint.seen)
+    table = times.watched(table)
     for batch, rows in treated(table, robot, treatment, checkpoint.seen, estimator, left_out):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
@@ -65,8 +68,15 @@ def identify(
     if keep:
         keep(checkpoint)
     meta = replace(table.meta, kind="parameters", robot=robot.name)
-    matched = _matched(table)
-    result = parameters(found, robot, meta, treatment, variance=variance, matched=matched)
+    result = parameters(
+        found,
+        robot,
+        meta,
+        treatment,
+        variance=variance,
+        matched=_matched(table),
+        unexplained=times.unexplained(found.diagnostics.bursts),
+    )
     if not treatment.counting:
         return result
     extra = {**result.meta.extra, "left_out": left_out.counts}

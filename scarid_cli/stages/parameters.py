@@ -90,10 +90,12 @@ def parameters(
     *,
     variance: str,
     matched: bool = False,
+    unexplained: str = "",
 ) -> Table:
     """The parameter table, with the verdict in its metadata.
 
-    `matched` tells that torques and derivatives are known to have passed the same filter.
+    `matched` tells that torques and derivatives are known to have passed the same filter, and
+    `unexplained` which torques are not explained, if they are few.
     """
     labels = Labels.of(found, robot)
     known_errors = found.diagnostics.covariance
@@ -113,18 +115,18 @@ def parameters(
         columns.append([*written, *labels.names[len(written) :]])
     else:
         schema = schema.remove(schema.get_field_index("stands_for"))
-    extra = _judged(found, robot, labels, treatment, matched=matched) | _facts(found, labels)
+    judged = _evidence(found, labels, treatment)
+    judged = replace(judged, matched=matched, unexplained=unexplained)
+    extra = _judged(judged, robot) | _facts(found, labels)
     return table_of("identify", schema, zip(*columns, strict=True), replace(meta, extra=extra))
 
 
-def _judged(
-    found: Outcome, robot: Robot, labels: Labels, treatment: Treatment, *, matched: bool
-) -> dict[str, Any]:
-    """The metadata of the verdict, with the condition numbers that it is based on."""
+def _evidence(found: Outcome, labels: Labels, treatment: Treatment) -> Evidence:
+    """What the verdict is based on."""
     fit = found.found.fit
     names = [labels.names[i] for i in labels.kept]
     scaled, direction = weakest(fit.unit_covariance)
-    evidence = Evidence(
+    return Evidence(
         names=names,
         estimates=fit.estimates,
         condition=fit.condition,
@@ -132,12 +134,15 @@ def _judged(
         weak=combination(direction, names),
         diagnostics=found.diagnostics,
         treatment=treatment,
-        matched=matched,
     )
+
+
+def _judged(evidence: Evidence, robot: Robot) -> dict[str, Any]:
+    """The metadata of the verdict, with the condition numbers that it is based on."""
     judged = verdict(evidence, robot)
     return {
-        "condition_number": _or_none(fit.condition),
-        "scaled_condition_number": scaled,
+        "condition_number": _or_none(evidence.condition),
+        "scaled_condition_number": evidence.scaled_condition,
         "verdict": judged.grade,
         "reasons": list(judged.reasons),
     }

@@ -15,6 +15,7 @@ from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import SEGMENT, Table, doubles, integers, matrix, segments_of, with_columns
 
 PAUSE = 1.0  # s, between a log and the next one whose time does not go on
+LOGS = "logs"  # key of the metadata: how many logs were joined
 MATCHED = "settled"  # the column that a matched motion has
 
 
@@ -81,6 +82,7 @@ def _extra(tables: Sequence[Table]) -> dict[str, Any]:
     noise = [table.meta.extra.get("velocity_noise") or [] for table in tables]
     alike = len({len(values) for values in noise}) == 1
     extra["velocity_noise"] = [max(values) for values in zip(*noise, strict=True)] if alike else []
+    extra[LOGS] = len(tables)
     return extra
 
 

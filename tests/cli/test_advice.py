@@ -145,3 +145,25 @@ def test_a_motion_that_is_matched_is_not_to_be_matched(
         found = scarid("identify", f"{motion}.csv")
     assert "the estimates depend on the soft sensor" in found.err
     assert ("use scarid differentiate --match" in found.err) == advised
+
+
+def test_a_collision_is_named_with_what_leaves_it_out(tmp_path: Path, shell: Run) -> None:
+    made = shell(
+        "scarid trajgen -q --seed 2 --duration 12 | scarid simulate -q --seed 2 -o clean.csv"
+    )
+    assert made.status == 0
+    header, *rows = (tmp_path / "clean.csv").read_text().splitlines()
+    lines = []
+    for t, q1, q2, tau1, *others in (row.split(",") for row in rows):
+        hit = 300.0 if 3.0 <= float(t) < 3.05 else 0.0
+        lines.append(",".join([t, q1, q2, f"{float(tau1) + hit}", *others]))
+    (tmp_path / "hit.csv").write_text("\n".join([header, *lines]) + "\n")
+    found = shell("scarid identify hit.csv").err
+    named = re.search(
+        r"doubtful: the torques at ([\d.]+) to ([\d.]+) s cannot .* with (.*?);", found
+    )
+    assert named
+    assert float(named[1]) == pytest.approx(2.95, abs=0.06)
+    assert float(named[2]) == pytest.approx(3.1, abs=0.11)
+    assert "--essential" not in found
+    assert GOOD in shell(f"scarid identify {named[3]} hit.csv").err

@@ -15,6 +15,7 @@ from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.alternatives import TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.bursts import Interval, bursts
 from scarid_cli.algorithms.statistics.consequences import (
     Consequences,
     Uncertainty,
@@ -42,7 +43,8 @@ class Diagnostics:
     allow for the `effects` of alternatives to the model and for the errors of the torque constants.
     `matrix` (own, own) is the covariance of the estimates with all of that. `blocks` is the
     effective number of blocks. `gains` (joints, own) is how far the estimates move per relative
-    change of the torque constant of a joint.
+    change of the torque constant of a joint. `bursts` are the intervals that the model does not
+    explain, counted from sample 0 of a record that is known as a whole.
     """
 
     covariance: RobustCovariance | None
@@ -54,6 +56,7 @@ class Diagnostics:
     effects: tuple[Effect, ...]
     gains: Array
     consequences: Consequences
+    bursts: tuple[Interval, ...] = ()
 
 
 def diagnose(
@@ -97,7 +100,13 @@ def diagnose(
             model,
             rows.motion[0],
         ),
+        bursts=() if record else _bursts(rows, found.fit.estimates),
     )
+
+
+def _bursts(rows: Rows, estimates: Array) -> tuple[Interval, ...]:
+    residual = rows.y - rows.W @ estimates
+    return bursts(residual, rows.y, rows.scales > 0.0, np.asarray(rows.at * rows.h))
 
 
 @dataclass(frozen=True)

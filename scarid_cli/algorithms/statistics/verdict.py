@@ -61,7 +61,8 @@ class Evidence:
     """What a verdict is based on; `estimates` and errors are in the order of `names`.
 
     The verdict does not recommend the options of the `treatment` that are already in use, nor a
-    `matched` motion if this one is known to be so.
+    `matched` motion if this one is known to be so. `unexplained` says at which times the torques
+    are not explained, if they are few.
     """
 
     names: Sequence[str]
@@ -72,6 +73,7 @@ class Evidence:
     diagnostics: Diagnostics
     treatment: Treatment
     matched: bool = False
+    unexplained: str = ""
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
@@ -88,6 +90,8 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
         *_vague(evidence),
         *_impossible(evidence, robot),
     ]
+    if wrong and evidence.unexplained:
+        wrong = [evidence.unexplained, *wrong]
     notes = notes_of(evidence.names, evidence.diagnostics)
     return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes))
 
@@ -171,8 +175,9 @@ def _vague(evidence: Evidence) -> list[str]:
         for i, ratio in enumerate(found.held_out, start=1)
         if not ratio <= HELD_OUT
     ]
-    hint = "--essential leaves out the parameters that are not known"
-    return [*reasons, hint] if reasons and not evidence.treatment.essential else reasons
+    if not reasons or evidence.treatment.essential or evidence.unexplained:
+        return reasons
+    return [*reasons, "--essential leaves out the parameters that are not known"]
 
 
 def _width(evidence: Evidence) -> float:

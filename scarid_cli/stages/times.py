@@ -1,0 +1,58 @@
+"""The times of the samples of a record, which are numbered through its gaps."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.algorithms.statistics.bursts import Interval, advice
+from scarid_cli.io.table import Table, matrix, segments_of
+from scarid_cli.stages.rows import Gaps
+from scarid_cli.stages.several import LOGS
+
+
+class Times:
+    """Knows the time of each sample of a table; `seen` is the number of the first one."""
+
+    def __init__(self, table: Table, seen: int) -> None:
+        self._period, self._seen = table.period, seen
+        self._several = LOGS in table.meta.extra  # whose times are moved on
+        self._starts: list[tuple[float, float]] = []  # of segments: as counted, and in the log [s]
+        self._end = 0.0
+
+    def watched(self, table: Table) -> Table:
+        """The table, whose segments are noted as they pass."""
+        return replace(table, batches=self._watched(table.batches))
+
+    def _watched(self, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+        gaps, row, last = Gaps(self._period), self._seen, -1
+        for batch in batches:
+            numbers = segments_of(batch)
+            t = matrix(batch, ["t"])[0]
+            for at in np.flatnonzero(np.diff(numbers, prepend=last)).tolist():
+                counted = row + at + gaps.before(batch.slice(at, 1))
+                self._starts.append((counted * self._period, float(t[at])))
+            if len(t):
+                last, self._end = int(numbers[-1]), float(t[-1])
+            row += batch.num_rows
+            yield batch
+
+    def unexplained(self, bursts: Sequence[Interval]) -> str:
+        """What to do about these intervals, counted from sample 0; empty if their time is unknown.
+
+        Those of several logs, and those before the first sample of this table, have no time.
+        """
+        early = any(burst.start < self._starts[0][0] for burst in bursts)
+        if self._several or early:
+            return ""
+        found = [Interval(self._time(burst.start), self._time(burst.end)) for burst in bursts]
+        return advice(found, self._starts[0][1], self._end)
+
+    def _time(self, counted: float) -> float:
+        """The time in the log [s] of a time that is counted from sample 0 [s]."""
+        start, t = self._starts[max(0, bisect_right(self._starts, (counted, np.inf)) - 1)]
+        return t + counted - start
