@@ -39,7 +39,7 @@ def run(
     header: str,
 ) -> None:
     """Write the table with its new names, units and clock."""
-    _require_valid(rate, separator, decimal_comma=decimal_comma)
+    _require_valid(separator, decimal_comma=decimal_comma)
     pairs = renamings(mappings)
     given = [pair(text, "--unit") for text in units]
     arm = _robot(job.described(robot)) if robot else None
@@ -83,9 +83,7 @@ def _robot(name: str) -> Robot:
     return load(name)
 
 
-def _require_valid(rate: float | None, separator: str, *, decimal_comma: bool) -> None:
-    if rate is not None and not 0.0 < rate < float("inf"):
-        raise UsageFault(f"--rate must be positive, not {rate:g}")
+def _require_valid(separator: str, *, decimal_comma: bool) -> None:
     if len(separator) > 1 and separator != "\\t":
         raise UsageFault(f"--separator is one character, not {separator!r}")
     if decimal_comma and not separator:
