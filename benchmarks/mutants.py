@@ -32,7 +32,7 @@ FOLDER = ROOT / "build" / "mutants"
 
 # Changes that once passed all tests: a file, its text, and the changed text.
 FORMER = (
-    ("scarid_cli/io/reader.py", "table.row(row + bad + 1)", "table.row(row + bad)"),
+    ("scarid_cli/io/reader.py", "table.row(row + at + 1)", "table.row(row + at)"),
     ("scarid_cli/io/reader.py", "row += batch.num_rows", "row -= batch.num_rows"),
     (
         "scarid_cli/cli/actions/filter.py",

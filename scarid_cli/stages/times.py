@@ -25,7 +25,9 @@ class Times:
         self._end = 0.0
 
     def watched(self, table: Table) -> Table:
-        """The table, whose segments are noted as they pass."""
+        """The table, whose segments are noted as they pass, if it has times."""
+        if "t" not in table.schema.names:
+            return table
         return replace(table, batches=self._watched(table.batches))
 
     def _watched(self, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
@@ -46,8 +48,9 @@ class Times:
 
         Those of several logs, and those before the first sample of this table, have no time.
         """
-        early = any(burst.start < self._starts[0][0] for burst in bursts)
-        if self._several or early:
+        if self._several or not self._starts:
+            return ""
+        if any(burst.start < self._starts[0][0] for burst in bursts):
             return ""
         found = [Interval(self._time(burst.start), self._time(burst.end)) for burst in bursts]
         return advice(found, self._starts[0][1], self._end)

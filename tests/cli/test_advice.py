@@ -80,10 +80,10 @@ def test_rows_that_were_dropped_are_dropped_by_the_pipe_too(holed: Path, shell: 
     assert GOOD in shell(typed(failed.err)).err
 
 
-def test_one_of_several_logs_is_mended(holed: Path, shell: Run) -> None:
-    failed = shell(f"scarid identify $SAMPLES/scara2.csv {holed.name}")
+def test_one_of_several_logs_is_mended(holed: Path, users_shell: Run) -> None:
+    failed = users_shell(f"scarid identify $SAMPLES/scara2.csv {holed.name}")
     refused(failed, 65, "expected a finite number")
-    assert GOOD in shell(typed(failed.err)).err
+    assert GOOD in users_shell(typed(failed.err)).err
 
 
 def test_resample_says_which_option_leaves_rows_out(holed: Path, scarid: Run) -> None:

@@ -47,7 +47,7 @@ CASES = {
     "missing column": (["t,position,tau1", *GOOD[1:]], "column q1: found the columns t, position"),
     "no time": (["time,q1,tau1", *GOOD[1:]], "column t: found the columns time, q1, tau1"),
     "duplicate column": (["t,q1,q1", *GOOD[1:]], "column q1: found 2 columns of this name"),
-    "nameless column": (["t,q1,", *GOOD[1:]], "column 3: found no name, expected one name"),
+    "nameless column": (["t,q1,", *GOOD[1:]], "row 1, column 3: found '0.0', expected nothing, as"),
     "other separator": (["t;q1;tau1", "0;1;2"], "found the single column 't;q1;tau1', expected"),
     "one row": (GOOD[:2], "found 1 rows, expected at least 2 samples; give a longer log"),
     "header only": (GOOD[:1], "found 0 rows, expected at least 2 samples; give a longer log"),

@@ -13,7 +13,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.estimation import Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.statistics.alternatives import TORQUES, Model
+from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.bursts import Interval, bursts
 from scarid_cli.algorithms.statistics.consequences import (
@@ -125,9 +125,11 @@ def _stated(fit: Fit, scatter: Array, effects: tuple[Effect, ...], gains: Array)
     moves = [(effect.name, effect.direction(scatter)) for effect in effects]
     # What other columns gain the parameters lose: the torque on this motion remains what it was.
     lasting = [move for name, move in moves if name not in TORQUES]
+    # Without its column this one would change the torque most, where `scarid urdf` must keep it.
+    most = [move for name, move in moves if name != CURVATURE]
     return _Stated(
         errors=np.sqrt(scatter**2 + np.nan_to_num(widest)),
-        matrix=_matrix(fit, scatter, [*(move for _, move in moves), *gains]),
+        matrix=_matrix(fit, scatter, [*most, *gains]),
         uncertainty=Uncertainty(
             torque=_matrix(fit, scatter, [*lasting, *gains]),
             noise=_matrix(fit, scatter, []),
