@@ -81,6 +81,15 @@ def test_the_first_cutoff_is_twice_the_bandwidth_of_the_motion(factor: float) ->
     assert first == pytest.approx(factor * 2.0 * 4.3 / (2.0 * np.pi), rel=0.02)
 
 
+def test_positions_in_steps_do_not_raise_the_first_cutoff() -> None:
+    """A logger that reads the encoders at 20 Hz only."""
+    smooth = arm(100.0)
+    steps = np.repeat(smooth.q[:, ::25], 25, axis=1)[:, : smooth.q.shape[1]]
+    stepped = Segment(steps, smooth.tau, smooth.noise)
+    found, expected = (scatter.curve(SCARA, [x], H)[0].cutoff for x in (stepped, smooth))
+    assert found == pytest.approx(expected, rel=0.05)
+
+
 def test_noise_of_the_positions_lowers_the_cutoff() -> None:
     fine, coarse = (
         scatter.chosen(scatter.curve(SCARA, [arm(noise=x)], H)).cutoff for x in (1e-6, 3e-4)

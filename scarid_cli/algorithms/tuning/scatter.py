@@ -89,10 +89,13 @@ def _first(robot: Robot, segments: Sequence[Segment], h: float) -> float:
     """The lowest cut-off: with ten independent rows for each parameter, and above the motion.
 
     Below the bandwidth of the motion the parameters may scatter little, and are wrong nevertheless.
+    It is at most that of the torques, which positions in steps do not increase.
     """
     rows = sum(s.q.size for s in segments)
     longest = max(segments, key=lambda segment: segment.q.shape[1])
-    motion = OF_MOTION * max(bandwidth(q, h, derivative=1) for q in longest.q)
+    velocities = max(bandwidth(q, h, derivative=1) for q in longest.q)
+    torques = max(bandwidth(tau, h, derivative=0) for tau in longest.tau)
+    motion = OF_MOTION * min(velocities, torques)
     independent = ROWS_PER_PARAMETER * len(robot.parameters) / (2.0 * rows * h)
     return max(LOWEST, independent, min(motion, 0.5 * HIGHEST / h))
 
