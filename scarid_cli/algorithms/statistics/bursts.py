@@ -44,8 +44,7 @@ def bursts(residual: Array, torque: Array, counts: Marks, t: Array) -> tuple[Int
     far = np.zeros(len(t), dtype=np.bool_)
     for r, y, k in zip(residual.T, torque.T, counts.T, strict=True):
         far[k] |= _far(r[k] ** 2, float(np.sum(y[k] ** 2)), block[k])
-    used = np.unique(block[far])
-    if not len(used) or len(used) > MOST:
+    if not 0 < np.count_nonzero(np.bincount(block[far])) <= MOST:
         return ()
     at = np.flatnonzero(far)
     parts = np.split(at, np.flatnonzero(np.diff(t[at]) > BLOCK) + 1)
@@ -55,16 +54,16 @@ def bursts(residual: Array, torque: Array, counts: Marks, t: Array) -> tuple[Int
 def _far(squares: Array, torque: float, block: Numbers) -> Marks:
     """Which squares of the residual (rows) of a joint belong to a burst; the torque's sum."""
     none = np.zeros(len(squares), dtype=np.bool_)
-    used, number = np.unique(block, return_inverse=True)
-    if len(used) < FEWEST:
+    counts, sums = np.bincount(block), np.bincount(block, squares)
+    if np.count_nonzero(counts) < FEWEST:
         return none
-    counts, sums = np.bincount(number), np.bincount(number, squares)
     means = sums / np.maximum(counts, FULL * counts.max())  # a few rows prove nothing
-    usual = float(np.sort(means)[int(USUAL * (len(means) - 1))])
+    known = np.sort(means[counts > 0])
+    usual = float(known[int(USUAL * (len(known) - 1))])
     burst = (means > FAR * usual) & (means > SIZE**2 * torque / len(squares))
     if not sums[burst].sum() > SHARE * sums.sum():
         return none
-    return np.asarray(burst[number] & (squares > FAR * usual))
+    return np.asarray(burst[block] & (squares > FAR * usual))
 
 
 def advice(found: Sequence[Interval], start: float, end: float) -> str:

@@ -168,7 +168,8 @@ def _noise(problem: Problem, diagnostics: Diagnostics, rows: float) -> Noise:
 
 def _excitation(problem: Problem) -> Array:
     """The root-mean-square torque per unit of each parameter (parameters)."""
-    counts = problem.rows.scales > 0.0
-    W = problem.rows.W[:, :, : problem.own] * counts[:, :, None]
-    excitation: Array = np.sqrt((W**2).sum(axis=(0, 1)) / max(counts.sum(), 1))
-    return excitation
+    counts = (problem.rows.scales > 0.0).astype(np.float64)
+    W = problem.rows.W[:, :, : problem.own]
+    # Joint by joint, as a copy of W without the rows that do not count would take longer.
+    squares = sum(np.einsum("sp,sp,s->p", W[:, j], W[:, j], k) for j, k in enumerate(counts.T))
+    return np.asarray(np.sqrt(squares / max(counts.sum(), 1.0)))
