@@ -115,9 +115,10 @@ def parameters(
         columns.append([*written, *labels.names[len(written) :]])
     else:
         schema = schema.remove(schema.get_field_index("stands_for"))
-    judged = _evidence(found, labels, treatment)
-    judged = replace(judged, matched=matched, unexplained=unexplained)
-    extra = _judged(judged, robot) | _facts(found, labels)
+    evidence = replace(
+        _evidence(found, labels, treatment), matched=matched, unexplained=unexplained
+    )
+    extra = _judged(evidence, robot) | _facts(found, labels)
     return table_of("identify", schema, zip(*columns, strict=True), replace(meta, extra=extra))
 
 

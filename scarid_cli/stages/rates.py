@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.processes.holding import held_in
-from scarid_cli.algorithms.processes.rates import mean_rate, rate_text
+from scarid_cli.algorithms.processes.rates import resampling_rate
 from scarid_cli.io.table import matrix
 from scarid_cli.stages.holding import measured
 
@@ -20,5 +20,4 @@ def advised_rate(rows: pa.RecordBatch) -> str:
     known = np.isfinite(t)
     x = np.array(values).reshape(len(values), len(t))[:, known]
     held, _ = held_in(t[known], x)
-    rate = mean_rate(np.diff(t[known][~held]))
-    return rate_text(rate) if rate else "HZ"
+    return resampling_rate(t[known], held) or "HZ"

@@ -14,7 +14,7 @@ from scarid_cli.algorithms.checks import values
 from scarid_cli.algorithms.checks.clock import GAP
 from scarid_cli.algorithms.checks.finding import FAILED, STATUSES, worst
 from scarid_cli.algorithms.checks.log import Log
-from scarid_cli.algorithms.checks.motion import Motion, bandwidth
+from scarid_cli.algorithms.checks.motion import Motion
 from scarid_cli.algorithms.checks.movement import repeated_after, smallest_step
 from scarid_cli.algorithms.processes.holding import held_in
 from scarid_cli.algorithms.processes.resampling import Clock

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from scarid_cli.algorithms.processes.holding import held_in
-from scarid_cli.algorithms.processes.rates import mean_rate, rate_text
+from scarid_cli.algorithms.processes.rates import resampling_rate
 from scarid_cli.arrays import Array, Marks, Numbers
 
 
@@ -53,9 +53,8 @@ class Log:
 
         Without a rate if time never increases.
         """
-        held, _ = self.held
-        rate = mean_rate(np.diff(self.t[np.isfinite(self.t) & ~held]))
-        given = ("--rate", rate_text(rate)) if rate else ()
+        rate = resampling_rate(self.t, self.held[0])
+        given = ("--rate", rate) if rate else ()
         return f"`{' '.join(('scarid resample', *given, *words))}`"
 
     @property

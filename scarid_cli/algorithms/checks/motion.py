@@ -16,7 +16,7 @@ from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.tuning.likelihood import noise_of
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
 from scarid_cli.algorithms.tuning.scatter import HIGHEST, LOWEST
-from scarid_cli.algorithms.tuning.spectrum import bandwidth
+from scarid_cli.algorithms.tuning.spectrum import bandwidths
 from scarid_cli.arrays import Array, Marks
 
 FEWEST = 64  # rows of a segment from which a spectrum has a few points in each octave
@@ -48,11 +48,9 @@ class Motion:
         segments = tuple(_segments(log.part(usable(log, held)), period))
         if not segments:
             return None
-        longest = max(segments, key=lambda segment: segment.q.shape[1])
-        bandwidths = np.array([bandwidth(q, period, 1) for q in longest.q])
-        torques = np.array([bandwidth(tau, period, 0) for tau in longest.tau])
-        cutoff = min(max(HARMONICS * bandwidths.max(), LOWEST), HIGHEST / period)
-        return cls(segments, period, bandwidths, torques, cutoff)
+        velocities, torques = bandwidths(segments, period)
+        cutoff = min(max(HARMONICS * velocities.max(), LOWEST), HIGHEST / period)
+        return cls(segments, period, velocities, torques, cutoff)
 
     def parts(self) -> list[Lowpassed]:
         """The segments behind the low-pass, of which some rows are kept."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from scarid_cli.algorithms.processes.holding import MAX_GAP
-from scarid_cli.arrays import Array, median
+from scarid_cli.arrays import Array, Marks, median
 
 ROWS = 10_000  # of a log, whose mean rate is taken, at most
 LATE = 2.5  # periods of two intervals: 2 with a late row, 3 with a missing one
@@ -64,3 +64,12 @@ def _rounded(x: float, near: float, digits: int) -> float | None:
 def rate_text(rate: float) -> str:
     """The round rate near a rate [Hz], as it is typed."""
     return f"{round_rate(rate):.6g}"
+
+
+def resampling_rate(t: Array, held: Marks) -> str:
+    """The rate [Hz] at which these rows are to be resampled; empty if time never increases.
+
+    Times t (rows) [s], and which rows are held samples.
+    """
+    rate = mean_rate(np.diff(t[np.isfinite(t) & ~held]))
+    return rate_text(rate) if rate else ""

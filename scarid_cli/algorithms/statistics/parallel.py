@@ -129,11 +129,6 @@ def _columns(
     }
 
 
-def _turned(values: Array) -> Array:
-    """Values (samples, joints, 3) as (3, joints, samples)."""
-    return np.ascontiguousarray(values.T)
-
-
 def differences(q: Array, h: float) -> tuple[Array, Array]:
     """Velocity and acceleration by central differences over five samples (joints, samples).
 

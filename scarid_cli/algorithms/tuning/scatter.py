@@ -19,7 +19,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.information import inverse_deviations
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
-from scarid_cli.algorithms.tuning.spectrum import bandwidth
+from scarid_cli.algorithms.tuning.spectrum import bandwidths
 from scarid_cli.arrays import Array, Numbers
 
 STEP = 2.0**0.25  # from one cut-off to the next
@@ -92,10 +92,7 @@ def _first(robot: Robot, segments: Sequence[Segment], h: float) -> float:
     It is at most that of the torques, which positions in steps do not increase.
     """
     rows = sum(s.q.size for s in segments)
-    longest = max(segments, key=lambda segment: segment.q.shape[1])
-    velocities = max(bandwidth(q, h, derivative=1) for q in longest.q)
-    torques = max(bandwidth(tau, h, derivative=0) for tau in longest.tau)
-    motion = OF_MOTION * min(velocities, torques)
+    motion = OF_MOTION * min(float(x.max()) for x in bandwidths(segments, h))
     independent = ROWS_PER_PARAMETER * len(robot.parameters) / (2.0 * rows * h)
     return max(LOWEST, independent, min(motion, 0.5 * HIGHEST / h))
 

@@ -1,13 +1,23 @@
-"""The bandwidth of a signal, from its spectrum."""
+"""The bandwidth of a signal, and of the motion of a record, from spectra."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from scarid_cli.algorithms.tuning.lowpassed import Segment
 from scarid_cli.arrays import Array
 
 POWER = 0.95  # of the power of the velocity lies below the bandwidth of a motion
 ABOVE = 10.0  # times the noise's density, from which on the density is that of the motion
+
+
+def bandwidths(segments: Sequence[Segment], h: float) -> tuple[Array, Array]:
+    """Those of the velocities and of the torques (joints) [Hz] in the longest segment; h [s]."""
+    longest = max(segments, key=lambda segment: segment.q.shape[1])
+    velocities = np.array([bandwidth(q, h, derivative=1) for q in longest.q])
+    return velocities, np.array([bandwidth(tau, h, derivative=0) for tau in longest.tau])
 
 
 def bandwidth(x: Array, h: float, derivative: int) -> float:
