@@ -19,6 +19,7 @@ from scarid_cli.algorithms.checks.movement import repeated_after, smallest_step
 from scarid_cli.algorithms.processes.holding import held_in
 from scarid_cli.algorithms.processes.resampling import Clock
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.tuning.spectrum import bandwidth
 from scarid_cli.stages.check import check
 from scarid_cli.stages.resample import resample
 
