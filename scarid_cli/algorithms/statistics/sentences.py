@@ -27,8 +27,8 @@ ADVICE = {
     ASYMMETRY: "friction differs between the two directions (add the terms viscous-forward and "
     "viscous-backward to the robot)",
     STRIBECK: "friction decreases with speed (add Stribeck friction with --estimator separable)",
-    CURVATURE: "friction is no straight line over the speed (Stribeck friction with --estimator "
-    "separable is one that bends)",
+    CURVATURE: "friction is not the sum of Coulomb and viscous friction (try Stribeck friction "
+    "with --estimator separable)",
     LOAD: "friction grows with the torque that a joint transmits, for which there is no term",
     SPRING: "something pulls on a joint as a spring or a cable does, for which there is no term",
     SATURATION: "the logged torque is not proportional to the real one, as when a motor saturates",

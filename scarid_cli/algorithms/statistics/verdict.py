@@ -227,7 +227,7 @@ def _summary(evidence: Evidence) -> str:
     found, width = evidence.diagnostics.consequences, _width(evidence)
     parts = [known]
     if np.isfinite(found.torque).all():
-        parts.append(f"torque within {percents(width * found.torque)} on such motions")
+        parts.append(f"torque within {percents(width * found.torque)} on motions like this one")
     if np.isfinite(found.inertia).all():
         parts.append(f"inertia within {percents(width * found.inertia)}")
     r2 = [joint.r2 for joint in evidence.diagnostics.joints]
