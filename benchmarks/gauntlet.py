@@ -115,7 +115,7 @@ def judged(name: str, truth: Array, measured: Table, seed: int) -> Judged:
     robot = robot_named(name)
     motion, found, _ = motion_of(again(measured), robot, lambda: None, [])
     treatment = Treatment(counting=_counting(motion), align=True)
-    solver = ESTIMATORS.load("wls")()
+    solver = ESTIMATORS.load("gls")()
     result = identify(motion, robot, solver, np.zeros(len(robot.names)), treatment=treatment)
     (batch,) = result.batches
     estimates, errors, low, high = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
@@ -83,7 +84,8 @@ def _parts(
         reference = None
         if known and estimator and estimator.REFERENCE:
             reference = _signals(robot, kept, *REFERENCE)
-        yield kept, rows_of(robot, motion, at, table.period, slow=slow, reference=reference)
+        rows = rows_of(robot, motion, at, table.period, slow=slow, reference=reference)
+        yield kept, replace(rows, bandwidth=table.meta.extra.get("bandwidth"))
 
 
 def _signals(robot: Robot, batch: pa.RecordBatch, *names: str) -> Array:

@@ -45,10 +45,11 @@ def bits(fit: Fit) -> list[Any]:
 def test_chunks_do_not_change_a_bit(estimator: Any, chunks: list[slice], *, trace: bool) -> None:
     W, y = data(ROWS)
     trace = trace and estimator.RECURSIVE
-    whole, expected = estimator.step(estimator.init(THETA), plain(W, y), trace=trace)
+    rows = plain(W, y)
+    whole, expected = estimator.step(estimator.init(THETA), rows, trace=trace)
     state, traces = estimator.init(THETA), []
     for chunk in chunks:
-        state, part = estimator.step(state, plain(W[chunk], y[chunk]), trace=trace)
+        state, part = estimator.step(state, rows.part(chunk), trace=trace)
         traces.append(part)
     assert bits(estimator.fit(state).fit) == bits(estimator.fit(whole).fit)
     np.testing.assert_array_equal(np.concatenate(traces), expected)

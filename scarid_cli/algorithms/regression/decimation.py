@@ -54,4 +54,5 @@ def _decimated(rows: Rows, factor: int, sections: Array) -> Rows:
         h=rows.h * factor,
         motion=lowpassed(rows.motion, 2),
         reference=None if rows.reference is None else rows.reference[:, :, kept],
+        bandwidth=min(rows.bandwidth or np.inf, CUTOFF_OF_NYQUIST * 0.5 / (rows.h * factor)),
     )

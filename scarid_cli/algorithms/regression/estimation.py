@@ -11,6 +11,7 @@ import numpy as np
 from scarid_cli.algorithms.choices.settings import GIVEN, Validated
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.whitening import Noise
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 
@@ -23,13 +24,15 @@ class Scores:
     `huber` is the whitened residual above which Huber's weights reduce the weight of a row.
     `instruments` (samples, joints, parameters) take the place of W in Z. `rows` are the rows in
     which the problem is linear, if they are not those that the estimator was given. `forgetting` is
-    the factor by which the weight of a row decreases with each later sample.
+    the factor by which the weight of a row decreases with each later sample. By `noise` the rows
+    were whitened in time before all that, and only some of them were kept.
     """
 
     whitening: Array | None = None
     huber: float = float("inf")
     instruments: Array | None = None
     rows: Rows | None = None
+    noise: Noise | None = None
     forgetting: float = 1.0
 
 
@@ -75,6 +78,10 @@ class BaseEstimator(Validated, ABC):
 
     def widened(self) -> Self:
         """The estimator for rows with one more column, that of the delay of the torques."""
+        return self
+
+    def quick(self) -> BaseEstimator:
+        """The estimator with which the delay of the torques is searched for."""
         return self
 
     @abstractmethod

@@ -20,7 +20,8 @@ class Rows:
     (samples) are the numbers of the samples in the record, which are `h` [s] apart; where the
     numbers jump, the record has a gap. `motion` (4, joints, samples) has the position, velocity,
     acceleration and torque that the rows were computed from, and `reference` (2, joints, samples)
-    the reference position and velocity, if the log has them.
+    the reference position and velocity, if the log has them. `bandwidth` [Hz] is that of the soft
+    sensor behind them, None if it is not known.
     """
 
     W: Array
@@ -30,6 +31,7 @@ class Rows:
     h: float
     motion: Array
     reference: Array | None = None
+    bandwidth: float | None = None
 
     @property
     def samples(self) -> int:
@@ -45,6 +47,7 @@ class Rows:
             self.h,
             np.ascontiguousarray(self.motion[:, :, chosen]),
             None if self.reference is None else self.reference[:, :, chosen],
+            self.bandwidth,
         )
 
 
@@ -101,6 +104,7 @@ def joined(parts: Sequence[Rows]) -> Rows:
         parts[0].h,
         np.concatenate([part.motion for part in parts], axis=2),
         np.concatenate(references, axis=2) if len(references) == len(parts) else None,
+        parts[0].bandwidth,
     )
 
 

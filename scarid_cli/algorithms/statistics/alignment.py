@@ -39,18 +39,20 @@ def aligned(estimator: BaseEstimator, start: Array, rows: Rows, found: Estimatio
     tau(t) = W(t + T) theta is linear in T only if T is small. Therefore the torques are shifted by
     whole samples, without interpolation, until less than about half a sample remains.
     """
-    whole, result = 0, Aligned(rows, found, 0)
+    quick, whole, result = estimator.quick(), 0, Aligned(rows, found, 0)
     longest = min(round(LONGEST / rows.h) if rows.h > 0.0 else 0, rows.samples // 4)
     for fit in range(FITS):
         wide = with_delay(shifted(rows, whole), result.found.fit.estimates)
-        result = Aligned(wide, estimator.of_rows(wide, start), whole)
+        result = Aligned(wide, quick.of_rows(wide, start), whole)
         rest = result.found.fit.estimates[-1] / rows.h if rows.h > 0.0 else 0.0
         near = not abs(rest) > NEAR or abs(whole + round(rest)) > longest
         if near and fit + 1 >= FEWEST:
             break
         if not near and fit > 0:
             whole += round(rest)
-    return result
+    if quick is estimator:
+        return result
+    return replace(result, found=estimator.of_rows(result.rows, start))
 
 
 def shifted(rows: Rows, shift: int) -> Rows:

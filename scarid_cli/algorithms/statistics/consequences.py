@@ -53,31 +53,34 @@ class Uncertainty:
 
 def consequences(
     record: Blocks,
+    fitted: Blocks,
     weights: Array,
     estimates: Array,
     uncertainty: Uncertainty,
     model: Model | None,
     poses: Array,
 ) -> Consequences:
-    """What the uncertainty means at these poses (joints, samples) [rad or m]."""
+    """What the uncertainty means at these poses (joints, samples) [rad or m].
+
+    `fitted` has the rows as they were fitted, those of `record` or these whitened in time.
+    """
     torque, noise = (_torque(record.total, x) for x in (uncertainty.torque, uncertainty.noise))
     inertia = np.full(len(weights), np.nan)
     if model is not None and poses.size:
         inertia = _inertia(model, estimates[: len(uncertainty.torque)], uncertainty, poses)
-    return Consequences(_held_out(record, weights, estimates), torque, noise, inertia)
+    return Consequences(_held_out(record, fitted, weights, estimates), torque, noise, inertia)
 
 
-def _held_out(record: Blocks, weights: Array, estimates: Array) -> Array:
+def _held_out(record: Blocks, fitted: Blocks, weights: Array, estimates: Array) -> Array:
     """Residuals of parts that were left out, relative to those of the fit (joints)."""
-    parts = record.grouped(PARTS)
-    total = np.sum(parts, axis=0)
-    inside, outside = _squares(total, estimates), np.zeros(len(weights))
-    for part in parts:
-        rest = np.tensordot(weights**2, total - part, 1)
+    parts, total = fitted.grouped(PARTS), fitted.total
+    inside, outside = _squares(record.total, estimates), np.zeros(len(weights))
+    for part, left_out in zip(record.grouped(PARTS), parts, strict=False):
+        rest = np.tensordot(weights**2, total - left_out, 1)
         gram = rest[:-2, :-2]
         if not regular(gram):
             return np.full(len(weights), np.inf)
-        outside += _squares(part, np.linalg.solve(gram, rest[:-2, -2]))
+        outside += _squares(part, np.asarray(np.linalg.solve(gram, rest[:-2, -2])))
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.sqrt(np.where(outside > 0.0, outside / inside, 1.0)))
 

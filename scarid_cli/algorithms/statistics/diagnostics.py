@@ -75,13 +75,16 @@ def diagnose(
     regressor; the others are nuisance parameters. `gain_error` is the relative standard error of
     the torque constants.
     """
+    noise = found.scores.noise if found.scores else None
+    white = noise.rows(rows) if noise else rows
     whole = record or Blocks.every(rows.h).add(rows).whole()
+    fitted = Blocks.every(rows.h).add(white).whole() if noise else whole
     weights = _weights(found, rows.y.shape[1])
-    covariance, blocks, errors = _noise_errors(rows, found, record, whole)
-    trial = Trial.of(rows, own, weights)
-    scatter = errors * trial.longer()
+    covariance, blocks, errors = _noise_errors(white, found, record, fitted)
+    trial = Trial.of(rows, own, weights, noise)
+    scatter = errors * trial.longer(white)
     effects = trial.effects(found.fit.estimates, model)
-    gains = gain_sensitivities(whole.total, weights)[:, :own]
+    gains = gain_sensitivities(fitted.total, weights)[:, :own]
     stated = _stated(found.fit.part(slice(own)), scatter[:own], effects, gain_error * gains)
     return Diagnostics(
         covariance=covariance and covariance.part(own),
@@ -94,6 +97,7 @@ def diagnose(
         gains=gains,
         consequences=consequences(
             whole,
+            fitted,
             weights,
             found.fit.estimates,
             stated.uncertainty,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.whitening import Noise
 from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
     STRIBECK,
@@ -90,7 +91,8 @@ def thinned(rows: Rows) -> Rows:
 class Trial:
     """The rows on which alternatives are tried, in so many blocks of these numbers.
 
-    The first `own` columns of W belong to the robot. Joints are weighted by `weights`. `plain` is
+    The first `own` columns of W belong to the robot. Joints are weighted by `weights`, and rows are
+    whitened by the `noise`, if there is one: torques need only those in these `places`. `plain` is
     the fit without any alternative; None if the rows do not determine it.
     """
 
@@ -99,20 +101,27 @@ class Trial:
     weights: Array
     number: Numbers
     count: int
+    noise: Noise | None
+    places: Numbers
     plain: Solved | None = None
 
     @classmethod
-    def of(cls, rows: Rows, own: int, weights: Array) -> Trial:
+    def of(cls, rows: Rows, own: int, weights: Array, noise: Noise | None = None) -> Trial:
         """From the rows of an estimation."""
         few = thinned(rows)
-        trial = cls(few, own, weights, *block_numbers(few.at, few.h))
+        places = noise.kept(few) if noise else np.arange(few.samples)
+        trial = cls(few, own, weights, *block_numbers(few.at, few.h), noise, places)
         return replace(trial, plain=trial.products(few.scales, {})[0].solved([]))
 
-    def longer(self) -> Array:
-        """How many times the errors of long disturbances exceed those of blocks (columns); >= 1."""
+    def longer(self, white: Rows) -> Array:
+        """How many times the errors of long disturbances exceed those of blocks (columns); >= 1.
+
+        `white` are the rows of the estimation, whitened by the noise.
+        """
         if self.plain is None:
             return np.ones(self.rows.W.shape[2])
-        errors = autocovariance_errors(self.rows, self.plain.whole, self.weights)
+        rows = white if self.noise else self.rows
+        errors = autocovariance_errors(rows, self.plain.whole, self.weights)
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = errors / jackknifed(self.plain.deviations)
         return np.asarray(np.where(ratios > 1.0, np.nan_to_num(ratios, posinf=1.0), 1.0))
@@ -138,12 +147,18 @@ class Trial:
         for name, columns in further.items():
             places[name] = list(range(start, start + columns.shape[2]))
             start += columns.shape[2]
-        A = np.concatenate((self.rows.W, *further.values(), self.rows.y[:, :, None]), axis=2)
-        return self._of(A, scales, self.number), places
+        whole = (self.rows.W, *further.values(), self.rows.y[:, :, None])
+        A = np.concatenate([x[self.places] for x in whole], axis=2)
+        return self._of(A, scales, self.places), places
 
-    def _of(self, A: Array, scales: Array, number: Numbers) -> Products:
+    def _of(self, A: Array, scales: Array, places: Numbers) -> Products:
+        """The products of rows in these places, which have the same distance in each run."""
+        scales, rows = scales[places], self.rows
+        if self.noise:
+            A = self.noise.whitened(A, scales > 0.0, rows.at[places], rows.h)
+            scales = np.ones_like(scales)
         weighted = A * (scales * self.weights)[:, :, None]
-        return Products.of(weighted, number, self.count, self.rows.W.shape[2])
+        return Products.of(weighted, self.number[places], self.count, rows.W.shape[2])
 
     def torques(self, plain: Solved, estimates: Array, model: Model | None) -> list[Effect]:
         """The effects of what the torques may have beyond the model."""
@@ -179,9 +194,8 @@ class Trial:
         smooth = smoothed(self.rows, model, estimates, self.own)
         if smooth is None:
             return []
-        number = self.number[smooth.centres]
         for scales, without in same:
-            products = self._of(smooth.A, scales[smooth.centres], number)
+            products = self._of(smooth.A, scales, smooth.centres)
             if parallel := products.solved([]):
                 found = self.effect(PARALLEL, plain, without, parallel, columns=False)
                 return [found, *self.beside(products, smooth.places, plain, parallel)]

@@ -11,6 +11,7 @@ from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimatio
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, faded
 from scarid_cli.algorithms.regression.treatment import Treatment
+from scarid_cli.algorithms.regression.whitening import Noise as TimeNoise
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alignment import aligned
 from scarid_cli.algorithms.statistics.alternatives import Model
@@ -37,6 +38,11 @@ class Problem:
     record: Blocks | None
     model: Model | None
     delay: float | None = None
+
+    @property
+    def noise(self) -> TimeNoise | None:
+        """The noise that the rows were whitened by, if they were."""
+        return self.found.scores.noise if self.found.scores else None
 
     def diagnostics(self, gain_error: float) -> Diagnostics:
         return diagnose(
@@ -104,7 +110,7 @@ def outcome(
     problem, diagnostics = whole, whole.diagnostics(treatment.gain_error)
     covariance, reduction = diagnostics.matrix, None
     if treatment.essential:
-        noise = _noise(whole, diagnostics, float(end.subsample.counted))
+        noise = _noise(whole, diagnostics, end.subsample.counted)
         reduction = essential(whole.found.fit, noise, whole.own)
         if reduction.dropped:
             problem = whole.reduced(reduction)
@@ -142,7 +148,8 @@ def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -
 def _problem(
     estimator: BaseEstimator, initial: Array, end: Checkpoint, robot: Robot, *, align: bool
 ) -> Problem:
-    rows, found = end.subsample.rows(), estimator.fit(end.state)
+    rows, quick = end.subsample.rows(), estimator.quick() if align else estimator
+    found = estimator.fit(end.state) if quick is estimator else quick.of_rows(rows, initial)
     own, delay = len(found.fit.estimates), None
     if align:
         fitted = aligned(estimator.widened(), np.append(initial, 0.0), rows, found)
@@ -159,8 +166,11 @@ def _problem(
     return Problem(rows, found, own, record, model, delay)
 
 
-def _noise(problem: Problem, diagnostics: Diagnostics, rows: float) -> Noise:
+def _noise(problem: Problem, diagnostics: Diagnostics, counted: int) -> Noise:
     """How much larger the variances are than those for white residuals, as a median."""
+    rows = float(counted)
+    if problem.noise:
+        rows = float(np.count_nonzero(problem.rows.scales[problem.noise.kept(problem.rows)]))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = (diagnostics.scatter / problem.found.fit.standard_errors()) ** 2
     return Noise(rows, median(ratios[: problem.own]), diagnostics.blocks)

@@ -30,7 +30,7 @@ from scarid_cli.stages import identify as stage
 from scarid_cli.stages.parameters import identified
 from scarid_cli.stages.reach import Reach
 
-ONLINE, OFFLINE = "rls", "wls"  # what a motion, and a measurement, are identified by
+ONLINE, OFFLINE = "rls", "gls"  # what a motion, and a measurement, are identified by
 
 
 @dataclass(frozen=True)
