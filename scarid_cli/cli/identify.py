@@ -16,7 +16,7 @@ from scarid_cli.cli.described import describing
 @click.option(
     "--estimator",
     type=click.Choice(ESTIMATORS.names),
-    help="The estimator; see below.  [default: rls; wls for a measurement]",
+    help="The estimator; see below.  [default: rls; gls for a measurement]",
 )
 @options.settings_of("estimator")
 @click.option(
@@ -96,7 +96,7 @@ def command() -> None:
     A measurement, which has positions and torques but no derivatives, is identified by the whole
     recommended procedure in one process: the bandwidth is chosen as by `scarid tune --robot`,
     positions and torques of all joints pass a smoother of this bandwidth, and the parameters are
-    estimated with --estimator wls --align. The pipe of two commands that gives the same parameters
+    estimated with --estimator gls --align. The pipe of two commands that gives the same parameters
     is reported. The measurement is held in memory.
 
     Several logs are segments of one estimation: all have the same robot, units and rate, nothing

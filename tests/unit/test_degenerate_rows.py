@@ -55,7 +55,7 @@ def test_total_least_squares_has_no_solution_for_a_torque_orthogonal_to_all_colu
     assert first * second < 0.0
 
 
-@pytest.mark.parametrize("estimator", ["wls", "irls"])
+@pytest.mark.parametrize("estimator", ["wls", "gls", "irls"])
 @pytest.mark.parametrize("torque", [1.0, 1e-305])
 def test_weights_of_joints_without_any_residual_are_equal(torque: float, estimator: str) -> None:
     W = np.tile(np.eye(2).reshape(1, 2, 2), (3, 1, 1))

@@ -21,6 +21,7 @@ from scarid_cli.algorithms.regression.whitening import Noise
 from scarid_cli.algorithms.statistics.jackknife import shifts
 from scarid_cli.arrays import Array
 
+WHITENED = "whitened"  # whether the rows were, in the metadata of the parameters
 CLEARLY = 0.8  # times the variance: by chance one in forty logs of white noise is below it
 
 
@@ -32,6 +33,7 @@ class Estimator(HoldingEstimator):
     def fit(self, state: list[Rows]) -> Estimation:
         rows = joined(state)
         plain = wls.Estimator().of_rows(rows)
+        plain = replace(plain, extra={WHITENED: False})
         if not rows.h > 0.0:
             return plain
         noise = Noise.of(rows, plain.fit.estimates)
@@ -44,7 +46,8 @@ class Estimator(HoldingEstimator):
         if not _scatter(white, found, torque) < CLEARLY * _scatter(rows, plain, torque):
             return plain
         assert found.scores is not None
-        return replace(found, scores=replace(found.scores, noise=noise))
+        scores = replace(found.scores, noise=noise)
+        return replace(found, scores=scores, extra={WHITENED: True})
 
 
 def _torque(rows: Rows) -> Array:
