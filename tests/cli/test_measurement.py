@@ -68,10 +68,25 @@ def test_torques_of_a_slower_sensor_are_interpolated_as_by_resample(shell: Run) 
 def test_a_measurement_is_identified_by_the_recommended_procedure(log: Path, scarid: Run) -> None:
     result = scarid("identify", log)
     assert "cut-off" in result.err
-    assert "scara2, wls, " in result.err
+    assert "scara2, gls, " in result.err
     assert "torques lead by" in result.err
     assert "left out" in result.err
     assert "\nscarid identify: good: " in result.err
+
+
+def test_rows_are_whitened_where_the_torque_has_a_part_that_lasts(shell: Run) -> None:
+    """An offset, which the robot has no parameter for, moves the friction by half as much."""
+    result = shell(
+        "scarid trajgen -q --seed 3 --duration 20 |"
+        " scarid simulate -q --seed 3 --with torque-offset=0.3,0.05 -o log.csv;"
+        " for options in '--estimator wls' '' --essential; do"
+        " scarid identify $options log.csv | grep ^Fv1 | cut -d, -f3; done"
+    )
+    assert result.status == 0, result.err
+    assert result.err.count("samples, whitened, as the residuals are correlated in time") == 2
+    weighted, whitened, dropped = (float(x) for x in result.out.split())
+    assert abs(whitened - 0.07) < 0.5 * abs(weighted - 0.07)
+    assert dropped == 0.0  # it is not essential
 
 
 def test_a_measurement_without_torques_is_refused(log: Path, tmp_path: Path, scarid: Run) -> None:
