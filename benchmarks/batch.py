@@ -147,7 +147,7 @@ def by_commands(config: Path, count: int, joined: str) -> None:
             (
                 f"differentiate {at}.arrows --settings outcome/robots/robot1/settings.toml",
                 f"tee {at}.motion.arrows",
-                f"identify {robot} --estimator wls --align -o {at}.parquet",
+                f"identify {robot} --estimator gls --align -o {at}.parquet",
             ),
             (f"validate {at}.motion.arrows --parameters {at}.parquet {robot}",),
         )

@@ -77,11 +77,11 @@ def verdicts(arms: range, seed: int) -> list[tuple[str, str]]:
     made = made_arm(arms[seed % len(arms)])
     rng = np.random.default_rng([7, seed])
     joint = int(rng.integers(1, JOINTS + 1))
-    wls = ESTIMATORS.load("wls")()
+    gls = ESTIMATORS.load("gls")()
     zeros = np.zeros(len(made.theta))
 
     def estimated(measured: Table) -> Table:
-        found = identify(differentiated(measured), made.robot, wls, zeros, treatment=TREATMENT)
+        found = identify(differentiated(measured), made.robot, gls, zeros, treatment=TREATMENT)
         (batch,) = found.batches
         return replace(found, batches=[batch])  # type: ignore[arg-type]
 

@@ -18,7 +18,7 @@ PIPE = {
     "resample": "",  # no resampling
     "tune": "--method rts",
     "differentiate": "",  # the settings of tune; any option here takes their place
-    "identify": "--estimator wls --align",
+    "identify": "--estimator gls --align",
     "validate": "",
 }
 TRIED = 20  # logs of a robot, until one is found that tune can work with

@@ -22,7 +22,7 @@ from scarid_cli.algorithms.statistics.jackknife import shifts
 from scarid_cli.arrays import Array
 
 WHITENED = "whitened"  # whether the rows were, in the metadata of the parameters
-CLEARLY = 0.8  # times the variance: by chance one in forty logs of white noise is below it
+CLEARLY = 0.8  # times the scatter (a variance): 5 of 240 logs with white noise are below it
 
 
 @dataclass(frozen=True)
