@@ -54,7 +54,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alignment import aligned
 from scarid_cli.algorithms.tuning.equivalent import chain
 from scarid_cli.arrays import Array
-from scarid_cli.errors import ScaridError
+from scarid_cli.errors import BadData, ScaridError
 from scarid_cli.io.table import Table, matrix
 from scarid_cli.stages.differentiate import matched
 from scarid_cli.stages.identify import identify
@@ -254,7 +254,10 @@ def main() -> None:
 
 
 def _cell(cell: tuple[str, Condition], seeds: range) -> str:
-    return line(*cell, seeds)
+    try:
+        return line(*cell, seeds)
+    except BadData as refusal:
+        return f"| {cell[0]} | {cell[1].name} | refused: {refusal} |"
 
 
 if __name__ == "__main__":
