@@ -12,7 +12,7 @@ from unit.regressions import estimated
 
 from scarid_cli.algorithms.estimators import gls, wls
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.regression.whitening import Noise
+from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.effects import Trial
 from scarid_cli.algorithms.statistics.jackknife import jackknife
 from scarid_cli.arrays import Array
@@ -45,9 +45,9 @@ def rows_with(noise: Array, rng: np.random.Generator, *, size: float = 0.3) -> R
     return Rows(W, y, np.ones_like(y), np.arange(samples), H, motion, bandwidth=BANDWIDTH)
 
 
-def noise_of(seed: int = 0, samples: int = 2000) -> Noise:
+def noise_of(seed: int = 0, samples: int = 2000) -> ColouredNoise:
     rng = np.random.default_rng(seed)
-    return Noise.of(rows_with(swinging(rng, samples, 2), rng), THETA)
+    return ColouredNoise.of(rows_with(swinging(rng, samples, 2), rng), THETA)
 
 
 def beyond(lag: int, interval: float) -> float:
@@ -98,7 +98,7 @@ def test_the_autocovariance_is_that_of_the_residual() -> None:
     rows = rows_with(slow, rng, size=1.0)
     rows.scales[10_000:20_000] = 0.0
     rows.y[10_000:20_000] = 1e3  # of rows that do not count
-    gamma = Noise.of(rows, THETA).autocovariance[0]
+    gamma = ColouredNoise.of(rows, THETA).autocovariance[0]
     assert len(gamma) == 200  # 2 s
     lags = np.arange(20)
     np.testing.assert_allclose(gamma[lags], a**lags / (1.0 - a**2), atol=0.05 / (1.0 - a**2))
@@ -112,7 +112,7 @@ def test_the_spectrum_is_flat_behind_it() -> None:
     rng = np.random.default_rng(2)
     x = swinging(rng, 20_000, 1)
     every, counts = np.arange(0, len(x), 2), np.ones((len(x) // 2, 1), dtype=bool)
-    noise = Noise.of(rows_with(x, rng), THETA)
+    noise = ColouredNoise.of(rows_with(x, rng), THETA)
     white = noise.whitened(x[every, :, None], counts, every, H)[:, 0, 0]
     flatness = []
     for signal in (x[every, 0], white):
@@ -126,7 +126,7 @@ def test_the_spectrum_is_flat_behind_it() -> None:
 def test_four_rows_are_kept_for_each_period_of_the_bandwidth() -> None:
     rng = np.random.default_rng(0)
     rows = rows_with(swinging(rng, 2000, 2), rng)
-    noise = Noise.of(rows, THETA)
+    noise = ColouredNoise.of(rows, THETA)
     assert noise.rows(rows).at.tolist() == list(range(0, 2000, 2))
 
 

@@ -17,7 +17,7 @@ from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, joined
-from scarid_cli.algorithms.regression.whitening import Noise
+from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.jackknife import shifts
 from scarid_cli.arrays import Array
 
@@ -36,7 +36,7 @@ class Estimator(HoldingEstimator):
         plain = replace(plain, extra={WHITENED: False})
         if not rows.h > 0.0:
             return plain
-        noise = Noise.of(rows, plain.fit.estimates)
+        noise = ColouredNoise.of(rows, plain.fit.estimates)
         white = noise.rows(rows)
         try:
             found = wls.Estimator().of_rows(white)

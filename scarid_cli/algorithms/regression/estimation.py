@@ -11,7 +11,7 @@ import numpy as np
 from scarid_cli.algorithms.choices.settings import GIVEN, Validated
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.regression.whitening import Noise
+from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 
@@ -32,7 +32,7 @@ class Scores:
     huber: float = float("inf")
     instruments: Array | None = None
     rows: Rows | None = None
-    noise: Noise | None = None
+    noise: ColouredNoise | None = None
     forgetting: float = 1.0
 
 

@@ -33,7 +33,7 @@ CHUNK = 64  # rows that are whitened by one matrix product
 
 
 @dataclass(frozen=True)
-class Noise:
+class ColouredNoise:
     """The autocovariance (joints, lags) of the residual of each joint, at lags of h [s] from 0 on.
 
     `bandwidth` [Hz] is that of the soft sensor behind the rows.
@@ -44,7 +44,7 @@ class Noise:
     bandwidth: float
 
     @classmethod
-    def of(cls, rows: Rows, estimates: Array) -> Noise:
+    def of(cls, rows: Rows, estimates: Array) -> ColouredNoise:
         """From the residuals of the rows that count."""
         bandwidth = min(rows.bandwidth or np.inf, 0.5 / rows.h)
         counts = (rows.scales > 0.0).T

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.regression.whitening import Noise
+from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
     STRIBECK,
@@ -101,12 +101,12 @@ class Trial:
     weights: Array
     number: Numbers
     count: int
-    noise: Noise | None
+    noise: ColouredNoise | None
     places: Numbers
     plain: Solved | None = None
 
     @classmethod
-    def of(cls, rows: Rows, own: int, weights: Array, noise: Noise | None = None) -> Trial:
+    def of(cls, rows: Rows, own: int, weights: Array, noise: ColouredNoise | None = None) -> Trial:
         """From the rows of an estimation."""
         few = thinned(rows)
         places = noise.kept(few) if noise else np.arange(few.samples)

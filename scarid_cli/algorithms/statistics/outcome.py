@@ -11,7 +11,7 @@ from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimatio
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, faded
 from scarid_cli.algorithms.regression.treatment import Treatment
-from scarid_cli.algorithms.regression.whitening import Noise as TimeNoise
+from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alignment import aligned
 from scarid_cli.algorithms.statistics.alternatives import Model
@@ -40,7 +40,7 @@ class Problem:
     delay: float | None = None
 
     @property
-    def noise(self) -> TimeNoise | None:
+    def noise(self) -> ColouredNoise | None:
         """The noise that the rows were whitened by, if they were."""
         return self.found.scores.noise if self.found.scores else None
 
