@@ -147,8 +147,10 @@ class Trial:
         for name, columns in further.items():
             places[name] = list(range(start, start + columns.shape[2]))
             start += columns.shape[2]
-        whole = (self.rows.W, *further.values(), self.rows.y[:, :, None])
-        A = np.concatenate([x[self.places] for x in whole], axis=2)
+        parts = [self.rows.W, *further.values(), self.rows.y[:, :, None]]
+        if self.noise:
+            parts = [x[self.places] for x in parts]
+        A = np.concatenate(parts, axis=2)
         return self._of(A, scales, self.places), places
 
     def _of(self, A: Array, scales: Array, places: Numbers) -> Products:
