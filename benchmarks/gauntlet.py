@@ -7,9 +7,9 @@
 Each robot follows random trajectories in its control loop, with one condition (an imperfection, a
 rate, a duration) at a time. *Blind* is `scarid identify --robot R LOG` with nothing set, *default*
 `scarid differentiate LOG | scarid identify` as it was before rows were left out and joints were
-weighted, and *hindsight* the best of all cut-offs. Errors are those of the predicted torque: the
-true regressor of another trajectory times the error of the estimates, relative to the torque, as a
-mean over the joints. The columns of the table are
+weighted, and *hindsight* the best of all cut-offs, by `wls`. Errors are those of the predicted
+torque: the true regressor of another trajectory times the error of the estimates, relative to the
+torque, as a mean over the joints. The columns of the table are
 
 - blind: the median error [%]; / one, / hindsight, / default: its ratio, as geometric means, to the
   one cut-off that is best for all logs of the row, to the best one of each log, and to the default,

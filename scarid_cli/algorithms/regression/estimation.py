@@ -51,6 +51,11 @@ class Estimation:
     extra: dict[str, Any] = field(default_factory=dict)
 
     @property
+    def noise(self) -> ColouredNoise | None:
+        """The noise that the rows were whitened by, if they were."""
+        return self.scores.noise if self.scores else None
+
+    @property
     def weighted(self) -> bool:
         """Whether the rows were weighted by their residuals."""
         return self.scores is not None and self.scores.whitening is not None

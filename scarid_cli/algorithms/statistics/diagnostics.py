@@ -75,7 +75,7 @@ def diagnose(
     regressor; the others are nuisance parameters. `gain_error` is the relative standard error of
     the torque constants.
     """
-    noise = found.scores.noise if found.scores else None
+    noise = found.noise
     white = noise.rows(rows) if noise else rows
     whole = record or Blocks.every(rows.h).add(rows).whole()
     fitted = Blocks.every(rows.h).add(white).whole() if noise else whole

@@ -11,7 +11,6 @@ from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimatio
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, faded
 from scarid_cli.algorithms.regression.treatment import Treatment
-from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alignment import aligned
 from scarid_cli.algorithms.statistics.alternatives import Model
@@ -38,11 +37,6 @@ class Problem:
     record: Blocks | None
     model: Model | None
     delay: float | None = None
-
-    @property
-    def noise(self) -> ColouredNoise | None:
-        """The noise that the rows were whitened by, if they were."""
-        return self.found.scores.noise if self.found.scores else None
 
     def diagnostics(self, gain_error: float) -> Diagnostics:
         return diagnose(
@@ -169,8 +163,8 @@ def _problem(
 def _noise(problem: Problem, diagnostics: Diagnostics, counted: int) -> Noise:
     """How much larger the variances are than those for white residuals, as a median."""
     rows = float(counted)
-    if problem.noise:
-        rows = float(np.count_nonzero(problem.rows.scales[problem.noise.kept(problem.rows)]))
+    if noise := problem.found.noise:
+        rows = float(np.count_nonzero(problem.rows.scales[noise.kept(problem.rows)]))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = (diagnostics.scatter / problem.found.fit.standard_errors()) ** 2
     return Noise(rows, median(ratios[: problem.own]), diagnostics.blocks)
