@@ -18,8 +18,8 @@ from scarid_cli.algorithms.changes.likelihood import Difference
 from scarid_cli.algorithms.changes.wiring import rewired
 from scarid_cli.algorithms.changes.wording import Verdict, of_change, of_wiring
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.shifting import shifted
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.alignment import shifted
 from scarid_cli.arrays import Array, median
 from scarid_cli.io.table import Table
 from scarid_cli.stages.parameters import EVIDENCE, Identified
@@ -85,8 +85,7 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
     steps = rewired(robot, rows, theta)
     if steps:
         return of_wiring(steps)
-    whole = round(model.delay / rows.h) if rows.h > 0.0 else 0
-    now = evidence(shifted(rows, whole), theta, model.delay - whole * rows.h)
+    now = evidence(shifted(rows, model.delay / rows.h if rows.h > 0.0 else 0.0), theta)
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)
     ratios = None

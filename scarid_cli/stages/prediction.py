@@ -10,7 +10,8 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.regression.counting import LeftOut
-from scarid_cli.algorithms.regression.rows import Rows, joined, led
+from scarid_cli.algorithms.regression.rows import Rows, joined
+from scarid_cli.algorithms.regression.shifting import REACH, led
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
@@ -34,7 +35,7 @@ def predicted(
     """
     delay = models[0].delay
     parts = treated(table, models[0].robot, treatment, left_out=left_out)
-    reach = 1 + abs(round(delay / table.period)) if delay and table.period > 0.0 else 0
+    reach = REACH + abs(round(delay / table.period)) if delay and table.period > 0.0 else 0
     for (batch, rows), around, own in _with_context(parts, reach):
         torques = [model.robot.torques(around.W, model.theta) for model in models]
         if delay:

@@ -51,9 +51,10 @@ def validated(scarid: Run, log: Path, *tables: Path) -> tuple[list[float], dict[
 
 
 def test_the_same_table_twice_predicts_what_it_predicts_once(scarid: Run, logs: list[Path]) -> None:
+    """Almost: the information weighs joints by the autocorrelation of residuals, `wls` does not."""
     once, _, _ = validated(scarid, logs[0], logs[1] / "p.parquet")
     twice, _, said = validated(scarid, logs[0], logs[1] / "p.parquet", logs[1] / "p.parquet")
-    assert twice == pytest.approx(once, rel=1e-4)
+    assert twice == pytest.approx(once, abs=5e-4)
     assert "pooled the parameters of 2 identifications" in said
 
 

@@ -139,19 +139,3 @@ def delay_column(rows: Rows, predicted: Array) -> Array:
             turns[:-1] |= turns[1:]
             column[run][turns] = 0.0
     return column
-
-
-def led(rows: Rows, predicted: Array, delay: float) -> Array:
-    """Predicted torques (samples, joints) as a measurement shows them that leads by the delay [s].
-
-    They are those of the nearest whole number of samples later, and the rest to first order. At the
-    end of a run the last sample takes the place of those that are missing.
-    """
-    whole = round(delay / rows.h) if rows.h > 0.0 else 0
-    slope, found = delay_column(rows, predicted), np.empty_like(predicted)
-    for run in runs(rows.at):
-        at = np.arange(run.start, run.stop)
-        later = np.clip(at + whole, run.start, run.stop - 1)
-        rest = delay - (later - at) * rows.h
-        found[run] = predicted[later] + rest[:, None] * slope[later]
-    return found

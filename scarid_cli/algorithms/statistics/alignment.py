@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.rows import Rows, with_delay
+from scarid_cli.algorithms.regression.shifting import shifted
 from scarid_cli.arrays import Array
 
 FITS = 10  # at most, each from the estimates of the one before
 FEWEST = 3  # fits, because the derivative of the torque depends on the estimates
-NEAR = 0.75  # of a sample: a remaining delay up to this is left to the linear form
+NEAR = 0.02  # of a sample: a remaining delay up to this is left to the linear form
 LONGEST = 0.5  # s, of the delay
 
 
@@ -20,12 +19,12 @@ LONGEST = 0.5  # s, of the delay
 class Aligned:
     """The rows with the torques shifted, and the column of the remaining delay; the estimation.
 
-    The torques were shifted by so many whole samples (`shift`).
+    The torques were shifted by so many samples (`shift`).
     """
 
     rows: Rows
     found: Estimation
-    shift: int
+    shift: float
 
     @property
     def delay(self) -> float:
@@ -34,39 +33,22 @@ class Aligned:
 
 
 def aligned(estimator: BaseEstimator, start: Array, rows: Rows, found: Estimation) -> Aligned:
-    """The estimation with the delay of the torques: whole samples, and the rest as a parameter.
+    """The estimation with the delay of the torques: a shift, and what remains as a parameter.
 
-    tau(t) = W(t + T) theta is linear in T only if T is small. Therefore the torques are shifted by
-    whole samples, without interpolation, until less than about half a sample remains.
+    tau(t) = W(t + T) theta is linear in T only if T is small. Therefore the torques are shifted
+    until next to nothing remains, whose error enters those of the parameters.
     """
-    quick, whole, result = estimator.quick(), 0, Aligned(rows, found, 0)
-    longest = min(round(LONGEST / rows.h) if rows.h > 0.0 else 0, rows.samples // 4)
+    quick, shift, result = estimator.quick(), 0.0, Aligned(rows, found, 0.0)
+    longest = min(LONGEST / rows.h if rows.h > 0.0 else 0.0, rows.samples / 4)
     for fit in range(FITS):
-        wide = with_delay(shifted(rows, whole), result.found.fit.estimates)
-        result = Aligned(wide, quick.of_rows(wide, start), whole)
+        wide = with_delay(shifted(rows, shift), result.found.fit.estimates)
+        result = Aligned(wide, quick.of_rows(wide, start), shift)
         rest = result.found.fit.estimates[-1] / rows.h if rows.h > 0.0 else 0.0
-        near = not abs(rest) > NEAR or abs(whole + round(rest)) > longest
+        near = not abs(rest) > NEAR or abs(shift + rest) > longest
         if near and fit + 1 >= FEWEST:
             break
         if not near and fit > 0:
-            whole += round(rest)
+            shift += rest
     if quick is estimator:
         return result
     return replace(result, found=estimator.of_rows(result.rows, start))
-
-
-def shifted(rows: Rows, shift: int) -> Rows:
-    """The rows with the torques of `shift` samples earlier; without those that have none."""
-    if not shift:
-        return rows
-    places = np.arange(rows.samples) - shift
-    inside = np.clip(places, 0, rows.samples - 1)
-    known = (places == inside) & (rows.at[inside] == rows.at - shift)
-    motion = rows.motion.copy()
-    motion[3] = motion[3][:, inside]
-    return replace(
-        rows,
-        y=np.ascontiguousarray(rows.y[inside]),
-        scales=rows.scales * known[:, None],
-        motion=motion,
-    )
