@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -90,3 +91,8 @@ def report(job: Job, table: Table, counting: Counting | None, left_out: dict[str
             "rows near reversals are used, because the bandwidth of the motion is not known: give "
             "--bandwidth HZ, or keep the motion in a format with metadata (--format arrow)"
         )
+
+
+def behind_low_pass(delay: float) -> str:
+    """The end of the clause that torques lead by a delay [s], if a low-pass causes it."""
+    return f", as behind a low-pass of {0.5 / (math.pi * abs(delay)):.3g} Hz"

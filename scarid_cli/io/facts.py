@@ -25,6 +25,11 @@ def text(x: Any) -> bool:
     return isinstance(x, str)
 
 
+def truth(x: Any) -> bool:
+    """True or false."""
+    return isinstance(x, bool)
+
+
 def _frequency(x: Any) -> bool:
     return number(x) and FREQUENCIES[0] <= x <= FREQUENCIES[1]
 
@@ -72,6 +77,7 @@ CHECKS: dict[str, Check] = {
     "velocity_noise": _or_none(_list(_size)),
     "delay": _or_none(number),
     "delay_error": _or_none(_size),
+    "low_pass": truth,
     "covariance": _or_none(_list(_list(_or_none(number)))),
     "full_estimates": _or_none(_list(_or_none(number))),
     "dropped": _list(text),

@@ -20,17 +20,19 @@ REMEDY = "write the table with `identify -o parameters.parquet`"
 class Estimates:
     """Identified parameters and their errors.
 
-    `robot` is the robot as it was identified. `values` (parameters) are in its units, and `delay`
-    [s] is the time by which the torques led the motion. `errors` (parameters) are robust standard
-    errors where known, nan where there are none. `dropped` are the indices of the values that
-    `identify --essential` set to zero. `full` are the estimates before that and `covariance`
-    (parameters, parameters) is theirs, with nan in the rows and columns of parameters without
-    errors. `fixed` has the name, unit and value of the table's further rows, in which the torques
-    are not linear. `remark` explains why the covariance is diagonal; it is empty if it is not.
+    `robot` is the robot as it was identified. `values` (parameters) are in its units, and
+    `delay` [s] is the time by which the torques led the motion, with `low_pass` as behind one.
+    `errors` (parameters) are robust standard errors where known, nan where there are none.
+    `dropped` are the indices of the values that `identify --essential` set to zero. `full` are
+    the estimates before that and `covariance` (parameters, parameters) is theirs, with nan in
+    the rows and columns of parameters without errors. `fixed` has the name, unit and value of
+    the table's further rows, in which the torques are not linear. `remark` explains why the
+    covariance is diagonal; it is empty if it is not.
     """
 
     robot: Robot
     delay: float
+    low_pass: bool
     values: Array
     errors: Array
     full: Array
@@ -54,6 +56,7 @@ def estimates_with_covariance(table: Table, robot: Robot) -> Estimates:
     return Estimates(
         robot=content.robot,
         delay=content.delay,
+        low_pass=content.low_pass,
         values=values,
         errors=errors[:count],
         full=full,

@@ -28,12 +28,13 @@ class Identified:
     """The content of a parameter table: the robot as it was identified, and its parameters.
 
     `theta` (parameters) are the estimates; `delay` [s] is the time by which the torques led the
-    motion, 0 if it was not fitted.
+    motion, 0 if it was not fitted, and with `low_pass` they led as behind a low-pass.
     """
 
     robot: Robot
     theta: Array
     delay: float
+    low_pass: bool = False
 
 
 def identified(table: Table, robot: Robot) -> Identified:
@@ -58,7 +59,8 @@ def identified(table: Table, robot: Robot) -> Identified:
         )
     theta = values[: len(values) - len(velocities)]
     delay = float(table.meta.extra.get("delay") or 0.0)
-    return Identified(robot.with_stribeck(velocities), theta, delay)
+    low_pass = bool(table.meta.extra.get("low_pass"))
+    return Identified(robot.with_stribeck(velocities), theta, delay, low_pass)
 
 
 @dataclass(frozen=True)
@@ -175,6 +177,7 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         extra["covariance"] = found.covariance.tolist()
     if found.delay:
         extra["delay"], extra["delay_error"] = map(_or_none, found.delay)
+        extra["low_pass"] = found.low_pass
     if found.reduction and found.reduction.dropped:
         extra["dropped"] = [labels.names[i] for i in found.reduction.dropped]
         extra["dropped_cost"] = found.reduction.cost

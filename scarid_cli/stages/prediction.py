@@ -33,13 +33,13 @@ def predicted(
     All models have the same robot and the same delay, by which the predicted torques lead.
     `left_out` counts the rows that are left out.
     """
-    delay = models[0].delay
+    delay, low_pass = models[0].delay, models[0].low_pass
     parts = treated(table, models[0].robot, treatment, left_out=left_out)
     reach = REACH + abs(round(delay / table.period)) if delay and table.period > 0.0 else 0
     for (batch, rows), around, own in _with_context(parts, reach):
         torques = [model.robot.torques(around.W, model.theta) for model in models]
         if delay:
-            torques = [led(around, tau.T, delay).T for tau in torques]
+            torques = [led(around, tau.T, delay, low_pass=low_pass).T for tau in torques]
         yield batch, rows, [np.ascontiguousarray(tau[:, own]) for tau in torques]
 
 

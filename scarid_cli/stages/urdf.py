@@ -69,8 +69,10 @@ def r2_before_and_after(
 
     Rows are treated as in `validate`.
     """
-    robot, delay = identified.robot, identified.delay
-    models = [Identified(robot, theta, delay) for theta in (identified.values, found.base)]
+    models = [
+        Identified(identified.robot, theta, identified.delay, identified.low_pass)
+        for theta in (identified.values, found.base)
+    ]
     found_r2 = ([joint.r2 for joint in own] for own in qualities(table, models, treatment))
     before, after = map(np.array, found_r2)
     return before, after

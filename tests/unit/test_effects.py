@@ -227,6 +227,55 @@ def test_the_delay_of_the_torques_is_found_however_long(samples: float) -> None:
     assert found.found.fit.estimates[0] == pytest.approx(1.0, abs=1e-6)
 
 
+WAVES = ((1.0, 1.3), (0.5, 4.0), (0.3, 7.0), (0.2, 12.0), (0.1, 17.0))  # N, rad/s
+
+
+def behind(kind: str, lag: float) -> tuple[Rows, Array]:
+    """Rows whose W is a sum of waves, in closed form, and the noise-free torques behind a lag [s].
+
+    A "drive" makes the torque a low-passed command, which is what the log has.
+    """
+    true, t = moved(4000), np.arange(4000) * H
+    shown = {
+        "delay": lambda w: np.exp(-1j * w * lag),
+        "low-pass": lambda w: 1.0 / (1.0 + 1j * w * lag),
+        "drive": lambda w: 1.0 + 1j * w * lag,
+    }[kind]
+    torque = sum(a * np.exp(1j * w * t) for a, w in WAVES).imag
+    logged = sum(a * shown(w) * np.exp(1j * w * t) for a, w in WAVES).imag
+    rows = rows_of(AXIS, np.stack((*true, logged[None])), np.arange(4000), H)
+    return replace(rows, W=np.ascontiguousarray(torque[:, None, None])), logged
+
+
+@pytest.mark.parametrize("kind", ["delay", "low-pass", "drive"])
+def test_a_low_pass_is_told_from_a_delay(kind: str) -> None:
+    """To first order both are alike; a delay in the place of a low-pass biases by 0.2 %."""
+    rows, logged = behind(kind, 0.004)
+    noise = 0.01 * np.random.default_rng(7).standard_normal(len(logged))
+    rows = replace(rows, y=rows.y + noise[:, None])
+    found = aligned(ls.Estimator(), np.zeros(2), rows, estimated(ls.Estimator(), rows))
+    assert found.low_pass == (kind != "delay")
+    assert found.delay == pytest.approx(0.004 if kind == "drive" else -0.004, abs=1e-4)
+    assert found.found.fit.estimates[0] == pytest.approx(1.0, abs=5e-4)
+    assert found.doubt is not None
+    assert np.abs(found.doubt[0]) < 1e-4
+    predicted = led(rows, rows.W[:, :, 0], found.delay, low_pass=found.low_pass)
+    inside = slice(200, -200)
+    assert np.std((predicted[:, 0] - logged)[inside]) < 2e-3
+
+
+def test_estimates_are_uncertain_where_a_low_pass_and_a_delay_cannot_be_told_apart() -> None:
+    """Half the difference of the two, squared, is the mean square of an even chance."""
+    rows, logged = behind("delay", 0.004)
+    noise = 5.0 * np.random.default_rng(7).standard_normal(len(logged))
+    rows = replace(rows, y=rows.y + noise[:, None])
+    found = aligned(ls.Estimator(), np.zeros(2), rows, estimated(ls.Estimator(), rows))
+    assert found.doubt is not None
+    mean_square = sum((a * w) ** 2 for a, w in WAVES) / sum(a**2 for a, _ in WAVES)
+    difference = 0.5 * found.delay**2 * mean_square
+    assert abs(found.doubt[0]) == pytest.approx(np.sqrt(0.5) * difference, rel=0.3)
+
+
 def test_torques_are_shifted_within_runs_only() -> None:
     rows = axis().part(np.r_[0:100, 200:300])
     moved_rows = shifted(rows, 3.0)

@@ -129,13 +129,24 @@ def delay_column(rows: Rows, predicted: Array) -> Array:
     this derivative is the column of W whose parameter is the delay [s]. It is 0 where a joint
     reverses, because Coulomb friction jumps there.
     """
-    column = np.zeros_like(predicted)
+    return _derivative(rows, predicted, 1)
+
+
+def curvature(rows: Rows, predicted: Array) -> Array:
+    """The second time derivative of the predicted torques, 0 where a joint reverses."""
+    return _derivative(rows, predicted, 2)
+
+
+def _derivative(rows: Rows, predicted: Array, order: int) -> Array:
+    found = np.zeros_like(predicted)
     for run in runs(rows.at):
         if run.stop - run.start > 1:
-            column[run] = np.gradient(predicted[run], rows.h, axis=0)
+            slope = predicted[run]
+            for _ in range(order):
+                slope = np.gradient(slope, rows.h, axis=0)
             direction = np.sign(rows.motion[1][:, run].T)
             turns = np.zeros(direction.shape, dtype=bool)
             turns[1:] |= direction[1:] != direction[:-1]
             turns[:-1] |= turns[1:]
-            column[run][turns] = 0.0
-    return column
+            found[run] = np.where(turns, 0.0, slope)
+    return found

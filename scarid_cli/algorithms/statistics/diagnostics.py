@@ -22,7 +22,7 @@ from scarid_cli.algorithms.statistics.consequences import (
     consequences,
     gain_sensitivities,
 )
-from scarid_cli.algorithms.statistics.effects import Effect, Trial
+from scarid_cli.algorithms.statistics.effects import Effect, Trial, of_low_pass
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
     inflation,
@@ -66,14 +66,16 @@ def diagnose(
     record: Blocks | None = None,
     *,
     model: Model | None = None,
+    doubt: Array | None = None,
     gain_error: float = 0.0,
 ) -> Diagnostics:
     """Diagnose an estimation from its rows.
 
     `record` has the blocks of the whole record if `rows` are only a subsample of it. The first
     `own` columns of W belong to the robot, whose `model` is None if the rows are not those of its
-    regressor; the others are nuisance parameters. `gain_error` is the relative standard error of
-    the torque constants.
+    regressor; the others are nuisance parameters. `doubt` (own) is how far the estimates may be off
+    because torques may lead as behind a low-pass or as behind a delay. `gain_error` is the relative
+    standard error of the torque constants.
     """
     noise = found.noise
     white = noise.rows(rows) if noise else rows
@@ -84,6 +86,8 @@ def diagnose(
     trial = Trial.of(rows, own, weights, noise)
     scatter = errors * trial.longer(white)
     effects = trial.effects(found.fit.estimates, model)
+    if doubt is not None:
+        effects = (*effects, of_low_pass(doubt))
     gains = gain_sensitivities(fitted.total, weights)[:, :own]
     stated = _stated(found.fit.part(slice(own)), scatter[:own], effects, gain_error * gains)
     return Diagnostics(

@@ -22,8 +22,14 @@ from scarid_cli.algorithms.statistics.products import Products, Solved, jackknif
 from scarid_cli.arrays import Array, Numbers
 
 INTERVAL = 0.005  # s: the rows are thinned to intervals of at most this length
-REVERSALS, PARALLEL = "reversals", "parallel"
-ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL)  # widen the intervals whether significant or not
+REVERSALS, PARALLEL, LOW_PASS = "reversals", "parallel", "low-pass"
+ALWAYS = (
+    REVERSALS,
+    OFFSET,
+    STRIBECK,
+    PARALLEL,
+    LOW_PASS,
+)  # widen the intervals whether significant or not
 CERTAIN = 0.01  # probability of calling an effect significant that is none
 TRUST = 1.5  # variances of an effect that are subtracted from its square
 
@@ -76,6 +82,12 @@ class Effect:
         noise = TRUST * float(np.sum((self.errors[known] / scatter[known]) ** 2))
         share: float = max(1.0 - noise / squares, 0.0) if squares > 0.0 else 0.0
         return np.asarray(share**0.5 * self.moved, dtype=np.float64)
+
+
+def of_low_pass(moved: Array) -> Effect:
+    """The effect (parameters) of a low-pass for a delay, or the reverse, whose size is known."""
+    none = np.zeros_like(moved)
+    return Effect(LOW_PASS, moved, none, moved, largest=0.0, tests=1, blocks=2)
 
 
 def thinned(rows: Rows) -> Rows:

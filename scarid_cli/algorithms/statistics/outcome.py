@@ -28,7 +28,8 @@ class Problem:
     The first `own` columns of W belong to the robot's parameters, the others to nuisance
     parameters. `record` has the blocks of all rows if `rows` are a subsample. `model` is None if
     the columns of W are not those of the robot's regressor. `delay` [s] is that of the torques,
-    None if it was not fitted.
+    None if it was not fitted; with `low_pass` they lead as behind a low-pass. `doubt` (own) is how
+    far the estimates may be off because that is not certain.
     """
 
     rows: Rows
@@ -37,6 +38,8 @@ class Problem:
     record: Blocks | None
     model: Model | None
     delay: float | None = None
+    low_pass: bool = False
+    doubt: Array | None = None
 
     def diagnostics(self, gain_error: float) -> Diagnostics:
         return diagnose(
@@ -45,6 +48,7 @@ class Problem:
             self.own,
             self.record,
             model=self.model,
+            doubt=self.doubt,
             gain_error=gain_error,
         )
 
@@ -62,6 +66,7 @@ class Problem:
             own=own,
             record=self.record.columns(to.kept) if self.record else None,
             model=self.model and replace(self.model, kept=to.kept[:own]),
+            doubt=None if self.doubt is None else self.doubt[to.kept[:own]],
         )
 
 
@@ -72,7 +77,8 @@ class Outcome:
     `found` and `diagnostics` refer to the parameters with the indices `kept`; `reduction` is set if
     the model was reduced to essential parameters. `full` is the fit of all parameters, before any
     were dropped, and `covariance` their covariance, nan if it is not known. `delay` is the fitted
-    delay of the torques and its standard error [s]. `excitation` (parameters) is the root-mean-
+    delay of the torques and its standard error [s], `low_pass` whether they lead as behind a
+    low-pass. `excitation` (parameters) is the root-mean-
     square torque that one unit of each parameter causes on this motion. `samples` is the number of
     samples. `evidence` is that of the rows, at these estimates, which later logs are compared with.
     """
@@ -84,6 +90,7 @@ class Outcome:
     full: Fit
     covariance: Array
     delay: tuple[float, float] | None
+    low_pass: bool
     excitation: Array
     samples: int
     evidence: LogEvidence
@@ -122,6 +129,7 @@ def outcome(
         full=whole.found.fit.part(slice(whole.own)),
         covariance=covariance,
         delay=delay,
+        low_pass=problem.low_pass,
         excitation=_excitation(whole),
         samples=end.subsample.total,
         evidence=_evidence(whole, fit.estimates[:own], kept, rest),
@@ -144,10 +152,10 @@ def _problem(
 ) -> Problem:
     rows, quick = end.subsample.rows(), estimator.quick() if align else estimator
     found = estimator.fit(end.state) if quick is estimator else quick.of_rows(rows, initial)
-    own, delay = len(found.fit.estimates), None
+    own, fitted = len(found.fit.estimates), None
     if align:
         fitted = aligned(estimator.widened(), np.append(initial, 0.0), rows, found)
-        rows, found, delay = fitted.rows, fitted.found, fitted.delay
+        rows, found = fitted.rows, fitted.found
     model = Model(robot, list(range(own))) if own == len(robot.parameters) else None
     if found.scores and found.scores.rows:
         rows = found.scores.rows
@@ -157,7 +165,11 @@ def _problem(
         thinned = factor**end.subsample.thin
         rows, record = faded(rows, thinned), record and record.faded(factor)
         found = replace(found, scores=replace(found.scores, forgetting=thinned))
-    return Problem(rows, found, own, record, model, delay)
+    problem = Problem(rows, found, own, record, model)
+    if fitted is None:
+        return problem
+    doubt = None if fitted.doubt is None else fitted.doubt[:own]
+    return replace(problem, delay=fitted.delay, low_pass=fitted.low_pass, doubt=doubt)
 
 
 def _noise(problem: Problem, diagnostics: Diagnostics, counted: int) -> Noise:

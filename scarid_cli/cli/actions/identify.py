@@ -21,7 +21,7 @@ from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import motion
 from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.resampled import Resampled
-from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
+from scarid_cli.cli.treatment import behind_low_pass, for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
@@ -281,6 +281,7 @@ def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[st
         error = extra["delay_error"]
         known = "error unknown" if error is None else f"+- {1e3 * error:.2g}"
         line += f", torques lead by {1e3 * extra['delay']:.3g} ms ({known})"
+        line += behind_low_pass(extra["delay"]) if extra["low_pass"] else ""
     if "dropped" in extra:
         names = ", ".join(extra["dropped"])
         line += f", dropped {names} (residual {100 * extra['dropped_cost']:.2g} % greater)"

@@ -11,7 +11,7 @@ import pyarrow as pa
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
-from scarid_cli.cli.treatment import for_motion, for_robot, report, treatment_of
+from scarid_cli.cli.treatment import behind_low_pass, for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
@@ -59,8 +59,9 @@ def run(
 def _tell(job: Job, model: Identified, before: Known, extra: dict[str, Any]) -> None:
     """Say which delay was applied, and whether the robot has changed."""
     if model.delay:
+        how = behind_low_pass(model.delay) if model.low_pass else ""
         delay = 1e3 * model.delay
-        job.say(f"applied the delay that identify fitted: torques lead by {delay:.3g} ms")
+        job.say(f"applied the delay that identify fitted: torques lead by {delay:.3g} ms{how}")
     if before.testable:
         change = extra["change"]
         job.say(f"{change['verdict']}: {change['reason']}", change["verdict"])
