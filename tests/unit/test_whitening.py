@@ -174,7 +174,8 @@ def test_alternatives_are_fitted_to_the_whitened_rows() -> None:
     assert found.scores is not None
     noise = found.scores.noise
     assert noise is not None
-    effects = Trial.of(rows, len(THETA), np.ones(1), noise).effects(found.fit.estimates, None)
+    trial = Trial.of(rows, len(THETA), np.ones(1), found.fit.estimates, noise=noise)
+    effects = trial.effects()
     (offset,) = (effect for effect in effects if effect.name == "offset")
     kept = slice(None, None, 2)
     A = np.concatenate((rows.W, np.ones((2000, 1, 1)), rows.y[:, :, None]), axis=2)[kept]

@@ -149,6 +149,12 @@ class Robot:
         motion (3, joints, samples): positions, velocities and accelerations.
         """
         parameters = tuple(self.parameters[i] for i in kept)
+        places = [p.term.place for p in parameters if isinstance(p.term, StandardTerm)]
+        if self.body and len(places) == len(parameters):
+            columns = self.body.columns(*motion)
+            links = np.zeros(columns.shape[2])
+            links[places] = theta
+            return np.asarray(columns @ links)
         return replace(self, parameters=parameters).regressor(*motion) @ theta
 
     def torques(self, W: Array, theta: Array) -> Array:

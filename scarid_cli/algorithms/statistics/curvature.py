@@ -10,10 +10,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows, curvature, runs
+from scarid_cli.algorithms.statistics.alternatives import WINDOW
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
 from scarid_cli.arrays import Array
-
-WINDOW = 0.2  # s, of the window behind which next to nothing is left of the positions' noise
 
 
 def log_likelihood_ratio(rows: Rows, predicted: Array, residuals: Sequence[Array]) -> float:

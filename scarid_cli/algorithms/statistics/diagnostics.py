@@ -83,9 +83,10 @@ def diagnose(
     fitted = Blocks.every(rows.h).add(white).whole() if noise else whole
     weights = _weights(found, rows.y.shape[1])
     covariance, blocks, errors = _noise_errors(white, found, record, fitted)
-    trial = Trial.of(rows, own, weights, noise)
+    estimates = found.fit.estimates
+    trial = Trial.of(rows, own, weights, estimates, model=model, noise=noise)
     scatter = errors * trial.longer(white)
-    effects = trial.effects(found.fit.estimates, model)
+    effects = trial.effects()
     if doubt is not None:
         effects = (*effects, of_low_pass(doubt))
     gains = gain_sensitivities(fitted.total, weights)[:, :own]
@@ -96,19 +97,19 @@ def diagnose(
         scatter=scatter,
         errors=stated.errors,
         matrix=stated.matrix,
-        joints=residuals(rows, found.fit.estimates, record),
+        joints=residuals(rows, estimates, record),
         effects=effects,
         gains=gains,
         consequences=consequences(
             whole,
             fitted,
             weights,
-            found.fit.estimates,
+            estimates,
             stated.uncertainty,
             model,
             rows.motion[0],
         ),
-        bursts=() if record else _bursts(rows, found.fit.estimates),
+        bursts=() if record else _bursts(rows, estimates),
     )
 
 

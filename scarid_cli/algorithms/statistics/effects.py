@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -103,27 +104,49 @@ def thinned(rows: Rows) -> Rows:
 class Trial:
     """The rows on which alternatives are tried, in so many blocks of these numbers.
 
-    The first `own` columns of W belong to the robot. Joints are weighted by `weights`, and rows are
-    whitened by the `noise`, if there is one: torques need only those in these `places`. `plain` is
-    the fit without any alternative; None if the rows do not determine it.
+    The first `own` columns of W belong to the robot, whose `model` is None if they are not those of
+    its regressor. Joints are weighted by `weights`, and rows are whitened by the `noise`, if there
+    is one: torques need only those in these `places`.
     """
 
     rows: Rows
     own: int
     weights: Array
+    estimates: Array
+    model: Model | None
     number: Numbers
     count: int
     noise: ColouredNoise | None
     places: Numbers
-    plain: Solved | None = None
 
     @classmethod
-    def of(cls, rows: Rows, own: int, weights: Array, noise: ColouredNoise | None = None) -> Trial:
-        """From the rows of an estimation."""
+    def of(
+        cls,
+        rows: Rows,
+        own: int,
+        weights: Array,
+        estimates: Array,
+        *,
+        model: Model | None = None,
+        noise: ColouredNoise | None = None,
+    ) -> Trial:
+        """From the rows of an estimation, and its estimates."""
         few = thinned(rows)
         places = noise.kept(few) if noise else np.arange(few.samples)
-        trial = cls(few, own, weights, *block_numbers(few.at, few.h), noise, places)
-        return replace(trial, plain=trial.products(few.scales, {})[0].solved([]))
+        numbers = block_numbers(few.at, few.h)
+        return cls(few, own, weights, estimates, model, *numbers, noise, places)
+
+    @cached_property
+    def beyond(self) -> tuple[Products, dict[str, list[int]]]:
+        """The products with what torques may have beyond the model, and the places of those."""
+        return self.products(
+            self.rows.scales, torque_columns(self.rows, self.model, self.estimates)
+        )
+
+    @cached_property
+    def plain(self) -> Solved | None:
+        """The fit without any alternative; None if the rows do not determine it."""
+        return self.beyond[0].solved([])
 
     def longer(self, white: Rows) -> Array:
         """How many times the errors of long disturbances exceed those of blocks (columns); >= 1.
@@ -138,18 +161,18 @@ class Trial:
             ratios = errors / jackknifed(self.plain.deviations)
         return np.asarray(np.where(ratios > 1.0, np.nan_to_num(ratios, posinf=1.0), 1.0))
 
-    def effects(self, estimates: Array, model: Model | None) -> tuple[Effect, ...]:
+    def effects(self) -> tuple[Effect, ...]:
         """The effects of all alternatives that the rows determine."""
         if self.plain is None:
             return ()
         away = away_from_reversals(self.rows)
         solved = self.products(away, {})[0].solved([])
         same = [(self.rows.scales, self.plain)]
-        found = self.torques(self.plain, estimates, model)
+        found = self.beside(*self.beyond, self.plain, self.plain)
         if solved:
             found.append(self.effect(REVERSALS, self.plain, self.plain, solved, columns=False))
             same.insert(0, (away, solved))
-        return (*found, *self.signals(self.plain, same, estimates, model))
+        return (*found, *self.signals(self.plain, same))
 
     def products(
         self, scales: Array, further: dict[str, Array]
@@ -174,13 +197,6 @@ class Trial:
         weighted = A * (scales * self.weights)[:, :, None]
         return Products.of(weighted, self.number[places], self.count, rows.W.shape[2])
 
-    def torques(self, plain: Solved, estimates: Array, model: Model | None) -> list[Effect]:
-        """The effects of what the torques may have beyond the model."""
-        products, places = self.products(
-            self.rows.scales, torque_columns(self.rows, model, estimates)
-        )
-        return self.beside(products, places, plain, plain)
-
     def beside(
         self, products: Products, places: dict[str, list[int]], plain: Solved, same: Solved
     ) -> list[Effect]:
@@ -193,19 +209,13 @@ class Trial:
                 found.append(self.effect(name, plain, same, solved, columns=True))
         return found
 
-    def signals(
-        self,
-        plain: Solved,
-        same: list[tuple[Array, Solved]],
-        estimates: Array,
-        model: Model | None,
-    ) -> list[Effect]:
+    def signals(self, plain: Solved, same: list[tuple[Array, Solved]]) -> list[Effect]:
         """The effects of another soft sensor, and of what may be wrong with its signals.
 
         `same` are the scales of rows with which they can be tried, the better ones first, and the
         fits to these rows without any alternative.
         """
-        smooth = smoothed(self.rows, model, estimates, self.own)
+        smooth = smoothed(self.rows, self.model, self.estimates, self.own)
         if smooth is None:
             return []
         for scales, without in same:
