@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from unit.regressions import estimated
 
 from scarid_cli.algorithms.estimators import ls
-from scarid_cli.algorithms.regression.rows import Rows, rows_of
+from scarid_cli.algorithms.regression.rows import Rows, rows_of, thinned
 from scarid_cli.algorithms.regression.shifting import led, shifted
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.alignment import aligned
@@ -30,7 +30,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     torque_columns,
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
-from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect, thinned
+from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
 from scarid_cli.algorithms.statistics.parallel import SIGNALS, differences
 from scarid_cli.arrays import Array
 
@@ -254,12 +254,12 @@ def test_a_low_pass_is_told_from_a_delay(kind: str) -> None:
     noise = 0.01 * np.random.default_rng(7).standard_normal(len(logged))
     rows = replace(rows, y=rows.y + noise[:, None])
     found = aligned(ls.Estimator(), np.zeros(2), rows, estimated(ls.Estimator(), rows))
-    assert found.low_pass == (kind != "delay")
+    assert found.lead.low_pass == (kind != "delay")
     assert found.delay == pytest.approx(0.004 if kind == "drive" else -0.004, abs=1e-4)
     assert found.found.fit.estimates[0] == pytest.approx(1.0, abs=5e-4)
-    assert found.doubt is not None
-    assert np.abs(found.doubt[0]) < 1e-4
-    predicted = led(rows, rows.W[:, :, 0], found.delay, low_pass=found.low_pass)
+    assert found.lead.doubt is not None
+    assert np.abs(found.lead.doubt[0]) < 1e-4
+    predicted = led(rows, rows.W[:, :, 0], found.delay, low_pass=found.lead.low_pass)
     inside = slice(200, -200)
     assert np.std((predicted[:, 0] - logged)[inside]) < 2e-3
 
@@ -270,10 +270,10 @@ def test_estimates_are_uncertain_where_a_low_pass_and_a_delay_cannot_be_told_apa
     noise = 5.0 * np.random.default_rng(7).standard_normal(len(logged))
     rows = replace(rows, y=rows.y + noise[:, None])
     found = aligned(ls.Estimator(), np.zeros(2), rows, estimated(ls.Estimator(), rows))
-    assert found.doubt is not None
+    assert found.lead.doubt is not None
     mean_square = sum((a * w) ** 2 for a, w in WAVES) / sum(a**2 for a, _ in WAVES)
     difference = 0.5 * found.delay**2 * mean_square
-    assert abs(found.doubt[0]) == pytest.approx(np.sqrt(0.5) * difference, rel=0.3)
+    assert abs(found.lead.doubt[0]) == pytest.approx(np.sqrt(0.5) * difference, rel=0.3)
 
 
 def test_torques_are_shifted_within_runs_only() -> None:

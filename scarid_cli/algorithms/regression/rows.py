@@ -11,6 +11,8 @@ import numpy as np
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array, Numbers
 
+INTERVAL = 0.005  # s: rows are thinned to intervals of at most this length
+
 
 @dataclass(frozen=True)
 class Rows:
@@ -89,6 +91,15 @@ def faded(rows: Rows, factor: float) -> Rows:
     """The rows as an estimator weights them that forgets by this factor per sample."""
     ages = (rows.at[-1] - rows.at).astype(np.float64)
     return replace(rows, scales=rows.scales * np.exp(0.5 * ages * np.log(factor))[:, None])
+
+
+def thinned(rows: Rows) -> Rows:
+    """Every n-th sample, such that they are at most 5 ms apart if the record allows."""
+    step = int(INTERVAL / rows.h + 1e-9) if rows.h > 0.0 else 1
+    if step < 2:
+        return rows
+    part = rows.part(np.flatnonzero(rows.at % step == 0))
+    return replace(part, at=part.at // step, h=rows.h * step)
 
 
 def joined(parts: Sequence[Rows]) -> Rows:

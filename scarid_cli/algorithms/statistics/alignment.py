@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
-from scarid_cli.algorithms.regression.rows import Rows, with_delay
+from scarid_cli.algorithms.regression.rows import Rows, thinned, with_delay
 from scarid_cli.algorithms.regression.shifting import shifted, straightened
 from scarid_cli.algorithms.statistics.curvature import log_likelihood_ratio
 from scarid_cli.arrays import Array
@@ -20,63 +20,89 @@ CLEAR = 0.1  # of the log-likelihood ratio: where it is less, both forms predict
 
 
 @dataclass(frozen=True)
-class Aligned:
-    """The rows with the torques shifted, and the column of the remaining delay; the estimation.
+class Lead:
+    """The time [s] by which the torques lead the motion, as behind a delay or a low-pass.
 
-    The torques were shifted by so many samples (`shift`), and with `low_pass` straightened as well.
-    `doubt` (columns) is how far the estimates may be off because the other form may be the true
+    `theta` (columns) are the estimates with which it was found, the last of them what remains of
+    the delay. `doubt` (columns) is how far they may be off because the other form may be the true
     one: as a root mean square over both, which are as likely as the log says.
     """
 
-    rows: Rows
-    found: Estimation
-    shift: float
+    seconds: float
+    theta: Array
     low_pass: bool = False
     doubt: Array | None = None
+
+
+@dataclass(frozen=True)
+class Aligned:
+    """The rows without the lead of the torques, with the column of what remains of it; the fit."""
+
+    rows: Rows
+    found: Estimation
+    lead: Lead
 
     @property
     def delay(self) -> float:
         """The time [s] by which the torques lead the motion."""
-        return float(self.shift * self.rows.h + self.found.fit.estimates[-1])
+        return self.lead.seconds + float(self.found.fit.estimates[-1])
 
 
 def aligned(estimator: BaseEstimator, start: Array, rows: Rows, found: Estimation) -> Aligned:
     """The estimation with the delay of the torques: a shift, and what remains as a parameter.
 
-    tau(t) = W(t + T) theta is linear in T only if T is small. Therefore the torques are shifted
-    until next to nothing remains, whose error enters those of the parameters. If a low-pass is the
-    likelier cause, the torques are straightened too.
+    If a low-pass is the likelier cause of the lead, the torques are straightened too. The error of
+    what remains enters those of the parameters.
     """
-    quick, shift, theta = estimator.quick(), 0.0, found.fit.estimates
-    longest = min(LONGEST / rows.h if rows.h > 0.0 else 0.0, rows.samples / 4)
+    lead = _searched(estimator.quick(), start, thinned(rows), found.fit.estimates)
+    wide = with_delay(_shifted_by(lead.seconds, rows), lead.theta)
+    if lead.low_pass:
+        wide = straightened(wide, _predicted(wide, lead.theta), lead.seconds)
+    return Aligned(wide, estimator.of_rows(wide, start), lead)
+
+
+def _searched(quick: BaseEstimator, start: Array, rows: Rows, theta: Array) -> Lead:
+    """The lead from these rows, by fits that begin with the estimates `theta`.
+
+    tau(t) = W(t + T) theta is linear in T only if T is small. Therefore the torques are shifted
+    until next to nothing remains.
+    """
+    seconds, longest = 0.0, min(LONGEST, 0.25 * rows.samples * rows.h)
     for fit in range(FITS):
-        wide = with_delay(shifted(rows, shift), theta)
+        wide = with_delay(_shifted_by(seconds, rows), theta)
         found = quick.of_rows(wide, start)
         theta = found.fit.estimates
-        rest = theta[-1] / rows.h if rows.h > 0.0 else 0.0
-        near = not abs(rest) > NEAR or abs(shift + rest) > longest
+        rest = float(theta[-1])
+        near = not abs(rest) > NEAR * rows.h or abs(seconds + rest) > longest
         if near and fit + 1 >= FEWEST:
             break
         if not near and fit > 0:
-            shift += rest
-    result = _likelier(Aligned(wide, found, shift), quick, start)
-    if quick is estimator:
-        return result
-    return replace(result, found=estimator.of_rows(result.rows, start))
+            seconds += rest
+    return _likelier(Lead(seconds, theta), wide, found, quick, start)
 
 
-def _likelier(delayed: Aligned, quick: BaseEstimator, start: Array) -> Aligned:
-    """As behind a delay, or as behind a low-pass, whichever is likelier."""
-    rows, found = delayed.rows, delayed.found
+def _likelier(
+    delay: Lead, rows: Rows, found: Estimation, quick: BaseEstimator, start: Array
+) -> Lead:
+    """The lead as behind a delay, with its rows and fit, or a low-pass if that is likelier."""
     if not rows.h > 0.0:
-        return delayed
-    predicted = rows.W[:, :, :-1] @ found.fit.estimates[:-1]
-    straight = straightened(rows, predicted, delayed.delay)
+        return delay
+    predicted = _predicted(rows, delay.theta)
+    straight = straightened(rows, predicted, delay.seconds)
     other = quick.of_rows(straight, start)
     residuals = [x.y - x.W @ y.fit.estimates for x, y in ((rows, found), (straight, other))]
     ratio = log_likelihood_ratio(rows, predicted, residuals)
     probability = np.exp(-np.logaddexp(0.0, abs(ratio)))
-    doubt = np.sqrt(probability) * (other.fit.estimates - found.fit.estimates)
+    doubt = np.sqrt(probability) * (other.fit.estimates - delay.theta)
     if ratio > CLEAR:
-        return replace(delayed, rows=straight, found=other, low_pass=True, doubt=doubt)
-    return replace(delayed, doubt=doubt)
+        return Lead(delay.seconds, other.fit.estimates, low_pass=True, doubt=doubt)
+    return replace(delay, doubt=doubt)
+
+
+def _shifted_by(seconds: float, rows: Rows) -> Rows:
+    return shifted(rows, seconds / rows.h) if rows.h > 0.0 else rows
+
+
+def _predicted(rows: Rows, theta: Array) -> Array:
+    """The torques (samples, joints) of the robot's parameters, without the column of the delay."""
+    return np.asarray(rows.W[:, :, :-1] @ theta[:-1])

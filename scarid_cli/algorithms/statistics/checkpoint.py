@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from scarid_cli.algorithms.regression.counting import LeftOut
+from scarid_cli.algorithms.regression.rows import INTERVAL
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.effects import INTERVAL
 from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
@@ -22,7 +22,6 @@ from scarid_cli.algorithms.statistics.parallel import smoothed
 from scarid_cli.algorithms.statistics.products import Products, Solved, jackknifed
 from scarid_cli.arrays import Array, Numbers
 
-INTERVAL = 0.005  # s: the rows are thinned to intervals of at most this length
 REVERSALS, PARALLEL, LOW_PASS = "reversals", "parallel", "low-pass"
 ALWAYS = (
     REVERSALS,
@@ -89,15 +88,6 @@ def of_low_pass(moved: Array) -> Effect:
     """The effect (parameters) of a low-pass for a delay, or the reverse, whose size is known."""
     none = np.zeros_like(moved)
     return Effect(LOW_PASS, moved, none, moved, largest=0.0, tests=1, blocks=2)
-
-
-def thinned(rows: Rows) -> Rows:
-    """Every n-th sample, such that they are at most 5 ms apart if the record allows."""
-    step = int(INTERVAL / rows.h + 1e-9) if rows.h > 0.0 else 1
-    if step < 2:
-        return rows
-    part = rows.part(np.flatnonzero(rows.at % step == 0))
-    return replace(part, at=part.at // step, h=rows.h * step)
 
 
 @dataclass(frozen=True)

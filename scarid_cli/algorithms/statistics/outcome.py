@@ -9,7 +9,7 @@ import numpy as np
 from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.information import Fit
-from scarid_cli.algorithms.regression.rows import Rows, faded
+from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alignment import aligned
@@ -151,7 +151,8 @@ def _problem(
     estimator: BaseEstimator, initial: Array, end: Checkpoint, robot: Robot, *, align: bool
 ) -> Problem:
     rows, quick = end.subsample.rows(), estimator.quick() if align else estimator
-    found = estimator.fit(end.state) if quick is estimator else quick.of_rows(rows, initial)
+    plain = quick is estimator
+    found = estimator.fit(end.state) if plain else quick.of_rows(thinned(rows), initial)
     own, fitted = len(found.fit.estimates), None
     if align:
         fitted = aligned(estimator.widened(), np.append(initial, 0.0), rows, found)
@@ -162,14 +163,15 @@ def _problem(
     record = None if end.subsample.complete or not end.blocks else end.blocks.whole()
     factor = found.scores.forgetting if found.scores else 1.0
     if found.scores and factor < 1.0:
-        thinned = factor**end.subsample.thin
-        rows, record = faded(rows, thinned), record and record.faded(factor)
-        found = replace(found, scores=replace(found.scores, forgetting=thinned))
+        per_row = factor**end.subsample.thin
+        rows, record = faded(rows, per_row), record and record.faded(factor)
+        found = replace(found, scores=replace(found.scores, forgetting=per_row))
     problem = Problem(rows, found, own, record, model)
     if fitted is None:
         return problem
-    doubt = None if fitted.doubt is None else fitted.doubt[:own]
-    return replace(problem, delay=fitted.delay, low_pass=fitted.low_pass, doubt=doubt)
+    lead = fitted.lead
+    doubt = None if lead.doubt is None else lead.doubt[:own]
+    return replace(problem, delay=fitted.delay, low_pass=lead.low_pass, doubt=doubt)
 
 
 def _noise(problem: Problem, diagnostics: Diagnostics, counted: int) -> Noise:
