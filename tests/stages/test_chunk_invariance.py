@@ -73,6 +73,9 @@ STAGES: dict[str, Stage] = {
     ),
     "validate": lambda source: validate(source, Identified(SCARA, SCARA.apriori, 0.0)),
     "validate, early": lambda source: validate(source, Identified(SCARA, SCARA.apriori, 2e-3)),
+    "validate, behind a low-pass": lambda source: validate(
+        source, Identified(SCARA, SCARA.apriori, -7e-3, low_pass=True)
+    ),
     "validate, changed": changed,
     "simulate": simulated,
     **{f"differentiate {name}": differentiated(name) for name in DIFFERENTIATORS.names},
