@@ -234,8 +234,8 @@ def trajectory(robot: Robot, seed: int, condition: Condition) -> Table:
     return tabulate(motion, robot, REFERENCE, meta)
 
 
-def log(robot: Robot, condition: Condition, seed: int) -> Table:
-    """The simulated measurement, at a constant rate."""
+def log(robot: Robot, condition: Condition, seed: int, *, truth: bool = False) -> Table:
+    """The simulated measurement, at a constant rate, with the true signals if asked for."""
     joints = len(robot.joints)
     sizes = {
         "coulomb": tuple(abs(robot.value("coulomb", i + 1)) for i in range(joints)),
@@ -259,7 +259,7 @@ def log(robot: Robot, condition: Condition, seed: int) -> Table:
         **building.in_the_loop(known, robot.joints, CONTROL),
     )
     table = simulate(
-        trajectory(robot, seed, condition), loop, condition.rate, truth=False, given=known
+        trajectory(robot, seed, condition), loop, condition.rate, truth=truth, given=known
     )
     if RESAMPLED & set(condition.given):  # the last two by `identify` itself
         table = resample(table, condition.rate)

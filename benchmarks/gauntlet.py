@@ -110,13 +110,19 @@ class Judged:
     noise: float
 
 
-def judged(name: str, truth: Array, measured: Table, seed: int) -> Judged:
-    """`scarid identify --robot NAME LOG` on a log of a robot with these parameters."""
+def blind(name: str, measured: Table) -> tuple[Table, float]:
+    """What `scarid identify --robot NAME LOG` finds, and the noise of the positions."""
     robot = robot_named(name)
     motion, found, _ = motion_of(again(measured), robot, lambda: None, [])
     treatment = Treatment(counting=_counting(motion), align=True)
     solver = ESTIMATORS.load("gls")()
-    result = identify(motion, robot, solver, np.zeros(len(robot.names)), treatment=treatment)
+    zeros = np.zeros(len(robot.names))
+    return identify(motion, robot, solver, zeros, treatment=treatment), found.noise
+
+
+def judged(name: str, truth: Array, measured: Table, seed: int) -> Judged:
+    """The blind procedure on a log of a robot with these parameters."""
+    result, noise = blind(name, measured)
     (batch,) = result.batches
     estimates, errors, low, high = (
         batch.column(c).to_numpy(zero_copy_only=False)
@@ -132,7 +138,7 @@ def judged(name: str, truth: Array, measured: Table, seed: int) -> Judged:
         wrong=bool(good and np.any(np.abs(off) > _many(len(truth)))),
         good=bool(good),
         width=float(result.meta.extra["widened"] or np.nan),
-        noise=found.noise,
+        noise=noise,
     )
 
 
@@ -149,11 +155,11 @@ def run(name: str, condition: Condition, seed: int) -> Run:
     """One log of a robot under a condition."""
     robot = robot_named(name)
     measured, truth = log(robot, condition, seed), truth_of(robot, condition)
-    blind = judged(name, truth, measured, seed)
+    found = judged(name, truth, measured, seed)
     off_by = partial(torque_error, name, truth, seed)
-    others = hindsight(robot, measured, blind.noise)
+    others = hindsight(robot, measured, found.noise)
     return Run(
-        blind=blind,
+        blind=found,
         hindsight=tuple(np.inf if other is None else off_by(other) for other in others),
         default=off_by(default(robot, measured)),
     )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conditions import CONDITIONS, UNSEEN, Condition, log, robot_named, truth_of
 from gauntlet import ROBOTS, cells, run
+from needed import needed
 
 SHORT = 8.0  # s
 SEED = 50_000
@@ -30,6 +31,20 @@ def test_every_condition_can_be_simulated(condition: Condition) -> None:
     table = log(robot, short, SEED)
     assert sum(batch.num_rows for batch in table.batches) >= 0.9 * 4.0 * condition.rate
     assert len(truth_of(robot, short)) == len(robot.names)
+
+
+def test_the_needed_torques_are_those_of_the_model_and_of_what_it_lacks() -> None:
+    clean = Condition("short", duration=SHORT)
+    loaded = replace(clean, given={"load-friction": (0.02,)})
+    truth = truth_of(robot_named("scara2"), clean)
+    rest = []
+    for condition in (clean, loaded):
+        W, tau = needed("scara2", condition, SEED)
+        away = np.abs(W[:, 0, 2]) > 0.5  # sign(dq1): the joint moves
+        rest.append((tau - W @ truth)[away, 0] * W[away, 0, 2])
+        torque = tau[away, 0] - W[away, 0, 2] * truth[2]
+    assert np.median(np.abs(rest[0])) < 1e-6
+    assert np.median(rest[1] / np.abs(torque)) == pytest.approx(0.02, rel=0.1)
 
 
 def test_every_robot_that_is_here_meets_every_condition() -> None:
