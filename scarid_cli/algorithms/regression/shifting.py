@@ -6,7 +6,9 @@ tau with T < 0. To second order both are tau(t + T) - T abs(T) / 2 d2tau/dt2.
 
 Between samples a polynomial of degree five goes through the six nearest (Lagrange). Its error is
 less than 0.005 (w h)^6 of a component of angular frequency w, sampled every h: 1e-5 of 5 Hz at
-100 Hz. Whole samples are only moved.
+100 Hz. Coulomb friction jumps where a joint reverses. No polynomial goes through samples on both
+sides of a reversal: near it a straight line goes through the two nearest ones, or the nearest one
+is taken. Whole samples are only moved.
 """
 
 from __future__ import annotations
@@ -26,18 +28,19 @@ def shifted(rows: Rows, shift: float) -> Rows:
     """The rows with the torques of `shift` samples earlier; without those that have none."""
     if not shift:
         return rows
-    nodes, taps = _interpolation(-shift)
-    places = np.arange(rows.samples)[:, None] + nodes
+    here = np.arange(rows.samples)
+    nodes = _nodes(-shift)
+    places = here[:, None] + nodes
     inside = np.clip(places, 0, rows.samples - 1)
     known = (places == inside) & (rows.at[inside] == rows.at[:, None] + nodes)
-    motion = rows.motion.copy()
-    motion[3] = _sum(taps, motion[3].T, inside).T
-    return replace(
-        rows,
-        y=_sum(taps, rows.y, inside),
-        scales=rows.scales * known.all(axis=1)[:, None],
-        motion=motion,
-    )
+    # The torque of a sample belongs to the motion that many samples later.
+    motion, of_motion = rows.motion.copy(), np.clip(here + round(shift), 0, rows.samples - 1)
+    torques = np.concatenate((rows.y, motion[3].T), axis=1)
+    directions = np.tile(_directions(rows)[of_motion], 2)
+    y, torque = np.split(_interpolated(torques, directions, inside, -shift), 2, axis=1)
+    motion[3] = torque.T
+    scales = rows.scales * known.all(axis=1)[:, None]
+    return replace(rows, y=np.ascontiguousarray(y), scales=scales, motion=motion)
 
 
 def led(rows: Rows, predicted: Array, delay: float, *, low_pass: bool = False) -> Array:
@@ -48,12 +51,16 @@ def led(rows: Rows, predicted: Array, delay: float, *, low_pass: bool = False) -
     """
     if low_pass:
         predicted = predicted - bend(rows, predicted, delay)
-    nodes, taps = _interpolation(delay / rows.h if rows.h > 0.0 else 0.0)
-    found = np.empty_like(predicted)
+    samples = delay / rows.h if rows.h > 0.0 else 0.0
+    places = np.arange(rows.samples)[:, None] + _nodes(samples)
     for run in runs(rows.at):
-        places = np.arange(run.start, run.stop)[:, None] + nodes
-        found[run] = _sum(taps, predicted, np.clip(places, run.start, run.stop - 1))
-    return found
+        places[run] = np.clip(places[run], run.start, run.stop - 1)
+    return _interpolated(predicted, _directions(rows), places, samples)
+
+
+def _directions(rows: Rows) -> Array:
+    """In which direction each joint moves (samples, joints)."""
+    return np.asarray(np.sign(rows.motion[1].T))
 
 
 def bend(rows: Rows, predicted: Array, delay: float) -> Array:
@@ -70,20 +77,27 @@ def straightened(rows: Rows, predicted: Array, delay: float) -> Rows:
     return replace(rows, y=rows.y + bend(rows, predicted, delay))
 
 
-def _interpolation(samples: float) -> tuple[Numbers, Array]:
-    """The samples around an instant that is so many samples later, and their weights."""
+def _nodes(samples: float) -> Numbers:
+    """The samples around an instant that is so many samples later."""
+    whole = int(np.floor(samples))
+    return whole + (NODES if samples > whole else NODES[NODES == 0])
+
+
+def _interpolated(x: Array, directions: Array, places: Numbers, samples: float) -> Array:
+    """x (samples, joints) so many samples later, from the samples in these places (samples, nodes).
+
+    directions: those of the joints at each sample of x.
+    """
     whole = int(np.floor(samples))
     fraction = samples - whole
     if fraction == 0.0:
-        return np.array([whole]), np.ones(1)
+        return x[places[:, 0]]
+    before, after = (places[:, k] for k in np.flatnonzero((NODES == 0) | (NODES == 1)))
+    nearest = after if round(samples) > whole else before
+    same = [directions[at] == directions[nearest] for at in places.T]
+    pair = directions[before] == directions[after]
+    line = np.where(pair, (1.0 - fraction) * x[before] + fraction * x[after], x[nearest])
     others = [np.delete(NODES, k) for k in range(len(NODES))]
     taps = [np.prod((fraction - o) / (n - o)) for n, o in zip(NODES, others, strict=True)]
-    return whole + NODES, np.array(taps)
-
-
-def _sum(taps: Array, x: Array, places: Numbers) -> Array:
-    """The weighted sum of the samples of x (samples, joints) at these places (samples, taps)."""
-    found = np.zeros((len(places), x.shape[1]))
-    for tap, at in zip(taps, places.T, strict=True):
-        found += tap * x[at]
-    return found
+    smooth = sum(tap * x[at] for tap, at in zip(taps, places.T, strict=True))
+    return np.where(np.logical_and.reduce(same), smooth, line)
