@@ -27,7 +27,7 @@ from scarid_cli.algorithms.sensors import building
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.arrays import Array
 from scarid_cli.cli.imperfections import imperfections
-from scarid_cli.io.table import Metadata, Table, matrix, with_columns
+from scarid_cli.io.table import Metadata, Table, concatenated, matrix, with_columns
 from scarid_cli.stages.resample import resample
 from scarid_cli.stages.simulate import simulate
 from scarid_cli.stages.trajgen import tabulate
@@ -265,8 +265,7 @@ def log(robot: Robot, condition: Condition, seed: int, *, truth: bool = False) -
         table = resample(table, condition.rate)
     batches = list(table.batches)
     if condition.altered:
-        (whole,) = pa.Table.from_batches(batches).combine_chunks().to_batches()
-        batches = [_altered(whole, robot, condition.altered)]
+        batches = [_altered(concatenated(batches), robot, condition.altered)]
     return replace(table, batches=batches)  # type: ignore[arg-type]
 
 

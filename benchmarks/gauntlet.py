@@ -88,8 +88,13 @@ def regressor(name: str, seed: int) -> Array:
 def torque_error(name: str, truth: Array, seed: int, estimates: Array) -> float:
     """The error of the predicted torque, relative to the torque: a mean over the joints."""
     W = regressor(name, seed)
-    off, torque = (np.sqrt(np.mean((W @ x) ** 2, axis=0)) for x in (estimates - truth, truth))
-    return float(np.mean(off / torque))
+    return relative_error(W @ (estimates - truth), W @ truth)
+
+
+def relative_error(off: Array, torque: Array) -> float:
+    """The root mean square of errors over that of torques (samples, joints), a mean over joints."""
+    sizes, usual = (np.sqrt(np.mean(x**2, axis=0)) for x in (off, torque))
+    return float(np.mean(sizes / usual))
 
 
 @dataclass(frozen=True)

@@ -14,12 +14,11 @@ from __future__ import annotations
 import argparse
 
 import numpy as np
-import pyarrow as pa
 from conditions import CONDITIONS, Condition, log, robot_named, truth_of
-from gauntlet import blind, default, torque_error
+from gauntlet import blind, default, relative_error, torque_error
 
 from scarid_cli.arrays import Array
-from scarid_cli.io.table import matrix
+from scarid_cli.io.table import concatenated, matrix
 
 ROBOTS = ("scara2", "planar2-gravity")
 LACKING = ("load friction", "Stribeck friction", "cable pulls", "motor saturates")
@@ -31,7 +30,7 @@ def needed(name: str, condition: Condition, seed: int) -> tuple[Array, Array]:
     robot = robot_named(name)
     joints = range(1, len(robot.joints) + 1)
     batches = log(robot, condition, seed + 10**6, truth=True).batches
-    (whole,) = pa.Table.from_batches(list(batches)).combine_chunks().to_batches()
+    whole = concatenated(list(batches))
     t, q, dq, ddq, tau = (
         matrix(whole, ["t"] if symbol == "t" else [f"{symbol}{i}_true" for i in joints])
         for symbol in ("t", "q", "dq", "ddq", "tau")
@@ -51,8 +50,8 @@ def errors(name: str, condition: Condition, seed: int) -> Array:
     own = batch.column("estimate").to_numpy(zero_copy_only=False)
     found = []
     for theta in (own, default(robot, measured)):
-        off, torque = (np.sqrt(np.mean(x**2, axis=0)) for x in (W @ theta - tau, tau))
-        found.append((float(np.mean(off / torque)), torque_error(name, truth, seed, theta)))
+        needs = relative_error(W @ theta - tau, tau)
+        found.append((needs, torque_error(name, truth, seed, theta)))
     return np.array(found)
 
 

@@ -18,7 +18,7 @@ from scarid_cli.algorithms.changes.likelihood import Difference
 from scarid_cli.algorithms.changes.wiring import rewired
 from scarid_cli.algorithms.changes.wording import Verdict, of_change, of_wiring
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.regression.shifting import shifted, straightened
+from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array, median
 from scarid_cli.io.table import Table
@@ -85,7 +85,7 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
     steps = rewired(robot, rows, theta)
     if steps:
         return of_wiring(steps)
-    now = evidence(_aligned(rows, model), theta)
+    now = evidence(in_step(rows, theta, model.delay, low_pass=model.low_pass), theta)
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)
     ratios = None
@@ -96,14 +96,6 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
         possible = [h for h in possible if h.kind not in (DELAY, OFFSET)]
     values = dict(zip(robot.names, theta.tolist(), strict=True))
     return of_change(change(Difference.between(first, now), possible), values, ratios)
-
-
-def _aligned(rows: Rows, model: Identified) -> Rows:
-    """The rows with torques that do not lead the motion."""
-    if not (model.delay and rows.h > 0.0):
-        return rows
-    rows = shifted(rows, model.delay / rows.h)
-    return straightened(rows, rows.W @ model.theta, model.delay) if model.low_pass else rows
 
 
 def _alike(now: LogEvidence, errors: Array, robot: Robot) -> LogEvidence:

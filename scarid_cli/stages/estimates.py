@@ -20,14 +20,13 @@ REMEDY = "write the table with `identify -o parameters.parquet`"
 class Estimates:
     """Identified parameters and their errors.
 
-    `robot` is the robot as it was identified. `values` (parameters) are in its units, and
-    `delay` [s] is the time by which the torques led the motion, with `low_pass` as behind one.
-    `errors` (parameters) are robust standard errors where known, nan where there are none.
-    `dropped` are the indices of the values that `identify --essential` set to zero. `full` are
-    the estimates before that and `covariance` (parameters, parameters) is theirs, with nan in
-    the rows and columns of parameters without errors. `fixed` has the name, unit and value of
-    the table's further rows, in which the torques are not linear. `remark` explains why the
-    covariance is diagonal; it is empty if it is not.
+    `robot` is the robot as it was identified. `values` (parameters) are in its units. The torques
+    led the motion by `delay` [s], with `low_pass` as behind one. `errors` (parameters) are robust
+    standard errors where known, nan where there are none. `dropped` are the indices of the values
+    that `identify --essential` set to zero. `full` are the estimates before that and `covariance`
+    (parameters, parameters) is theirs, with nan in the rows and columns of parameters without
+    errors. `fixed` has the name, unit and value of the table's further rows, in which the torques
+    are not linear. `remark` explains why the covariance is diagonal; it is empty if it is not.
     """
 
     robot: Robot

@@ -56,6 +56,8 @@ def test_the_same_table_twice_predicts_what_it_predicts_once(scarid: Run, logs: 
     twice, _, said = validated(scarid, logs[0], logs[1] / "p.parquet", logs[1] / "p.parquet")
     assert twice == pytest.approx(once, abs=5e-4)
     assert "pooled the parameters of 2 identifications" in said
+    thrice, _, _ = validated(scarid, logs[0], *3 * [logs[1] / "p.parquet"])
+    assert thrice == pytest.approx(twice, rel=1e-9)
 
 
 def test_a_log_is_compared_with_all_tables_together(scarid: Run, logs: list[Path]) -> None:

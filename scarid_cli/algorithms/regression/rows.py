@@ -93,10 +93,15 @@ def faded(rows: Rows, factor: float) -> Rows:
     return replace(rows, scales=rows.scales * np.exp(0.5 * ages * np.log(factor))[:, None])
 
 
+def thinning(h: float) -> int:
+    """Every how many-th of samples h [s] apart are kept, to be at most 5 ms apart if they can."""
+    return max(1, int(INTERVAL / h + 1e-9)) if h > 0.0 else 1
+
+
 def thinned(rows: Rows) -> Rows:
     """Every n-th sample, such that they are at most 5 ms apart if the record allows."""
-    step = int(INTERVAL / rows.h + 1e-9) if rows.h > 0.0 else 1
-    if step < 2:
+    step = thinning(rows.h)
+    if step == 1:
         return rows
     part = rows.part(np.flatnonzero(rows.at % step == 0))
     return replace(part, at=part.at // step, h=rows.h * step)

@@ -58,6 +58,14 @@ def led(rows: Rows, predicted: Array, delay: float, *, low_pass: bool = False) -
     return _interpolated(predicted, _directions(rows), places, samples)
 
 
+def in_step(rows: Rows, theta: Array, delay: float, *, low_pass: bool = False) -> Rows:
+    """The rows with torques that do not lead the motion: the reverse of `led`."""
+    if not (delay and rows.h > 0.0):
+        return rows
+    rows = shifted(rows, delay / rows.h)
+    return replace(rows, y=rows.y + bend(rows, rows.W @ theta, delay)) if low_pass else rows
+
+
 def _directions(rows: Rows) -> Array:
     """In which direction each joint moves (samples, joints)."""
     return np.asarray(np.sign(rows.motion[1].T))
@@ -70,11 +78,6 @@ def bend(rows: Rows, predicted: Array, delay: float) -> Array:
     """
     found: Array = 0.5 * delay * abs(delay) * curvature(rows, predicted)
     return found
-
-
-def straightened(rows: Rows, predicted: Array, delay: float) -> Rows:
-    """The rows with torques as if a delay had caused the lead, and not a low-pass."""
-    return replace(rows, y=rows.y + bend(rows, predicted, delay))
 
 
 def _nodes(samples: float) -> Numbers:

@@ -8,7 +8,7 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.rows import Rows, thinned, with_delay
-from scarid_cli.algorithms.regression.shifting import shifted, straightened
+from scarid_cli.algorithms.regression.shifting import bend, in_step
 from scarid_cli.algorithms.statistics.curvature import log_likelihood_ratio
 from scarid_cli.arrays import Array
 
@@ -55,9 +55,8 @@ def aligned(estimator: BaseEstimator, start: Array, rows: Rows, found: Estimatio
     what remains enters those of the parameters.
     """
     lead = _searched(estimator.quick(), start, thinned(rows), found.fit.estimates)
-    wide = with_delay(_shifted_by(lead.seconds, rows), lead.theta)
-    if lead.low_pass:
-        wide = straightened(wide, _predicted(wide, lead.theta), lead.seconds)
+    own = lead.theta[: rows.W.shape[2]]
+    wide = with_delay(in_step(rows, own, lead.seconds, low_pass=lead.low_pass), own)
     return Aligned(wide, estimator.of_rows(wide, start), lead)
 
 
@@ -69,7 +68,7 @@ def _searched(quick: BaseEstimator, start: Array, rows: Rows, theta: Array) -> L
     """
     seconds, longest = 0.0, min(LONGEST, 0.25 * rows.samples * rows.h)
     for fit in range(FITS):
-        wide = with_delay(_shifted_by(seconds, rows), theta)
+        wide = with_delay(in_step(rows, theta, seconds), theta)
         found = quick.of_rows(wide, start)
         theta = found.fit.estimates
         rest = float(theta[-1])
@@ -87,22 +86,13 @@ def _likelier(
     """The lead as behind a delay, with its rows and fit, or a low-pass if that is likelier."""
     if not rows.h > 0.0:
         return delay
-    predicted = _predicted(rows, delay.theta)
-    straight = straightened(rows, predicted, delay.seconds)
+    bent = bend(rows, rows.W[:, :, :-1] @ delay.theta[:-1], delay.seconds)
+    straight = replace(rows, y=rows.y + bent)
     other = quick.of_rows(straight, start)
     residuals = [x.y - x.W @ y.fit.estimates for x, y in ((rows, found), (straight, other))]
-    ratio = log_likelihood_ratio(rows, predicted, residuals)
+    ratio = log_likelihood_ratio(rows, bent, residuals)
     probability = np.exp(-np.logaddexp(0.0, abs(ratio)))
     doubt = np.sqrt(probability) * (other.fit.estimates - delay.theta)
     if ratio > CLEAR:
         return Lead(delay.seconds, other.fit.estimates, low_pass=True, doubt=doubt)
     return replace(delay, doubt=doubt)
-
-
-def _shifted_by(seconds: float, rows: Rows) -> Rows:
-    return shifted(rows, seconds / rows.h) if rows.h > 0.0 else rows
-
-
-def _predicted(rows: Rows, theta: Array) -> Array:
-    """The torques (samples, joints) of the robot's parameters, without the column of the delay."""
-    return np.asarray(rows.W[:, :, :-1] @ theta[:-1])

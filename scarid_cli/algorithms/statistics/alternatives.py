@@ -27,6 +27,12 @@ FADED = 0.3  # of the root-mean-square velocity: where the Stribeck effect has d
 BESIDE_FRICTION = ("offset", "stribeck")  # terms that are not friction alone, but go with it
 
 
+def hann(h: float) -> Array:
+    """The taps of the window for rows that are h [s] apart; their sum is 1."""
+    taps = np.hanning(2 * round(0.5 * WINDOW / h) + 3)[1:-1] if h > 0.0 else np.ones(1)
+    return np.asarray(taps / taps.sum())
+
+
 @dataclass(frozen=True)
 class Model:
     """The robot whose regressor the rows have, and the indices of the columns that were kept."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from scarid_cli.algorithms.regression.counting import LeftOut
-from scarid_cli.algorithms.regression.rows import INTERVAL
+from scarid_cli.algorithms.regression.rows import thinning
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
 
@@ -34,5 +34,4 @@ class Checkpoint:
         """
         if holds:
             return cls(state, Subsample(samples=ALL), None)
-        thinnest = int(INTERVAL / h + 1e-9) if h > 0.0 else 1
-        return cls(state, Subsample(thinnest=max(1, thinnest)), Blocks.every(h))
+        return cls(state, Subsample(thinnest=thinning(h)), Blocks.every(h))

@@ -23,13 +23,8 @@ from scarid_cli.algorithms.statistics.products import Products, Solved, jackknif
 from scarid_cli.arrays import Array, Numbers
 
 REVERSALS, PARALLEL, LOW_PASS = "reversals", "parallel", "low-pass"
-ALWAYS = (
-    REVERSALS,
-    OFFSET,
-    STRIBECK,
-    PARALLEL,
-    LOW_PASS,
-)  # widen the intervals whether significant or not
+# Those that widen the intervals whether significant or not.
+ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL, LOW_PASS)
 CERTAIN = 0.01  # probability of calling an effect significant that is none
 TRUST = 1.5  # variances of an effect that are subtracted from its square
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows, delay_column, runs
-from scarid_cli.algorithms.statistics.alternatives import WINDOW, Model, diagonal
+from scarid_cli.algorithms.statistics.alternatives import Model, diagonal, hann
 from scarid_cli.algorithms.statistics.positions import (
     Sensitivities,
     elastic_columns,
@@ -49,8 +49,7 @@ def smoothed(rows: Rows, model: Model | None, estimates: Array, own: int) -> Smo
     positions.py. Without a model the columns of W are only smoothed, and there are no further
     columns. None if every run between gaps is shorter than the window.
     """
-    taps = np.hanning(2 * round(0.5 * WINDOW / rows.h) + 3)[1:-1] if rows.h > 0.0 else np.ones(1)
-    window = Window(taps / taps.sum(), max(1, int(STEP / rows.h + 1e-9)) if rows.h > 0.0 else 1)
+    window = Window(hann(rows.h), max(1, int(STEP / rows.h + 1e-9)) if rows.h > 0.0 else 1)
     found: list[tuple[dict[str, Array], Numbers]] = []
     for run in runs(rows.at):
         centres = window.centres(run.stop - run.start)
