@@ -128,6 +128,29 @@ def test_errors_of_disturbances_that_last_are_those_that_occur() -> None:
     assert np.all(np.median(short, axis=0) < 0.8 * np.median(long, axis=0))
 
 
+@pytest.mark.parametrize("samples", [2000, 4000])
+def test_errors_of_disturbances_that_a_short_record_shows_a_few_times(samples: int) -> None:
+    """Of two joints over 200 records of five or ten correlation times; the first often show none.
+
+    Errors of joints by themselves, with the variances as they seem, are exceeded 1.3 to 1.6 times.
+    """
+    truth, ratios = np.arange(1.0, 5.0), []
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        W = np.zeros((samples, 2, 4))
+        for joint in range(2):
+            W[:, joint, 2 * joint] = 1.0
+            W[:, joint, 2 * joint + 1] = smooth(samples, 1, rng, reach=40)[:, 0]
+        noise = [lasting(samples, 2.0, rng) + rng.standard_normal(samples) for _ in range(2)]
+        rows = plain(W, W @ truth + np.column_stack(noise), H)
+        estimates = least_squares(rows).fit.estimates
+        errors = autocovariance_errors(rows, estimates, np.ones(2))
+        ratios.append((estimates - truth) / errors)
+    sizes = np.sqrt(np.mean(np.square(ratios), axis=0))
+    assert np.all((sizes > 0.75) & (sizes < 1.1))
+    assert np.mean(np.abs(ratios) > 3.0) < 0.015
+
+
 @pytest.mark.parametrize("freedom", [5, 9, 19, 39, 127])
 def test_quantiles_of_student_are_those_of_scipy(freedom: int) -> None:
     assert quantile(0.975, freedom) == pytest.approx(scipy.stats.t.ppf(0.975, freedom), rel=2e-3)

@@ -10,7 +10,7 @@ place of a window).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,7 @@ SHORT, LONG = 0.1, 4.0  # s: the lags to which the exponential is fitted
 TIMES: Array = np.asarray(
     np.geomspace(0.05, LONG, 12), dtype=np.float64
 )  # s: the correlation times that are tried
+FEWEST = 4.0  # degrees of freedom of the variance of slow noise, however short the record
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,8 @@ class Noise:
     """
 
     white: float
-    coloured: float
-    time: float
+    coloured: float = 0.0
+    time: float = LONG
 
 
 def autocovariance_errors(rows: Rows, estimates: Array, weights: Array) -> Array:
@@ -52,37 +53,112 @@ def autocovariance_errors(rows: Rows, estimates: Array, weights: Array) -> Array
         return np.full(parameters, np.nan)
     inverse = np.asarray(np.linalg.inv(gram), dtype=np.float64)
     middle = np.zeros((parameters, parameters))
+    scales = rows.scales * weights
     taken = absorbed(rows, weights, inverse, TIMES.tolist())
-    for j, weight in enumerate(weights):
-        scales = rows.scales[:, j] * weight
-        noise = noise_of(residuals[:, j], scales > 0.0, bins, length * rows.h, taken[j])
-        scores = scaled[:, j] * scales[:, None]
+    noises = noises_of(residuals, scales > 0.0, bins, length * rows.h, taken)
+    for j, noise in enumerate(noises):
+        scores = scaled[:, j] * scales[:, j, None]
         middle += noise.white * scores.T @ scores
         if noise.coloured > 0.0:
             middle += noise.coloured * _correlated(scores, bins, length * rows.h / noise.time)
     return np.asarray(np.sqrt(np.maximum(np.diag(inverse @ middle @ inverse), 0.0)))
 
 
-def noise_of(residual: Array, counts: Marks, bins: Numbers, h: float, taken: Array) -> Noise:
-    """The noise of one joint, from its residual (samples) in bins of h [s].
+def noises_of(
+    residuals: Array, counts: Marks, bins: Numbers, h: float, taken: Array
+) -> list[Noise]:
+    """The noise of each joint, from the residuals (samples, joints) in bins of h [s].
 
-    Only the samples that count are used. taken (TIMES, LAGS): the part of the autocovariance of
-    unit noise that the fit has absorbed.
+    Only the samples that count are used. taken (joints, TIMES, LAGS): the part of the
+    autocovariance of unit noise that the fit has absorbed.
+
+    A record of a few correlation times often shows no slow noise in a joint that has it. Therefore
+    each joint is given at least as much of it, relative to its residual, as the joints have on
+    average.
     """
-    size = int(bins[-1]) + 1
-    rows = np.bincount(bins, counts, size)
-    means = np.bincount(bins, residual * counts, size) / np.maximum(rows, 1.0)
-    last = min(round(LONG / h), size // 2)
-    first = max(1, round(SHORT / h))
-    gamma, pairs = _autocovariance(means, rows > 0.0, last)
-    if last <= first or not pairs[0]:
-        return Noise(float(np.mean(residual[counts] ** 2)) if counts.any() else 0.0, 0.0, LONG)
-    lags = h * np.arange(last + 1, dtype=np.float64)
-    shapes = np.exp(-lags / TIMES[:, None]) - [np.interp(lags, LAGS, part) for part in taken]
-    coloured, best = _nearest(gamma[first:], pairs[first:], shapes[:, first:])
-    short = gamma[:first] - coloured * shapes[best, :first]
-    white = max(2.0 * float(short.sum()) - float(short[0]), 0.0)
-    return Noise(white * float(np.mean(rows[rows > 0.0])), coloured, float(TIMES[best]))
+    last, first = min(round(LONG / h), int(bins[-1] + 1) // 2), max(1, round(SHORT / h))
+    if last <= first:
+        squares = np.sum(residuals**2 * counts, axis=0) / np.maximum(counts.sum(axis=0), 1)
+        return [Noise(float(square)) for square in squares]
+    joints = zip(residuals.T, counts.T, taken, strict=True)
+    seen = [_Seen.of(*joint, bins, h, last) for joint in joints]
+    noisy = [one for one in seen if one.gamma[0] > 0.0]
+    least = _common(noisy).slow(first) if noisy else _Slow(0.0, 0)
+    return [one.noise(first, least) for one in seen]
+
+
+@dataclass(frozen=True)
+class _Slow:
+    """A part of an autocovariance that decays with TIMES[`number`]."""
+
+    variance: float
+    number: int
+
+    @property
+    def power(self) -> float:
+        """Its power at low frequencies."""
+        return self.variance * float(TIMES[self.number])
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """The autocovariance `gamma` (lags) of a residual, from so many `pairs` of bins of h [s].
+
+    Slow noise of unit variance is expected to leave `shapes` (TIMES, lags) of it. A bin has so many
+    `rows`.
+    """
+
+    gamma: Array
+    pairs: Array
+    shapes: Array
+    rows: float
+    h: float
+
+    @classmethod
+    def of(
+        cls, residual: Array, counts: Marks, taken: Array, bins: Numbers, h: float, last: int
+    ) -> _Seen:
+        """At lags from 0 to `last` bins."""
+        size = int(bins[-1]) + 1
+        rows = np.bincount(bins, counts, size)
+        means = np.bincount(bins, residual * counts, size) / np.maximum(rows, 1.0)
+        gamma, pairs = _autocovariance(means, rows > 0.0, last)
+        lags = h * np.arange(last + 1, dtype=np.float64)
+        shapes = np.exp(-lags / TIMES[:, None]) - [np.interp(lags, LAGS, part) for part in taken]
+        return cls(gamma, pairs, shapes, float(counts.sum()) / max(pairs[0], 1.0), h)
+
+    def slow(self, first: int) -> _Slow:
+        """The part from the lag `first` on: the multiple of a shape that is nearest to it."""
+        gamma, pairs, shapes = self.gamma[first:], self.pairs[first:], self.shapes[:, first:]
+        sizes = np.maximum((shapes * pairs) @ gamma / ((shapes**2) @ pairs + 1e-300), 0.0)
+        best = int(np.argmin(((gamma - sizes[:, None] * shapes) ** 2) @ pairs))
+        return _Slow(float(sizes[best]), best)
+
+    def noise(self, first: int, least: _Slow) -> Noise:
+        """White and slow noise; the latter has at least this power, relative to the residual."""
+        least = _Slow(least.variance * float(self.gamma[0]), least.number)
+        slow = max(self.slow(first), least, key=lambda one: one.power)
+        short = self.gamma[:first] - slow.variance * self.shapes[slow.number, :first]
+        white = max(2.0 * float(short.sum()) - float(short[0]), 0.0)
+        time = float(TIMES[slow.number])
+        return Noise(white * self.rows, self.unknown(time) * slow.variance, time)
+
+    def unknown(self, time: float) -> float:
+        """How many times as large the variance of slow noise is, on average, as it seems.
+
+        That of noise with the correlation time T has nu = duration / T degrees of freedom, with
+        which the mean of the variances that may have led to the one that is seen is nu / (nu - 2)
+        of it.
+        """
+        freedom = max(float(self.pairs[0]) * self.h / time, FEWEST)
+        return freedom / (freedom - 2.0)
+
+
+def _common(seen: list[_Seen]) -> _Seen:
+    """The mean over joints of what is seen of them, relative to the variance of each."""
+    parts = [(one.gamma / one.gamma[0], one.pairs, one.shapes) for one in seen]
+    gamma, pairs, shapes = (np.mean(part, axis=0) for part in zip(*parts, strict=True))
+    return replace(seen[0], gamma=gamma, pairs=pairs, shapes=shapes)
 
 
 def _autocovariance(x: Array, known: Marks, last: int) -> tuple[Array, Array]:
@@ -92,14 +168,6 @@ def _autocovariance(x: Array, known: Marks, last: int) -> tuple[Array, Array]:
     pairs = np.array([marks[lag:] @ marks[: size - lag] for lag in range(last + 1)])
     sums = np.array([x[lag:] @ x[: size - lag] for lag in range(last + 1)])
     return sums / np.maximum(pairs, 1.0), pairs
-
-
-def _nearest(gamma: Array, pairs: Array, shapes: Array) -> tuple[float, int]:
-    """c and the number of the shape for which c times it is nearest to gamma; c is not < 0."""
-    sizes = np.maximum((shapes * pairs) @ gamma / ((shapes**2) @ pairs + 1e-300), 0.0)
-    errors = ((gamma - sizes[:, None] * shapes) ** 2) @ pairs
-    best = int(np.argmin(errors))
-    return float(sizes[best]), best
 
 
 def _correlated(scores: Array, bins: Numbers, decay: float) -> Array:
