@@ -7,13 +7,12 @@ nothing in it was chosen with them.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
+from altered import Change, altered, clipped, drifted, hurried, loose, pulled, saturated
 from arms import URDFS, described
 
 from scarid_cli.algorithms.choices.registry import EXCITATIONS
@@ -27,7 +26,7 @@ from scarid_cli.algorithms.sensors import building
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.arrays import Array
 from scarid_cli.cli.imperfections import imperfections
-from scarid_cli.io.table import Metadata, Table, concatenated, matrix, with_columns
+from scarid_cli.io.table import Metadata, Table, concatenated
 from scarid_cli.stages.resample import resample
 from scarid_cli.stages.simulate import simulate
 from scarid_cli.stages.trajgen import tabulate
@@ -37,7 +36,6 @@ CONTROL = 1000.0  # Hz
 RESAMPLED = {"lost-rows", "position-rate", "torque-rate"}
 FLEXIBLE, CONSTANTS = "flexible joint", "motor constant"
 Given = dict[str, tuple[float, ...]]
-Recorded = tuple[Array, Array, Array]  # t (samples), q and tau (joints, samples)
 
 
 @dataclass(frozen=True)
@@ -56,7 +54,8 @@ class Condition:
     excitation: str = "quintic"
     speed: float = 1.0  # of the limits; those of the acceleration are multiplied by its square
     stroke: float = np.inf  # rad or m, to both sides of the home position
-    altered: Callable[[Robot, Recorded], Recorded] | None = None
+    altered: Change | None = None
+    gain_error: float = 0.0  # of the torque constants, that is stated to the blind procedure
 
 
 def _friction(name: str, imperfection: str, share: float, **more: tuple[float, ...]) -> Condition:
@@ -69,51 +68,7 @@ def _noise(name: str, imperfection: str, factor: float, **more: tuple[float, ...
     return Condition(name, given, {imperfection: ("noise", factor)})
 
 
-def _coulomb(robot: Robot) -> Array:
-    """The Coulomb friction of each joint (joints, 1)."""
-    joints = range(1, len(robot.joints) + 1)
-    return np.abs([[robot.value("coulomb", i)] for i in joints])
-
-
-def _pulled(robot: Robot, log: Recorded) -> Recorded:
-    """A cable pulls with a fifth of the Coulomb friction per rad."""
-    t, q, tau = log
-    home = Limits.of(robot.joints).home[:, None]
-    return t, q, tau + 0.2 * _coulomb(robot) * (q - home)
-
-
-def _saturated(_: Robot, log: Recorded) -> Recorded:
-    """The motor constant is 1 % smaller at the largest torque."""
-    t, q, tau = log
-    size = np.abs(tau)
-    return t, q, tau * (1.0 - 0.01 * size / size.max(axis=1, keepdims=True))
-
-
-def _drifted(robot: Robot, log: Recorded) -> Recorded:
-    """The torque drifts by a fifth of the Coulomb friction, half below and half above the truth."""
-    t, q, tau = log
-    return t, q, tau + 0.2 * _coulomb(robot) * (t / t[-1] - 0.5)
-
-
-def _clipped(_: Robot, log: Recorded) -> Recorded:
-    """The logged torque ends at four fifths of its largest value."""
-    t, q, tau = log
-    most = 0.8 * np.abs(tau).max(axis=1, keepdims=True)
-    return t, q, np.clip(tau, -most, most)
-
-
-def _loose(_: Robot, log: Recorded) -> Recorded:
-    """The encoder is 0.2 mrad ahead in the direction of the torque."""
-    t, q, tau = log
-    return t, q + 2e-4 * np.sign(tau), tau
-
-
-def _hurried(_: Robot, log: Recorded) -> Recorded:
-    """The clock of the log is 0.1 % slow."""
-    t, q, tau = log
-    return 1.001 * t, q, tau
-
-
+OFF: Given = {"torque-constant-error": (0.01,)}
 CONDITIONS = [
     Condition("clean"),
     *[Condition(f"{bits} bit", {"encoder-bits": (bits,)}) for bits in (12, 14, 20)],
@@ -147,13 +102,15 @@ CONDITIONS = [
     Condition("lost rows", {"lost-rows": (0.01,)}),
     Condition("held samples", {"repeated-rows": (0.02,)}),
     Condition("standstill", {"standstill-before": (5.0,), "standstill-after": (5.0,)}),
-    Condition("cable pulls", altered=_pulled),
-    Condition("motor saturates", altered=_saturated),
-    Condition("torque drifts", altered=_drifted),
-    Condition("torque clipped", altered=_clipped),
-    Condition("backlash", altered=_loose),
-    Condition("clock 0.1 % off", altered=_hurried),
-    Condition(f"{CONSTANTS} 1 % off", {"torque-constant-error": (0.01,)}),
+    Condition("cable pulls", altered=pulled),
+    Condition("motor saturates", altered=saturated),
+    Condition("motor saturates, stated", altered=saturated, gain_error=0.005),
+    Condition("torque drifts", altered=drifted),
+    Condition("torque clipped", altered=clipped),
+    Condition("backlash", altered=loose),
+    Condition("clock 0.1 % off", altered=hurried),
+    Condition(f"{CONSTANTS} 1 % off", OFF),
+    Condition(f"{CONSTANTS} 1 % off, stated", OFF, gain_error=0.01),
 ]
 
 
@@ -265,19 +222,8 @@ def log(robot: Robot, condition: Condition, seed: int, *, truth: bool = False) -
         table = resample(table, condition.rate)
     batches = list(table.batches)
     if condition.altered:
-        batches = [_altered(concatenated(batches), robot, condition.altered)]
+        batches = [altered(concatenated(batches), robot, condition.altered)]
     return replace(table, batches=batches)  # type: ignore[arg-type]
-
-
-def _altered(
-    batch: pa.RecordBatch, robot: Robot, change: Callable[[Robot, Recorded], Recorded]
-) -> pa.RecordBatch:
-    """The measurement after a change of its time, positions and torques."""
-    joints = range(1, len(robot.joints) + 1)
-    q, tau = ([f"{symbol}{i}" for i in joints] for symbol in ("q", "tau"))
-    t, *values = change(robot, (matrix(batch, ["t"])[0], matrix(batch, q), matrix(batch, tau)))
-    new = dict(zip(["t", *q, *tau], [t, *values[0], *values[1]], strict=True))
-    return with_columns(batch, batch.schema, new)
 
 
 def truth_of(robot: Robot, condition: Condition) -> Array:

@@ -115,19 +115,22 @@ class Judged:
     noise: float
 
 
-def blind(name: str, measured: Table) -> tuple[Table, float]:
-    """What `scarid identify --robot NAME LOG` finds, and the noise of the positions."""
+def blind(name: str, measured: Table, gain_error: float = 0.0) -> tuple[Table, float]:
+    """What `scarid identify --robot NAME LOG` finds, and the noise of the positions.
+
+    `gain_error` is the relative error of the torque constants that is stated to it.
+    """
     robot = robot_named(name)
     motion, found, _ = motion_of(again(measured), robot, lambda: None, [])
-    treatment = Treatment(counting=_counting(motion), align=True)
+    treatment = Treatment(counting=_counting(motion), align=True, gain_error=gain_error)
     solver = ESTIMATORS.load("gls")()
     zeros = np.zeros(len(robot.names))
     return identify(motion, robot, solver, zeros, treatment=treatment), found.noise
 
 
-def judged(name: str, truth: Array, measured: Table, seed: int) -> Judged:
+def judged(name: str, truth: Array, measured: Table, seed: int, gain_error: float = 0.0) -> Judged:
     """The blind procedure on a log of a robot with these parameters."""
-    result, noise = blind(name, measured)
+    result, noise = blind(name, measured, gain_error)
     (batch,) = result.batches
     estimates, errors, low, high = (
         batch.column(c).to_numpy(zero_copy_only=False)
@@ -160,7 +163,7 @@ def run(name: str, condition: Condition, seed: int) -> Run:
     """One log of a robot under a condition."""
     robot = robot_named(name)
     measured, truth = log(robot, condition, seed), truth_of(robot, condition)
-    found = judged(name, truth, measured, seed)
+    found = judged(name, truth, measured, seed, condition.gain_error)
     off_by = partial(torque_error, name, truth, seed)
     others = hindsight(robot, measured, found.noise)
     return Run(
