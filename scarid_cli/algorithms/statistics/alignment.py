@@ -33,6 +33,11 @@ class Lead:
     low_pass: bool = False
     doubt: Array | None = None
 
+    def part(self, kept: list[int]) -> Lead:
+        """The lead with these columns alone."""
+        doubt = None if self.doubt is None else self.doubt[kept]
+        return replace(self, theta=self.theta[kept], doubt=doubt)
+
 
 @dataclass(frozen=True)
 class Aligned:

@@ -12,7 +12,7 @@ from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.alignment import aligned
+from scarid_cli.algorithms.statistics.alignment import Lead, aligned
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
@@ -27,9 +27,8 @@ class Problem:
 
     The first `own` columns of W belong to the robot's parameters, the others to nuisance
     parameters. `record` has the blocks of all rows if `rows` are a subsample. `model` is None if
-    the columns of W are not those of the robot's regressor. `delay` [s] is that of the torques,
-    None if it was not fitted; with `low_pass` they lead as behind a low-pass. `doubt` (own) is how
-    far the estimates may be off because that is not certain.
+    the columns of W are not those of the robot's regressor. `lead` is that of the torques, None if
+    it was not fitted; what remains of it is the parameter after the robot's.
     """
 
     rows: Rows
@@ -37,18 +36,22 @@ class Problem:
     own: int
     record: Blocks | None
     model: Model | None
-    delay: float | None = None
-    low_pass: bool = False
-    doubt: Array | None = None
+    lead: Lead | None = None
+
+    @property
+    def rest(self) -> float:
+        """What remains of the delay [s] in these rows."""
+        return float(self.found.fit.estimates[self.own]) if self.lead else 0.0
 
     def diagnostics(self, gain_error: float) -> Diagnostics:
+        doubt = self.lead.doubt if self.lead else None
         return diagnose(
             self.rows,
             self.found,
             self.own,
             self.record,
             model=self.model,
-            doubt=self.doubt,
+            doubt=None if doubt is None else doubt[: self.own],
             gain_error=gain_error,
         )
 
@@ -66,7 +69,7 @@ class Problem:
             own=own,
             record=self.record.columns(to.kept) if self.record else None,
             model=self.model and replace(self.model, kept=to.kept[:own]),
-            doubt=None if self.doubt is None else self.doubt[to.kept[:own]],
+            lead=self.lead and self.lead.part(to.kept),
         )
 
 
@@ -118,9 +121,9 @@ def outcome(
             diagnostics = problem.diagnostics(treatment.gain_error)
     own, fit = problem.own, problem.found.fit
     kept = (reduction.kept if reduction else list(range(own)))[:own]
-    delay, rest = None, 0.0
-    if problem.delay is not None:
-        delay, rest = (problem.delay, float(diagnostics.scatter[own])), float(fit.estimates[own])
+    lead, delay = problem.lead, None
+    if lead:
+        delay = lead.seconds + problem.rest, float(diagnostics.scatter[own])
     return Outcome(
         found=replace(problem.found, fit=fit.part(slice(own))),
         diagnostics=diagnostics,
@@ -129,10 +132,10 @@ def outcome(
         full=whole.found.fit.part(slice(whole.own)),
         covariance=covariance,
         delay=delay,
-        low_pass=problem.low_pass,
+        low_pass=lead is not None and lead.low_pass,
         excitation=_excitation(whole),
         samples=end.subsample.total,
-        evidence=_evidence(whole, fit.estimates[:own], kept, rest),
+        evidence=_evidence(whole, fit.estimates[:own], kept, problem.rest),
     )
 
 
@@ -166,12 +169,7 @@ def _problem(
         per_row = factor**end.subsample.thin
         rows, record = faded(rows, per_row), record and record.faded(factor)
         found = replace(found, scores=replace(found.scores, forgetting=per_row))
-    problem = Problem(rows, found, own, record, model)
-    if fitted is None:
-        return problem
-    lead = fitted.lead
-    doubt = None if lead.doubt is None else lead.doubt[:own]
-    return replace(problem, delay=fitted.delay, low_pass=lead.low_pass, doubt=doubt)
+    return Problem(rows, found, own, record, model, fitted.lead if fitted else None)
 
 
 def _noise(problem: Problem, diagnostics: Diagnostics, counted: int) -> Noise:
