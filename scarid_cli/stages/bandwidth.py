@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import isfinite, log2, nan
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.equivalent import chain, equivalent, typed
+from scarid_cli.algorithms.tuning.lead import without_lead
 from scarid_cli.algorithms.tuning.likelihood import noise_floor
 from scarid_cli.algorithms.tuning.lowpassed import ORDER, Segment, removed
 from scarid_cli.algorithms.tuning.scatter import Choice, Scatter, chosen, curve
@@ -19,6 +20,9 @@ from scarid_cli.algorithms.tuning.search import Trial
 from scarid_cli.errors import BadData
 from scarid_cli.stages.record import Record
 from scarid_cli.stages.tune import BANDWIDTH, SCATTER, Progress, Tried, nearest
+
+CHOICES = 3  # at most, each without the lead of the torques behind the cut-off of the one before
+NEAR = 0.1  # octaves between two cut-offs that count as the same
 
 
 @dataclass(frozen=True)
@@ -57,14 +61,26 @@ def bandwidth(record: Record, robot: Robot, progress: Progress = lambda: None) -
     """The cut-off at which the parameters of this robot scatter least."""
     segments = record.segments
     points = curve(robot, segments, record.h, progress)
-    if not any(isfinite(point.scatter) for point in points):
+    if not _known(points):
         raise BadData(
             f"{record.name}: too few rows are away from reversals and standstill to choose a "
             f"bandwidth for the {len(robot.parameters)} parameters of {robot.name}; give a longer "
             "log, in which every joint moves"
         )
+    for _ in range(CHOICES):
+        before = chosen(points).cutoff
+        steady = without_lead(robot, segments, record.h, before)
+        again = curve(robot, steady, record.h, progress) if steady else []
+        points = again if _known(again) else points
+        if not again or abs(log2(chosen(points).cutoff / before)) < NEAR:
+            break
     choice = chosen(points)
     return Bandwidth(choice, tuple(points), _noise(segments, record.h, choice.cutoff))
+
+
+def _known(points: Sequence[Scatter]) -> bool:
+    """Whether the rows determine the parameters at any cut-off."""
+    return any(isfinite(point.scatter) for point in points)
 
 
 def _noise(segments: Sequence[Segment], h: float, cutoff: float) -> float:

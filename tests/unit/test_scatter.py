@@ -121,7 +121,7 @@ def test_the_jackknife_is_that_of_the_rows() -> None:
     rng = np.random.default_rng(1)
     W, tau = rng.standard_normal((200, 1, 3)), rng.standard_normal((1, 200))
     counts = np.ones((1, 200), dtype=bool)
-    sums = scatter._sums(W, tau, counts)
+    sums = scatter.sums_of(W, tau, counts)
     value = scatter._jackknife(sums, counts.sum(axis=1), np.array([tau.var()]))
     thetas = []
     for k in range(scatter.PARTS):

@@ -29,15 +29,15 @@ def shifted(rows: Rows, shift: float) -> Rows:
     if not shift:
         return rows
     here = np.arange(rows.samples)
-    nodes = _nodes(-shift)
-    places = here[:, None] + nodes
+    around = nodes(-shift)
+    places = here[:, None] + around
     inside = np.clip(places, 0, rows.samples - 1)
-    known = (places == inside) & (rows.at[inside] == rows.at[:, None] + nodes)
+    known = (places == inside) & (rows.at[inside] == rows.at[:, None] + around)
     # The torque of a sample belongs to the motion that many samples later.
     motion, of_motion = rows.motion.copy(), np.clip(here + round(shift), 0, rows.samples - 1)
     torques = np.concatenate((rows.y, motion[3].T), axis=1)
     directions = np.tile(_directions(rows)[of_motion], 2)
-    y, torque = np.split(_interpolated(torques, directions, inside, -shift), 2, axis=1)
+    y, torque = np.split(interpolated(torques, directions, inside, -shift), 2, axis=1)
     motion[3] = torque.T
     scales = rows.scales * known.all(axis=1)[:, None]
     return replace(rows, y=np.ascontiguousarray(y), scales=scales, motion=motion)
@@ -52,10 +52,10 @@ def led(rows: Rows, predicted: Array, delay: float, *, low_pass: bool = False) -
     if low_pass:
         predicted = predicted - bend(rows, predicted, delay)
     samples = delay / rows.h if rows.h > 0.0 else 0.0
-    places = np.arange(rows.samples)[:, None] + _nodes(samples)
+    places = np.arange(rows.samples)[:, None] + nodes(samples)
     for run in runs(rows.at):
         places[run] = np.clip(places[run], run.start, run.stop - 1)
-    return _interpolated(predicted, _directions(rows), places, samples)
+    return interpolated(predicted, _directions(rows), places, samples)
 
 
 def in_step(rows: Rows, theta: Array, delay: float, *, low_pass: bool = False) -> Rows:
@@ -80,13 +80,13 @@ def bend(rows: Rows, predicted: Array, delay: float) -> Array:
     return found
 
 
-def _nodes(samples: float) -> Numbers:
+def nodes(samples: float) -> Numbers:
     """The samples around an instant that is so many samples later."""
     whole = int(np.floor(samples))
     return whole + (NODES if samples > whole else NODES[NODES == 0])
 
 
-def _interpolated(x: Array, directions: Array, places: Numbers, samples: float) -> Array:
+def interpolated(x: Array, directions: Array, places: Numbers, samples: float) -> Array:
     """x (samples, joints) so many samples later, from the samples in these places (samples, nodes).
 
     directions: those of the joints at each sample of x.

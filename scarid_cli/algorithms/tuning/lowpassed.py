@@ -47,10 +47,14 @@ class Segment:
 
 @dataclass(frozen=True)
 class Lowpassed:
-    """Position, velocity, acceleration, torque and whether a row counts (joints, samples)."""
+    """Position, velocity, acceleration, torque and whether a row counts (joints, samples).
+
+    The samples are `interval` [s] apart.
+    """
 
     motion: tuple[Array, Array, Array, Array]
     counts: Numbers
+    interval: float
 
 
 def lowpassed(segment: Segment, h: float, cutoff: float) -> Lowpassed | None:
@@ -65,10 +69,11 @@ def lowpassed(segment: Segment, h: float, cutoff: float) -> Lowpassed | None:
     q, tau = (_both_ways(x, lowpass, padding, h) for x in (segment.q, segment.tau))
     inner = slice(end, q.shape[1] - end)
     dq, ddq = (_differences(q, taps) for taps in (FIRST / h, SECOND / h**2))
-    every = slice(None, None, _stride(q.shape[1], h, cutoff))
+    stride = _stride(q.shape[1], h, cutoff)
+    every = slice(None, None, stride)
     counts = _counts(dq[:, inner], segment.noise, TWO_SIDED * cutoff, h)
     motion = (np.ascontiguousarray(x[:, inner][:, every]) for x in (q, dq, ddq, tau))
-    return Lowpassed(tuple(motion), counts[:, every])  # type: ignore[arg-type]  # four of them
+    return Lowpassed(tuple(motion), counts[:, every], stride * h)  # type: ignore[arg-type]
 
 
 def removed(segment: Segment, h: float, cutoff: float) -> Array:

@@ -110,13 +110,13 @@ def _scatter(robot: Robot, parts: Sequence[Lowpassed], cutoff: float) -> Scatter
     rows = counts.sum(axis=1)
     if not np.all(rows > count / joints + 1):
         return Scatter(cutoff, np.inf, int(rows.sum()), share)
-    sums = _sums(robot.regressor(q, dq, ddq), tau, counts)
+    sums = sums_of(robot.regressor(q, dq, ddq), tau, counts)
     variances = np.array([y[k].var() for y, k in zip(tau, counts, strict=True)])
     value = _jackknife(sums, rows, variances)
     return Scatter(cutoff, value, int(rows.sum()), share)
 
 
-def _sums(W: Array, tau: Array, counts: Numbers) -> Array:
+def sums_of(W: Array, tau: Array, counts: Numbers) -> Array:
     """[W y]'[W y] of the rows that count (parts, joints, parameters + 1, parameters + 1)."""
     samples, joints, count = W.shape
     edges = np.arange(PARTS + 1) * samples // PARTS
@@ -132,14 +132,14 @@ def _sums(W: Array, tau: Array, counts: Numbers) -> Array:
 def _jackknife(sums: Array, rows: Numbers, variances: Array) -> float:
     """The trace of the covariance of the parameters, in shares of the variance of the torques.
 
-    sums: of each part and joint, as `_sums` gives them; rows (joints); variances of the torques
+    sums: of each part and joint, as `sums_of` gives them; rows (joints); variances of the torques
     (joints).
     """
     p = sums.shape[-1] - 1
     total = sums.sum(axis=0)
-    weighted = np.tensordot(_inverse_variances(total, rows), sums, (0, 1))
+    weighted = np.tensordot(inverse_variances(total, rows), sums, (0, 1))
     whole = weighted.sum(axis=0)
-    estimates = _solved(whole - weighted)
+    estimates = solved(whole - weighted)
     off = estimates - estimates.mean(axis=0)
     driven = variances > 0.0
     shares = total[driven, :p, :p] / (rows * variances)[driven, None, None]
@@ -147,15 +147,15 @@ def _jackknife(sums: Array, rows: Numbers, variances: Array) -> float:
     return float((PARTS - 1) / PARTS * np.einsum("ki,ij,kj->", off, mean, off))
 
 
-def _inverse_variances(total: Array, rows: Numbers) -> Array:
+def inverse_variances(total: Array, rows: Numbers) -> Array:
     """The weight of each joint: one over the variance of its residual in a fit of its own rows."""
-    explained = (_solved(total) * total[:, :-1, -1]).sum(axis=1)
+    explained = (solved(total) * total[:, :-1, -1]).sum(axis=1)
     squares = np.maximum(total[:, -1, -1] - explained, EXACT * total[:, -1, -1])
     residuals = np.sqrt(squares / rows)
     return np.asarray(inverse_deviations(residuals) ** 2)
 
 
-def _solved(sums: Array) -> Array:
+def solved(sums: Array) -> Array:
     """The solution of the normal equations in [W y]'[W y], or of a stack of them.
 
     In units of the columns, a little is added to the diagonal, so that undetermined directions
