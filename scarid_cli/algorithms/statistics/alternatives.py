@@ -47,7 +47,7 @@ class Model:
     @property
     def transmits(self) -> Marks:
         """Which of the kept parameters are of torques that a joint transmits: all but friction."""
-        return self._marks(lambda term: not (term.NEVER_NEGATIVE or term.NAME in BESIDE_FRICTION))
+        return self._marks(transmitted)
 
     def link_torques(self, motion: Array, theta: Array) -> Array:
         """The torques (samples, joints) of the links alone, without friction and motors.
@@ -60,6 +60,11 @@ class Model:
 
     def _marks(self, chosen: Callable[[Term], bool]) -> Marks:
         return np.array([chosen(self.robot.parameters[i].term) for i in self.kept], dtype=bool)
+
+
+def transmitted(term: Term) -> bool:
+    """Whether a joint transmits the torques of this term: it is no friction, nor goes with it."""
+    return not (term.NEVER_NEGATIVE or term.NAME in BESIDE_FRICTION)
 
 
 def torque_columns(rows: Rows, model: Model | None, estimates: Array) -> dict[str, Array]:

@@ -23,6 +23,7 @@ from scarid_cli.algorithms.statistics.consequences import (
     gain_sensitivities,
 )
 from scarid_cli.algorithms.statistics.effects import Effect, Trial, of_low_pass
+from scarid_cli.algorithms.statistics.halves import Halves
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
     inflation,
@@ -44,7 +45,8 @@ class Diagnostics:
     `matrix` (own, own) is the covariance of the estimates with all of that. `blocks` is the
     effective number of blocks. `gains` (joints, own) is how far the estimates move per relative
     change of the torque constant of a joint. `bursts` are the intervals that the model does not
-    explain, counted from sample 0 of a record that is known as a whole.
+    explain, counted from sample 0 of a record that is known as a whole. `halves` are the estimates
+    of its halves, None if these do not determine them.
     """
 
     covariance: RobustCovariance | None
@@ -57,6 +59,7 @@ class Diagnostics:
     gains: Array
     consequences: Consequences
     bursts: tuple[Interval, ...] = ()
+    halves: Halves | None = None
 
 
 def diagnose(
@@ -85,7 +88,8 @@ def diagnose(
     covariance, blocks, errors = _noise_errors(white, found, record, fitted)
     estimates = found.fit.estimates
     trial = Trial.of(rows, own, weights, estimates, model=model, noise=noise)
-    scatter = errors * trial.longer(white)
+    longer = trial.longer(white)
+    scatter = errors * longer
     effects = trial.effects()
     if doubt is not None:
         effects = (*effects, of_low_pass(doubt))
@@ -110,6 +114,7 @@ def diagnose(
             rows.motion[0],
         ),
         bursts=() if record else _bursts(rows, estimates),
+        halves=trial.halves(longer),
     )
 
 

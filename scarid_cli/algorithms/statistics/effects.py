@@ -17,6 +17,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     torque_columns,
 )
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
+from scarid_cli.algorithms.statistics.halves import Halves, halves
 from scarid_cli.algorithms.statistics.jackknife import block_numbers, quantile
 from scarid_cli.algorithms.statistics.parallel import smoothed
 from scarid_cli.algorithms.statistics.products import Products, Solved, jackknifed
@@ -145,6 +146,10 @@ class Trial:
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = errors / jackknifed(self.plain.deviations)
         return np.asarray(np.where(ratios > 1.0, np.nan_to_num(ratios, posinf=1.0), 1.0))
+
+    def halves(self, longer: Array) -> Halves | None:
+        """The two halves of the record, with errors that are so many times those of blocks."""
+        return halves(self.beyond[0], longer, self.own) if self.plain else None
 
     def effects(self) -> tuple[Effect, ...]:
         """The effects of all alternatives that the rows determine."""

@@ -9,12 +9,19 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.alternatives import transmitted
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.parallel import SIGNALS
 from scarid_cli.algorithms.statistics.residuals import JointResidual
-from scarid_cli.algorithms.statistics.sentences import changed, listed, notes_of, percents
+from scarid_cli.algorithms.statistics.sentences import (
+    changed,
+    errors_in,
+    listed,
+    notes_of,
+    percents,
+)
 from scarid_cli.arrays import Array
 
 GOOD, DOUBTFUL, NOT_IDENTIFIABLE = "good", "doubtful", "not identifiable"
@@ -86,6 +93,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     wrong = [
         *_forgotten(evidence.diagnostics),
         *_biased(evidence),
+        *_changed(evidence, robot),
         *_poor(joints),
         *_vague(evidence),
         *_impossible(evidence, robot),
@@ -156,6 +164,25 @@ def _moved(evidence: Evidence, effect: Effect) -> str:
     if not effect.significant() or not far.any():
         return ""
     return changed(evidence.names, evidence.estimates, effect.apart, scatter, far)
+
+
+def _changed(evidence: Evidence, robot: Robot) -> list[str]:
+    """Parameters of the links that changed during the log; friction may warm up."""
+    halves = evidence.diagnostics.halves
+    if halves is None:
+        return []
+    friction = {p.name for p in robot.parameters if not transmitted(p.term)}
+    links = np.array([name not in friction for name in evidence.names])
+    moved = 0.5 * (halves.second - halves.first)
+    far = halves.differ(links) & (np.abs(moved) > PART * np.abs(evidence.estimates))
+    if not far.any():
+        return []
+    worst = int(np.argmax(np.where(far, np.abs(moved) / halves.errors, 0.0)))
+    size = errors_in(2.0 * float(np.abs(moved[worst]) / halves.errors[worst]))
+    return [
+        f"the halves of the log disagree: {evidence.names[worst]} is {halves.first[worst]:.3g} in "
+        f"the first and {halves.second[worst]:.3g} in the second ({size}): did the payload change?"
+    ]
 
 
 def _vague(evidence: Evidence) -> list[str]:
