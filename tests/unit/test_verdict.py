@@ -14,6 +14,7 @@ from scarid_cli.algorithms.statistics.alternatives import STRIBECK
 from scarid_cli.algorithms.statistics.consequences import Consequences
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
+from scarid_cli.algorithms.statistics.halves import Halves
 from scarid_cli.algorithms.statistics.parallel import SIGNALS
 from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
@@ -32,6 +33,12 @@ def effect(name: str, *, moved: float = 0.0, largest: float = 0.0) -> Effect:
     """One that moves the second parameter by so many standard errors of 0.01."""
     row = 0.01 * moved * np.eye(8)[1]
     return Effect(name, row, np.full(8, 0.001), row, largest, 8, BLOCKS)
+
+
+def halves(error: float = 0.01, **changes: float) -> Halves:
+    """Halves of which the second has other values of some parameters, whose value is 1."""
+    second = np.array([1.0 + changes.get(name, 0.0) for name in SCARA.names])
+    return Halves(np.ones(8), second, np.full(8, error), BLOCKS // 2)
 
 
 def evidence(**changes: object) -> Evidence:
@@ -138,6 +145,15 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             "doubtful",
             "predicted with 2.5 times the error of the fit at joint 2",
         ),
+        (
+            {"halves": halves(ZZ1R=0.3)},
+            "doubtful",
+            "the halves of the log disagree: ZZ1R is 1 in the first and 1.3 in the second (30 "
+            "standard errors): did the payload change?",
+        ),
+        ({"halves": halves(ZZ1R=0.05)}, "good", "8 of 8 parameters"),  # 5 standard errors
+        ({"halves": halves(ZZ1R=0.019, error=1e-4)}, "good", "8 of 8 parameters"),  # 1 %
+        ({"halves": halves(Fs1=0.3)}, "good", "8 of 8 parameters"),  # friction warms up
         ({"errors": np.full(8, 0.5)}, "good", "0 of 8 parameters known within 30 %"),
         ({"blocks": 3.2}, "doubtful", "forgetting leaves only 3.2 independent parts of the log"),
         ({"estimates": -np.ones(8)}, "doubtful", "the torques' sign seems reversed"),
