@@ -162,21 +162,6 @@ def test_intervals_allow_for_torques_that_the_model_lacks(tau: Change, name: str
     assert np.all(off < 3.0 * found.errors)
 
 
-def test_the_torque_interval_allows_for_a_motor_that_saturates() -> None:
-    """The real torque is not the logged one; a spring, however, is a part of the real torque."""
-    found = {tau: diagnosed(axis(tau)) for tau in (saturated, pulled)}
-    motion = moved()
-    W = AXIS.regressor(*motion)[:, 0]
-    off = W @ (least_squares(axis(saturated)) - AXIS.apriori)
-    real = np.std(off) / np.std(axis(saturated).y)
-    assert 0.5 * real < found[saturated].consequences.torque[0] < 2.0 * real
-    assert found[pulled].consequences.torque[0] < 0.1 * real
-
-
-def least_squares(rows: Rows) -> Array:
-    return estimated(ls.Estimator(), rows).fit.estimates
-
-
 def drifting(motion: Array) -> Array:
     """A force that is logged 5 N too low at the start and 5 N too high at the end."""
     return np.linspace(-5.0, 5.0, motion.shape[2])[None]

@@ -13,7 +13,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.estimation import Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.statistics.alternatives import CURVATURE, SATURATION, TORQUES, Model
+from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.bursts import Interval, bursts
 from scarid_cli.algorithms.statistics.consequences import (
@@ -137,10 +137,8 @@ def _stated(fit: Fit, scatter: Array, effects: tuple[Effect, ...], gains: Array)
     shifts = np.array([effect.bias for effect in effects]).reshape(-1, len(scatter))
     widest = np.max(shifts**2, axis=0, initial=0.0) + np.sum(gains**2, axis=0)
     moves = [(effect.name, effect.direction(scatter)) for effect in effects]
-    # What other columns gain the parameters lose: the torque on this motion remains what it was,
-    # unless the columns are those of a sensor.
-    beside = [name in TORQUES and name != SATURATION for name, _ in moves]
-    lasting = [move for (_, move), other in zip(moves, beside, strict=True) if not other]
+    # What other columns gain the parameters lose: the torque on this motion remains what it was.
+    lasting = [move for name, move in moves if name not in TORQUES]
     # Without its column this one would change the torque most, where `scarid urdf` must keep it.
     most = [move for name, move in moves if name != CURVATURE]
     return _Stated(
@@ -149,7 +147,7 @@ def _stated(fit: Fit, scatter: Array, effects: tuple[Effect, ...], gains: Array)
         uncertainty=Uncertainty(
             torque=_matrix(fit, scatter, [*lasting, *gains]),
             noise=_matrix(fit, scatter, []),
-            biases=shifts[beside],
+            biases=shifts[[effect.name in TORQUES for effect in effects]],
         ),
     )
 
