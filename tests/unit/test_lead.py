@@ -76,3 +76,12 @@ def padded(steady: Segment, like: Segment, same: slice) -> Array:
 
 def test_torques_in_step_remain_as_they_are() -> None:
     assert without_lead(AXIS, [axis(0.0)], H, CUTOFF) == []
+
+
+@pytest.mark.parametrize("rows", [101, 103, 110])
+def test_segments_of_hardly_a_row_behind_the_lowpass_are_left_out(rows: int) -> None:
+    """Between a low-pass's period at either end, a short segment has one row or none."""
+    late = axis(0.024)
+    short = Segment(late.q[:, :rows].copy(), late.tau[:, :rows].copy(), late.noise)
+    assert without_lead(AXIS, [short], H, 2.5) == []
+    assert without_lead(AXIS, [late, short], H, 2.5)

@@ -24,6 +24,7 @@ SLOPES = 3  # fits, each with the slope of the torques that the one before predi
 PHASE = 0.05  # rad at the cut-off, up to which a lead does not matter
 DEVIATIONS = 3.0  # standard errors, up to which it may be none
 LONGEST = 0.25  # of a segment
+FEWEST = 2  # rows of a segment that have a slope
 
 
 def without_lead(
@@ -37,6 +38,9 @@ def without_lead(
     longest = LONGEST * h * min(s.q.shape[1] for s in segments)
     for _ in range(FITS):
         parts = [part for s in steady if (part := lowpassed(s, h, cutoff))]
+        parts = [part for part in parts if part.counts.shape[1] >= FEWEST]
+        if not parts:
+            return []
         rest, error = _lead(robot, parts)
         seconds += rest
         least = max(PHASE / (2.0 * pi * cutoff), DEVIATIONS * error)
