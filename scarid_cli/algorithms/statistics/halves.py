@@ -39,9 +39,10 @@ def halves(products: Products, longer: Array, own: int) -> Halves | None:
     columns = [*range(products.parameters), products.blocks.shape[1] - 1]
     blocks = products.blocks[:, columns][:, :, columns]
     count = len(blocks) // 2
-    fits = [Products(x, products.parameters).solved([]) for x in (blocks[:count], blocks[-count:])]
-    if count < 2 or fits[0] is None or fits[1] is None:
+    first, second = (
+        Products(half, products.parameters).solved([]) for half in (blocks[:count], blocks[-count:])
+    )
+    if count < 2 or first is None or second is None:
         return None
-    squares = sum(jackknifed(fit.deviations) ** 2 for fit in fits if fit)
-    errors = np.asarray(longer * np.sqrt(squares))[:own]
-    return Halves(fits[0].whole[:own], fits[1].whole[:own], errors, count)
+    errors = longer * np.hypot(jackknifed(first.deviations), jackknifed(second.deviations))
+    return Halves(first.whole[:own], second.whole[:own], errors[:own], count)

@@ -15,7 +15,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.shifting import interpolated, nodes
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
-from scarid_cli.algorithms.tuning.scatter import PARTS, inverse_variances, solved, sums_of
+from scarid_cli.algorithms.tuning.scatter import PARTS, solved, sums_of, weighted_sums
 from scarid_cli.arrays import Array
 
 FITS = 5  # at most, each without the lead that those before have found
@@ -61,11 +61,9 @@ def _lead(robot: Robot, parts: Sequence[Lowpassed]) -> tuple[float, float]:
     for _ in range(SLOPES):
         slopes = [_slope(x @ theta[:-1], part.interval) for x, part in zip(W, parts, strict=True)]
         columns = [np.concatenate(x, axis=2) for x in zip(W, slopes, strict=True)]
-        sums = sums_of(np.concatenate(columns), tau, counts)
-        weights = inverse_variances(sums.sum(axis=0), counts.sum(axis=1))
-        weighted = np.tensordot(weights, sums, (0, 1))
-        theta = solved(weighted.sum(axis=0))
-    without = solved(weighted.sum(axis=0) - weighted)[:, -1]
+        sums = weighted_sums(sums_of(np.concatenate(columns), tau, counts), counts.sum(axis=1))
+        theta = solved(sums.sum(axis=0))
+    without = solved(sums.sum(axis=0) - sums)[:, -1]
     return float(theta[-1]), float(np.sqrt((PARTS - 1) * np.var(without)))
 
 

@@ -137,9 +137,8 @@ def _jackknife(sums: Array, rows: Numbers, variances: Array) -> float:
     """
     p = sums.shape[-1] - 1
     total = sums.sum(axis=0)
-    weighted = np.tensordot(inverse_variances(total, rows), sums, (0, 1))
-    whole = weighted.sum(axis=0)
-    estimates = solved(whole - weighted)
+    weighted = weighted_sums(sums, rows)
+    estimates = solved(weighted.sum(axis=0) - weighted)
     off = estimates - estimates.mean(axis=0)
     driven = variances > 0.0
     shares = total[driven, :p, :p] / (rows * variances)[driven, None, None]
@@ -147,7 +146,12 @@ def _jackknife(sums: Array, rows: Numbers, variances: Array) -> float:
     return float((PARTS - 1) / PARTS * np.einsum("ki,ij,kj->", off, mean, off))
 
 
-def inverse_variances(total: Array, rows: Numbers) -> Array:
+def weighted_sums(sums: Array, rows: Numbers) -> Array:
+    """The sums of each part, of all joints, each weighted by one over its variance."""
+    return np.tensordot(_inverse_variances(sums.sum(axis=0), rows), sums, (0, 1))
+
+
+def _inverse_variances(total: Array, rows: Numbers) -> Array:
     """The weight of each joint: one over the variance of its residual in a fit of its own rows."""
     explained = (solved(total) * total[:, :-1, -1]).sum(axis=1)
     squares = np.maximum(total[:, -1, -1] - explained, EXACT * total[:, -1, -1])
