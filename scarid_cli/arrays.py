@@ -7,6 +7,13 @@ Array = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.int64]
 Marks = npt.NDArray[np.bool_]
 
+CONSTANT = 1e-12  # share of the mean square, below which a variance is rounding
+
+
+def varies(about: Array | float, squares: Array | float) -> Marks:
+    """Whether values with these squares about their mean, and about zero, are not constant."""
+    return np.asarray(about > CONSTANT * np.asarray(squares))
+
 
 def median(values: Array) -> float:
     """The median of a vector, as numpy's, which would import numpy.ma; nan if a value is nan."""

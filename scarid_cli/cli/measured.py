@@ -34,15 +34,15 @@ def motion(
     for finding in of_measurement(replace(measurement, batches=iter(batches)), robot):
         job.say(f"warning: {finding.text}")
     measurement = replace(measurement, batches=iter(batches))
-    with steps(quiet=job.quiet) as progress, _explained(measurement):
+    with steps(quiet=job.quiet) as progress, explained(measurement):
         found, bandwidth, smoother = motion_of(measurement, robot, progress, job.left_out)
-    job.say(f"a measurement, not a motion: {bandwidth.text}")
+    job.say(f"velocities and accelerations are estimated from the positions: {bandwidth.text}")
     job.say(f"the same as: {_pipe(smoother, added, rates)}")
     return found
 
 
 @contextlib.contextmanager
-def _explained(measurement: Table) -> Iterator[None]:
+def explained(measurement: Table) -> Iterator[None]:
     """A log that cannot be used because its time is not in seconds is refused for this reason."""
     from scarid_cli.stages.glance import of_rate
 

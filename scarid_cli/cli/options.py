@@ -70,7 +70,6 @@ class Range:
 
 
 FINITE = Range()
-NOT_NEGATIVE = Range(0.0)
 POSITIVE = Range(0.0, open=True)
 
 

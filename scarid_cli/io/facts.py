@@ -83,6 +83,7 @@ CHECKS: dict[str, Check] = {
     "dropped": _list(text),
     "verdict": text,
     "reasons": _list(text),
+    "biased": truth,
     "evidence": _or_none(_evidence),
     "torque_constants": _or_none(_rows_of_joints),
     "joints": lambda x: _list(text)(x) or _list(_of({"deviation": _size}))(x),

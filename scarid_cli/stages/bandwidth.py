@@ -50,10 +50,10 @@ class Bandwidth:
     def text(self) -> str:
         """The choice in a line."""
         low, high = self.choice.plateau
-        where = f"from {low:.3g} to {high:.3g} Hz, where" if high > low else "at it, and"
+        where = f"from {low:.3g} to {high:.3g} Hz" if high > low else "there"
         return (
-            f"cut-off {self.choice.cutoff:.3g} Hz for all joints: the parameters scatter least "
-            f"{where} {100.0 * self.point.share:.0f} % of the rows count"
+            f"cut-off {self.choice.cutoff:.3g} Hz for all joints, because the parameters scatter "
+            f"least {where}; {100.0 * self.point.share:.0f} % of the rows count"
         )
 
 

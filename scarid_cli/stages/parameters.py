@@ -148,6 +148,7 @@ def _judged(evidence: Evidence, robot: Robot) -> dict[str, Any]:
         "scaled_condition_number": evidence.scaled_condition,
         "verdict": judged.grade,
         "reasons": list(judged.reasons),
+        "biased": judged.biased,
     }
 
 

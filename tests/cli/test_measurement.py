@@ -48,7 +48,7 @@ def test_the_printed_pipe_gives_the_same_bytes(options: str, shell: Run) -> None
     again = shell(line)
     assert again.out == once.out
     assert again.err.splitlines() == [
-        x for x in once.err.splitlines() if "measurement" not in x and "the same as" not in x
+        x for x in once.err.splitlines() if "are estimated from" not in x and "the same as" not in x
     ]
 
 
@@ -115,6 +115,21 @@ def test_rows_are_whitened_where_the_torque_has_a_part_that_lasts(shell: Run) ->
     weighted, whitened, dropped = (float(x) for x in result.out.split())
     assert abs(whitened - 0.07) < 0.5 * abs(weighted - 0.07)
     assert dropped == 0.0  # it is not essential
+
+
+@pytest.mark.parametrize(("torque", "told"), [("0", "not identifiable"), ("0.3", "doubtful")])
+def test_a_constant_torque_has_no_r2_and_does_not_disturb_the_other_joint(
+    torque: str, told: str, shell: Run
+) -> None:
+    """All torques of the second joint explain hardly any of the parameters of the first."""
+    whole = shell("scarid identify $SAMPLES/scara2.csv")
+    one = shell(
+        f"cut -d, -f-5 $SAMPLES/scara2.csv | sed -E '2,$s/[^,]+$/{torque}/' | scarid identify"
+    )
+    assert re.search(rf"identify: {told}: .*R2 0\.99\d\d, undefined", one.err)
+    _, _, expected, *_ = whole.out.splitlines()[1].split(",")
+    *_, low, high = one.out.splitlines()[1].split(",")
+    assert float(low) < float(expected) < float(high)
 
 
 def test_a_measurement_without_torques_is_refused(log: Path, tmp_path: Path, scarid: Run) -> None:

@@ -180,3 +180,15 @@ def test_a_log_that_does_not_move_leaves_no_files(tmp_path: Path, scarid: Run) -
     assert result.err.count("\n") == 1
     assert not saved.exists()
     assert not out.exists()
+
+
+@pytest.mark.parametrize("words", [("--robot", "scara2"), ("--method", "savgol")])
+def test_a_time_in_milliseconds_is_named(
+    words: tuple[str, ...], short: Path, tmp_path: Path, scarid: Run
+) -> None:
+    names, *rows = short.read_text("utf-8").splitlines()
+    late = (row.split(",", 1) for row in rows)
+    times = [f"{1000.0 * float(t):.0f},{rest}" for t, rest in late]
+    log = tmp_path / "ms.csv"
+    log.write_text("\n".join([names, *times, ""]))
+    assert "the time seems to be in ms" in scarid("tune", *words, log).err

@@ -89,6 +89,13 @@ def test_a_trend_is_that_of_weighted_least_squares() -> None:
         assert found.errors[i] == pytest.approx(np.sqrt(covariance[0, 0]))
 
 
+def test_estimates_without_errors_are_not_compared() -> None:
+    exact = Estimate(np.ones(P), np.zeros(P), FREEDOM, np.zeros((P, P)))
+    assert comparison(exact, exact).joint is None
+    for found in (comparison(exact, exact), trend([exact] * 3)):
+        assert np.isnan(found.p_values).all()
+
+
 @pytest.mark.parametrize("differing", [1, 5, 6])
 def test_a_message_names_up_to_five_parameters_and_says_if_there_are_more(differing: int) -> None:
     """Each is ten errors apart, and the errors are uncorrelated."""

@@ -87,8 +87,8 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         (
             {"effects": (effect(PARALLEL, **FAR),)},
             "doubtful",
-            "the estimates depend on the soft sensor: with derivatives and torques behind the same "
-            "low-pass, Fv1 would change from 1 to 0.96 (4 standard errors)",
+            "the estimates depend on the soft sensor: with the same low-pass for derivatives "
+            "and torques, Fv1 would change from 1 to 0.96 (4 standard errors)",
         ),
         (
             {"effects": (effect(PARALLEL), effect(SIGNALS, **FAR))},
@@ -103,6 +103,16 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             "good",
             "friction decreases with speed (add Stribeck friction with --estimator separable); the "
             "interval of Fv1 allows for it",
+        ),
+        (
+            consequence(inertia=np.array([0.45, 0.55])),
+            "good",
+            "the inertia of joint 2 is not known: do not predict the torques of faster motions",
+        ),
+        (
+            consequence(inertia=np.array([0.6, 2.0])),
+            "good",
+            "the inertia of joints 1 and 2 is not known",
         ),
         (
             {"joints": (GOOD, replace(GOOD, r2=0.3, torque=0.5))},
@@ -128,7 +138,7 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         (
             consequence(noise=np.array([0.1, 0.0])),
             "doubtful",
-            "determines the torque of joint 1 only within 20 %",
+            "torque of joint 1 is known only within 20 %",
         ),
         (
             consequence(torque=np.array([0.1, 0.1])),
@@ -138,7 +148,7 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         (
             consequence(torque=np.array([0.1, 0.2])),
             "doubtful",
-            "determines the torque of joint 2 only within 40 %",
+            "torque of joint 2 is known only within 40 %",
         ),
         (
             consequence(held_out=np.array([1.0, 2.5])),
@@ -155,7 +165,7 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         ({"halves": halves(ZZ1R=0.019, error=1e-4)}, "good", "8 of 8 parameters"),  # 1 %
         ({"halves": halves(Fs1=0.3)}, "good", "8 of 8 parameters"),  # friction warms up
         ({"errors": np.full(8, 0.5)}, "good", "0 of 8 parameters known within 30 %"),
-        ({"blocks": 3.2}, "doubtful", "forgetting leaves only 3.2 independent parts of the log"),
+        ({"blocks": 3.2}, "doubtful", "only 3.2 independent parts of the log count, too few"),
         ({"estimates": -np.ones(8)}, "doubtful", "the torques' sign seems reversed"),
         (
             {"estimates": np.array([1.0, -1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])},
@@ -187,7 +197,7 @@ def test_a_delay_is_not_advised_twice() -> None:
 
 def test_essential_parameters_are_not_advised_twice() -> None:
     poor = consequence(noise=np.array([0.5, 0.5]))
-    hint = "--essential leaves out the parameters that are not known"
+    hint = "try --essential, which leaves out the parameters that are not known"
     assert hint in verdict(evidence(**poor), SCARA).reasons
     assert hint not in verdict(evidence(treatment=Treatment(essential=True), **poor), SCARA).reasons
 

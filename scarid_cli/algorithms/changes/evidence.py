@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows, delay_column
-from scarid_cli.algorithms.statistics.jackknife import BLOCK_COUNTS, BLOCK_DURATION
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.algorithms.statistics.jackknife import block_numbers
+from scarid_cli.arrays import Array
 
 REFITS = 3  # times that the joints are weighted by their residuals
 LEAST = 1e-9  # of the rms torque of a joint: a smaller residual is rounding
@@ -79,13 +79,22 @@ def solved(gram: Array, right: Array) -> Array:
 
 def inverse(gram: Array) -> Array:
     """The pseudo-inverse of a Gram matrix whose columns may have any units."""
+    whitening, _ = roots(gram)
+    found: Array = whitening @ whitening.T
+    return found
+
+
+def roots(gram: Array) -> tuple[Array, Array]:
+    """V and U with V' gram V = 1, U V' = 1 and U U' = gram (columns, rank), in any units.
+
+    Directions that the Gram matrix leaves undetermined are left out.
+    """
     size = np.sqrt(np.diag(gram))
-    size[size == 0.0] = np.inf
+    size[size == 0.0] = 1.0
     values, vectors = np.linalg.eigh(gram / np.outer(size, size))
     kept = values > FLAT * values[-1]
-    scaled = vectors[:, kept] / size[:, None]
-    found: Array = (scaled / values[kept]) @ scaled.T
-    return found
+    root = np.sqrt(values[kept])
+    return vectors[:, kept] / root / size[:, None], vectors[:, kept] * root * size[:, None]
 
 
 def _without_leverage(scores: Array, grams: Array) -> Array:
@@ -94,13 +103,7 @@ def _without_leverage(scores: Array, grams: Array) -> Array:
     Each is divided by one minus the leverage of its block ("CR3"; Bell and McCaffrey 2002), which
     counts as at most MOST_LEVERAGE. `grams` (blocks, columns, columns) are W'W of each block.
     """
-    total = grams.sum(axis=0)
-    size = np.sqrt(np.diag(total))
-    size[size == 0.0] = 1.0
-    values, vectors = np.linalg.eigh(total / np.outer(size, size))
-    kept = values > FLAT * values[-1]
-    to = vectors[:, kept] / np.sqrt(values[kept]) / size[:, None]  # to' total to = 1
-    back = vectors[:, kept] * np.sqrt(values[kept]) * size[:, None]
+    to, back = roots(grams.sum(axis=0))
     larger = np.empty_like(scores)
     for b, gram in enumerate(grams):
         leverage, along = np.linalg.eigh(to.T @ gram @ to)
@@ -146,8 +149,5 @@ def _products(rows: Rows, theta: Array, delay: float) -> Array:
 
 def _blocks(rows: Rows) -> list[tuple[int, int]]:
     """The first sample of each block of half a second, and the one after its last."""
-    first, last = int(rows.at[0]), int(rows.at[-1]) + 1
-    count = int(np.clip(round((last - first) * rows.h / BLOCK_DURATION), *BLOCK_COUNTS))
-    block: Numbers = (rows.at - first) * count // (last - first)
-    edges = np.searchsorted(block, np.arange(count + 1)).tolist()
-    return [(a, b) for a, b in pairwise(edges) if b > a]
+    block, count = block_numbers(rows.at, rows.h)
+    return list(pairwise(np.searchsorted(block, np.arange(count + 1)).tolist()))

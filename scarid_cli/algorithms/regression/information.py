@@ -14,6 +14,7 @@ from scarid_cli.kernels import information
 RESIDUAL, UNIT, SAMPLE = "residual", "unit", "sample"
 ROUNDING = 1e-15  # the relative error of the largest eigenvalue of a matrix
 RUNNING = 4  # numbers of the running residual of a joint, see the kernel
+EXACT = 1e-6  # of the largest residual, below which that of another joint is rounding
 NOTHING = 1e-150  # a standard deviation whose square is not a number any more
 
 
@@ -191,11 +192,14 @@ def residual_deviation(state: Information) -> float:
 def inverse_deviations(deviations: Array) -> Array:
     """The weights of joints whose residuals have these standard deviations.
 
-    A joint that is fitted exactly, such as one without torque, must not outweigh all others.
+    A joint that is fitted exactly, such as one without torque, must not outweigh all others: it
+    counts as much as the joint with the largest residual.
     """
     largest = deviations.max()
-    least = 1e-6 * largest if largest > NOTHING else 1.0
-    return np.asarray(1.0 / np.maximum(deviations, least), dtype=np.float64)
+    if not largest > NOTHING:
+        return np.ones(len(deviations))
+    exact = deviations < EXACT * largest
+    return np.asarray(1.0 / np.where(exact, largest, deviations), dtype=np.float64)
 
 
 def weakest(covariance: Array) -> tuple[float, Array]:

@@ -96,4 +96,3 @@ class MX2(PlanarTerm):
 
 
 PLANAR_TERMS = {term.NAME: term for term in PlanarTerm.__subclasses__()}
-HORIZONTAL = ("ZZ1R", "ZZ2", "L1MX2", "L1MY2")  # all that an arm without gravity has

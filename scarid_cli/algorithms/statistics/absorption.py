@@ -58,17 +58,11 @@ class _Sums:
         numbers = intervals(rows.at // length, round(3.0 * LAGS[-1] / h) if h > 0.0 else 1)
         counts = (rows.scales > 0.0).astype(np.float64)
         scores = rows.W * (rows.scales**2 * weights)[:, :, None]
-        starts = np.flatnonzero(np.diff(numbers, prepend=-1))
-        size, at = int(numbers[-1]) + 1, numbers[starts]
-
-        def summed(x: Array) -> Array:
-            sums = np.zeros((size, *x.shape[1:]))
-            sums[at] = np.add.reduceat(x, starts)
-            return sums
-
-        count = summed(counts)
-        means = summed(rows.W * (counts * weights)[:, :, None])
-        return cls(summed(scores), means / np.maximum(count, 1.0)[:, :, None], count > 0.0, h)
+        count = summed(counts, numbers)
+        means = summed(rows.W * (counts * weights)[:, :, None], numbers)
+        return cls(
+            summed(scores, numbers), means / np.maximum(count, 1.0)[:, :, None], count > 0.0, h
+        )
 
     def taken(self, followed: Array, time: float) -> Iterator[Array]:
         """The part of the autocovariance (joints) that is taken out at each lag."""
@@ -85,12 +79,24 @@ class _Sums:
 
     def _correlated(self, keep: float) -> Array:
         """The sum over l of keep^|k - l| times the scores of interval l, for each interval k."""
-        before, after = np.zeros_like(self.scores), np.zeros_like(self.scores)
-        for k in range(1, len(before)):
-            before[k] = keep * (before[k - 1] + self.scores[k - 1])
-        for k in range(len(after) - 2, -1, -1):
-            after[k] = keep * (after[k + 1] + self.scores[k + 1])
-        return before + self.scores + after
+        before, after = decayed(self.scores, keep), decayed(self.scores[::-1], keep)[::-1]
+        return np.asarray(before + self.scores + after)
+
+
+def summed(x: Array, numbers: Numbers) -> Array:
+    """The sums of the rows of x with each of these ascending numbers, from 0."""
+    starts = np.flatnonzero(np.diff(numbers, prepend=-1))
+    sums = np.zeros((int(numbers[-1]) + 1, *x.shape[1:]))
+    sums[numbers[starts]] = np.add.reduceat(x, starts)
+    return sums
+
+
+def decayed(x: Array, keep: float) -> Array:
+    """The sum of keep^(k - l) x[l] over all l before k, for each k."""
+    before = np.zeros_like(x)
+    for k in range(1, len(x)):
+        before[k] = keep * (before[k - 1] + x[k - 1])
+    return before
 
 
 def _dot(a: Array, b: Array) -> Array:

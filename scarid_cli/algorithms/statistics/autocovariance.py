@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.statistics.absorption import LAGS, absorbed, intervals
+from scarid_cli.algorithms.statistics.absorption import LAGS, absorbed, decayed, intervals, summed
 from scarid_cli.arrays import Array, Marks, Numbers
 
 BIN = 0.025  # s: residuals and rows are summed over such intervals
@@ -172,11 +172,6 @@ def _autocovariance(x: Array, known: Marks, last: int) -> tuple[Array, Array]:
 
 def _correlated(scores: Array, bins: Numbers, decay: float) -> Array:
     """The sum over all pairs of rows of s_k exp(-decay |bin_k - bin_l|) s_l'."""
-    sums = np.zeros((int(bins[-1]) + 1, scores.shape[1]))
-    starts = np.flatnonzero(np.diff(bins, prepend=-1))
-    sums[bins[starts]] = np.add.reduceat(scores, starts)
-    keep, before = np.exp(-decay), np.zeros_like(sums)
-    for k in range(1, len(sums)):
-        before[k] = keep * (before[k - 1] + sums[k - 1])
-    cross = sums.T @ before
+    sums = summed(scores, bins)
+    cross = sums.T @ decayed(sums, float(np.exp(-decay)))
     return np.asarray(sums.T @ sums + cross + cross.T)

@@ -93,8 +93,11 @@ def comparison(first: Estimate, second: Estimate) -> Comparison:
 
 
 def trend(estimates: Sequence[Estimate]) -> Comparison:
-    """The change from one estimate to the next, by weighted least squares (at least three)."""
-    weights = np.array([1.0 / e.errors**2 for e in estimates])
+    """The change from one estimate to the next, by weighted least squares (at least three).
+
+    It is not known, nan, for a parameter of which an error is zero or not known.
+    """
+    weights = np.array([1.0 / np.where(e.errors > 0.0, e.errors, np.nan) ** 2 for e in estimates])
     values = np.array([e.values for e in estimates])
     at = np.arange(len(estimates), dtype=np.float64)[:, None]
     about = at - (weights * at).sum(axis=0) / weights.sum(axis=0)
@@ -147,6 +150,8 @@ def _joint(first: Estimate, second: Estimate, difference: Array, freedom: Array)
         return None
     total = first.covariance + second.covariance
     known = np.flatnonzero(np.diag(total) > 0.0)
+    if not len(known):
+        return None
     errors = np.sqrt(np.diag(total)[known])
     scaled = difference[known] / errors
     values, vectors = np.linalg.eigh(total[np.ix_(known, known)] / np.outer(errors, errors))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, varies
 from scarid_cli.kernels import moments
 
 # Count, mean, sums of squares about the mean, of errors and of torques (see kernels/moments.py).
@@ -43,7 +43,7 @@ class Quality:
         count, _, about, errors, squares = sums
         with np.errstate(divide="ignore", invalid="ignore"):
             return cls(
-                r2=float(1.0 - errors / about) if about > 0.0 else float("nan"),
+                r2=float(1.0 - errors / about) if varies(about, squares) else float("nan"),
                 rmse=float(np.sqrt(errors / count)),
                 relative_error=float(100.0 * np.sqrt(errors / squares)),
                 samples=int(count),

@@ -8,7 +8,7 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.arrays import Array, Marks, Numbers
+from scarid_cli.arrays import Array, Marks, Numbers, varies
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def _over_all_rows(joint: JointResidual, products: Array, estimates: Array) -> J
     return replace(
         joint,
         rows=int(rows),
-        r2=float(1.0 - left / about) if about > 0.0 else float("nan"),
+        r2=float(1.0 - left / about) if varies(about, squares) else float("nan"),
         deviation=float(np.sqrt(left / rows)),
         relative_error=float(100.0 * np.sqrt(left / squares)) if squares > 0.0 else float("nan"),
         torque=float(np.sqrt(squares / rows)),
@@ -74,14 +74,14 @@ def _joint(y: Array, residual: Array, counts: Marks, at: Numbers) -> JointResidu
     about = float(np.sum((y - y.mean()) ** 2))
     squares = float(r @ r)
     next_to = np.diff(at) == 1
-    spread = float(np.mean((r - r.mean()) ** 2))
+    spread = float(np.std(r))
     with np.errstate(divide="ignore", invalid="ignore"):
         return JointResidual(
             rows=len(y),
-            r2=1.0 - squares / about if about > 0.0 else nan,
+            r2=1.0 - squares / about if varies(about, float(y @ y)) else nan,
             deviation=float(np.sqrt(squares / len(r))),
             relative_error=float(100.0 * np.sqrt(squares / (y @ y))) if np.any(y) else nan,
             autocorrelation=float(np.sum((r[1:] * r[:-1])[next_to]) / squares) if squares else 0.0,
-            kurtosis=float(np.mean((r - r.mean()) ** 4) / spread**2 - 3.0) if spread else 0.0,
+            kurtosis=float(np.mean(((r - r.mean()) / spread) ** 4) - 3.0) if spread else 0.0,
             torque=float(np.sqrt(np.mean(y * y))),
         )

@@ -35,7 +35,7 @@ ADVICE = {
     DRIFT: "the torque drifts during the log",
     ENCODERS: "a position has an error that depends on the angle (an offset of the zero, or an "
     "eccentric encoder)",
-    ELASTICITY: "a transmission yields to the torque (an elastic gear or belt behind the encoder)",
+    ELASTICITY: "a transmission is elastic (a gear or a belt between encoder and link)",
     REVERSALS: "friction near reversals differs from the model (--drop-slow leaves more of the "
     "slow rows out)",
 }

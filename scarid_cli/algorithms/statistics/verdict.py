@@ -35,19 +35,21 @@ BLOCKS = 5.0  # effective blocks, below which errors cannot be stated
 HELD_OUT = 1.5  # times the residual of the fit that the one of held-out parts may reach
 VAGUE = 0.1  # of the torque: half the interval from noise above which it counts as not known
 UNKNOWN = 0.3  # of the torque: the same, of the interval that allows for all alternatives
-UNTESTED = "the estimates were not tested for bias"
-DEPENDENT = "the estimates depend on the soft sensor"
-APART = "torque and motion are not those of one instant"
-UNMATCHED = " (unless the motion is matched, use scarid differentiate --match)"
+UNMATCHED = " (if the motion was not matched, use scarid differentiate --match)"
 FEW = 3  # unknown parameters that are named
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """The grade and its reasons, each a clause without its full stop."""
+    """The grade and its reasons, each a clause without its full stop.
+
+    `biased` tells whether an alternative to the signals moves the estimates too far, or none could
+    be tried.
+    """
 
     grade: str
     reasons: tuple[str, ...]
+    biased: bool
 
 
 # What --require can ask for, from the least to the most.
@@ -55,11 +57,10 @@ IDENTIFIABLE, NOT_BIASED = "identifiable", "not-biased"
 REQUIREMENTS = (GOOD, NOT_BIASED, IDENTIFIABLE)
 
 
-def meets(required: str, grade: str, reasons: Sequence[str]) -> bool:
+def meets(required: str, grade: str, *, biased: bool) -> bool:
     """Whether a verdict is as good as one of REQUIREMENTS."""
     if required == GOOD:
         return grade == GOOD
-    biased = any(reason.startswith((UNTESTED, DEPENDENT, APART)) for reason in reasons)
     return grade != NOT_IDENTIFIABLE and not (required == NOT_BIASED and biased)
 
 
@@ -88,11 +89,12 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     joints = evidence.diagnostics.joints
     summary = _summary(evidence)
     obstacles = [*_idle(joints, robot), *_undetermined(evidence)]
+    biased = _biased(evidence)
     if obstacles:
-        return Verdict(NOT_IDENTIFIABLE, (*obstacles, summary))
+        return Verdict(NOT_IDENTIFIABLE, (*obstacles, summary), bool(biased))
     wrong = [
         *_forgotten(evidence.diagnostics),
-        *_biased(evidence),
+        *biased,
         *_changed(evidence, robot),
         *_poor(joints),
         *_vague(evidence),
@@ -100,8 +102,8 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     ]
     if wrong and evidence.unexplained:
         wrong = [evidence.unexplained, *wrong]
-    notes = notes_of(evidence.names, evidence.diagnostics)
-    return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes))
+    notes = [*_inertia_unknown(evidence), *notes_of(evidence.names, evidence.diagnostics)]
+    return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes), bool(biased))
 
 
 def _idle(joints: Sequence[JointResidual], robot: Robot) -> list[str]:
@@ -129,8 +131,8 @@ def _forgotten(diagnostics: Diagnostics) -> list[str]:
     if diagnostics.blocks >= BLOCKS:
         return []
     return [
-        f"forgetting leaves only {diagnostics.blocks:.1f} independent parts of the log, too few "
-        "to state errors: forget more slowly"
+        f"only {diagnostics.blocks:.1f} independent parts of the log count, too few to state "
+        "errors: use a longer log, or a --forgetting nearer to 1"
     ]
 
 
@@ -139,19 +141,19 @@ def _biased(evidence: Evidence) -> list[str]:
     found = {effect.name: effect for effect in evidence.diagnostics.effects}
     if PARALLEL not in found:
         return [
-            f"{UNTESTED}, because no part of the log without a gap or a "
+            "the estimates were not tested for bias, because no part of the log without a gap or a "
             "row left out is long enough: use a longer log"
         ]
     reasons = []
     if moved := _moved(evidence, found[PARALLEL]):
         reasons.append(
-            f"{DEPENDENT}: with derivatives and torques behind the same "
-            f"low-pass, {moved}{'' if evidence.matched else UNMATCHED}"
+            "the estimates depend on the soft sensor: with the same low-pass for derivatives and "
+            f"torques, {moved}{'' if evidence.matched else UNMATCHED}"
         )
     if SIGNALS in found and (moved := _moved(evidence, found[SIGNALS])):
         advice = "" if evidence.treatment.align else "; --align fits a delay"
         reasons.append(
-            f"{APART}, or a joint is flexible: with a delay "
+            "torque and motion are not those of one instant, or a joint is flexible: with a delay "
             f"and the second derivative of the torque fitted as well, {moved}{advice}"
         )
     return reasons
@@ -190,7 +192,7 @@ def _vague(evidence: Evidence) -> list[str]:
     found, width = evidence.diagnostics.consequences, _width(evidence)
     intervals = zip(width * found.noise, width * found.torque, strict=True)
     reasons = [
-        f"the log determines the torque of joint {i} only within {percents([max(noise, whole)])}"
+        f"the torque of joint {i} is known only within {percents([max(noise, whole)])}"
         if np.isfinite(noise + whole)
         else f"the uncertainty of the torque of joint {i} is not known"
         for i, (noise, whole) in enumerate(intervals, start=1)
@@ -204,7 +206,19 @@ def _vague(evidence: Evidence) -> list[str]:
     ]
     if not reasons or evidence.treatment.essential or evidence.unexplained:
         return reasons
-    return [*reasons, "--essential leaves out the parameters that are not known"]
+    return [*reasons, "try --essential, which leaves out the parameters that are not known"]
+
+
+def _inertia_unknown(evidence: Evidence) -> list[str]:
+    """A note on joints whose inertia may be zero: friction or gravity makes their torque."""
+    within = _width(evidence) * evidence.diagnostics.consequences.inertia
+    unknown = [str(i) for i, part in enumerate(within, start=1) if part > 1.0]
+    if not unknown:
+        return []
+    return [
+        f"the inertia of joint{'s' if len(unknown) > 1 else ''} {listed(unknown)} is not known: do "
+        "not predict the torques of faster motions"
+    ]
 
 
 def _width(evidence: Evidence) -> float:

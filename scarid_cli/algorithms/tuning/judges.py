@@ -45,7 +45,7 @@ def distance_to_smoother(q: Array, h: float, smooth_by: Any = None) -> Judge:
     """
     _, *smooth = over((smooth_by or smoother(q, h)).matched(), q, h)
     late = min(int(SKIPPED_START / h), len(q) // 5)
-    inner = slice(late, -late)
+    inner = slice(late, len(q) - late)
     sizes = [float(np.std(x[inner])) or 1.0 for x in smooth]
 
     def judge(method: Any) -> float:

@@ -20,7 +20,7 @@ from scarid_cli.algorithms.regression.information import inverse_deviations
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
 from scarid_cli.algorithms.tuning.spectrum import bandwidths
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array, Numbers, varies
 
 STEP = 2.0**0.25  # from one cut-off to the next
 PARTS = 20  # of the record, each left out once
@@ -140,7 +140,7 @@ def _jackknife(sums: Array, rows: Numbers, variances: Array) -> float:
     weighted = weighted_sums(sums, rows)
     estimates = solved(weighted.sum(axis=0) - weighted)
     off = estimates - estimates.mean(axis=0)
-    driven = variances > 0.0
+    driven = varies(variances, total[:, p, p] / rows)
     shares = total[driven, :p, :p] / (rows * variances)[driven, None, None]
     mean = shares.sum(axis=0) / len(rows)
     return float((PARTS - 1) / PARTS * np.einsum("ki,ij,kj->", off, mean, off))

@@ -30,7 +30,7 @@ from scarid_cli.stages import identify as stage
 from scarid_cli.stages.parameters import identified
 from scarid_cli.stages.reach import Reach
 
-ONLINE, OFFLINE = "rls", "gls"  # what a motion, and a measurement, are identified by
+FOR_MOTION, FOR_MEASUREMENT = "rls", "gls"  # the estimator if none is given
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def run(
 
 def _asked(given: dict[str, Any]) -> Chosen:
     """What the options ask for; refuses what is impossible before anything is read."""
-    name = given["estimator"] or ONLINE
+    name = given["estimator"] or FOR_MOTION
     method = ESTIMATORS.load(name)
     values = _settings(method, name, given)
     method(**values)
@@ -116,7 +116,7 @@ def _for_measurement(asked: Chosen, given: dict[str, Any]) -> Chosen:
         return asked
     chosen = asked
     if not (given["estimator"] or asked.values or given["forgetting"] or given["initial"]):
-        chosen = replace(asked, name=OFFLINE, method=ESTIMATORS.load(OFFLINE))
+        chosen = replace(asked, name=FOR_MEASUREMENT, method=ESTIMATORS.load(FOR_MEASUREMENT))
     if given["align"] is None and chosen.method.ALIGNS:
         chosen = replace(chosen, treatment=replace(chosen.treatment, align=True))
     return chosen
@@ -148,7 +148,7 @@ def _tell(job: Job, table: Table, robot: str, chosen: Chosen, extra: dict[str, A
 
 def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
     """The exit status, which tells whether the verdict is what was required."""
-    if not require or meets(require, extra["verdict"], extra["reasons"]):
+    if not require or meets(require, extra["verdict"], biased=extra["biased"]):
         return OK
     job.say(f"the verdict is worse than --require {require}")
     return REQUIRED

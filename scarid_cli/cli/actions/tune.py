@@ -5,6 +5,7 @@ from __future__ import annotations
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.job import Job
+from scarid_cli.cli.measured import explained
 from scarid_cli.cli.progress import steps
 from scarid_cli.cli.settings import document
 from scarid_cli.io.reader import require
@@ -12,6 +13,7 @@ from scarid_cli.io.schemas import joints_of, numbered, of_joints
 from scarid_cli.io.table import Table
 from scarid_cli.stages import bandwidth, record
 from scarid_cli.stages import tune as stage
+from scarid_cli.stages.glance import of_rate
 
 FOR_ROBOT, FOR_POSITIONS = ("rts", "kalman"), ("kalman",)
 
@@ -34,7 +36,7 @@ def run(
     joints = _joints(table, arm)
     names = _names(methods or (FOR_ROBOT if arm else FOR_POSITIONS))
     held = record.Record.of(table, joints, torques=arm is not None)
-    with steps(quiet=job.quiet) as progress:
+    with steps(quiet=job.quiet) as progress, explained(table):
         if arm:
             found = bandwidth.bandwidth(held, arm, progress)
             rows = list(bandwidth.tune_for(held, found, names, seed, progress))
@@ -45,7 +47,7 @@ def run(
         side.write(document(names[0], stage.chosen(rows, joints), command_line()))
     if arm:
         job.say(found.text)
-    elif joints > 1:
+    else:
         _warn(job, held)
     for row in rows:
         if row.best and row.judge != stage.SCATTER and row.settings:
@@ -59,7 +61,9 @@ def _names(methods: tuple[str, ...]) -> list[str]:
 
 
 def _warn(job: Job, held: record.Record) -> None:
-    """Report that the joints would have chosen different bandwidths by themselves."""
+    """Report an unlikely rate, and that the joints would have chosen different bandwidths."""
+    if finding := of_rate(held.h):
+        job.say(f"warning: {finding.text}")
     apart, own = stage.octaves(held)
     if apart > stage.OCTAVE:
         listed = ", ".join(f"{hertz:.3g}" for hertz in own)
