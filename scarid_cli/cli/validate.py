@@ -21,24 +21,29 @@ from scarid_cli.cli.declare import declare
 @options.table_output
 @options.common
 def command() -> None:
-    """Measure how well identified parameters predict the torques of a motion.
+    """Measure how well identified parameters predict the torques of a log.
 
     \b
-      scarid validate --parameters parameters.csv motion.csv
+      scarid validate --parameters parameters.parquet log.csv
       scarid validate --parameters p.parquet --predictions torques.parquet motion.parquet
-      scarid validate --parameters may.parquet --parameters june.parquet july-motion.parquet
+      scarid validate --parameters may.parquet --parameters june.parquet july.csv
+
+    The velocities and accelerations of a measurement (a log that has none) are estimated with the
+    bandwidth of the identification, as far as the parameters state it, and the pipe that gives the
+    same result is reported; this holds the log in memory. A motion is taken as it is.
 
     Writes for each joint R2 (paper eq. 36), the root-mean-square error (eq. 35), the relative error
     100 |tau - tau_hat| / |tau| in percent, and the number of samples. On the motion that the
     parameters were identified from, this is direct validation; on another motion, it is cross
-    validation. Several motions count as one. Give the options that select and treat rows as they
+    validation. Several logs count as one. Give the options that select and treat rows as they
     were given to identify. Several parameter tables are pooled, weighted by the information of
-    their logs: the motion is then compared with all of these logs together.
+    their logs: the new log is then compared with all of these logs together.
 
     The verdict, on standard error and in the metadata, says whether the robot has changed since the
     identification: `unchanged`, `changed` with the cause (another payload or set-up, the friction,
     the motor constant or the offset of a joint, another delay, reversed or swapped joints), or
-    `unexplained`. In at most one of a hundred comparisons of an unchanged robot it is not
-    `unchanged`, because of noise alone. Parameters in a CSV file lack what the tests of delay and
-    offsets need: write them as Parquet or Arrow.
+    `unexplained`. Noise alone makes at most one of a hundred comparisons of an unchanged robot end
+    otherwise than `unchanged`. A change of the torques within the intervals that the identification
+    states is named, but counts as `unchanged`. Parameters in a CSV file lack what the tests of
+    delay and offsets need: write them as Parquet or Arrow.
     """

@@ -111,4 +111,13 @@ def tune_for(
 
 def recommended(found: Bandwidth, h: float) -> Any:
     """The smoother of the recommended procedure, with this bandwidth."""
-    return chain(DIFFERENTIATORS.load("rts")(), found.noise, found.cutoff, h)
+    return _smoother(found.noise, found.cutoff, h)
+
+
+def smoother_at(record: Record, cutoff: float) -> Any:
+    """The smoother of the recommended procedure for a record, with this cut-off [Hz]."""
+    return _smoother(_noise(record.segments, record.h, cutoff), typed(cutoff), record.h)
+
+
+def _smoother(noise: float, cutoff: float, h: float) -> Any:
+    return chain(DIFFERENTIATORS.load("rts")(), noise, cutoff, h)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence, inverse
+from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence, inverse, torque_shares
 from scarid_cli.algorithms.changes.explanation import change
 from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, hypotheses
 from scarid_cli.algorithms.changes.likelihood import Difference
@@ -20,6 +20,7 @@ from scarid_cli.algorithms.changes.wording import Verdict, of_change, of_wiring
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.arrays import Array, median
 from scarid_cli.io.table import Table
 from scarid_cli.stages.parameters import EVIDENCE, Identified
@@ -30,11 +31,13 @@ class Known:
     """What a parameter table says about the log that it was identified from.
 
     `evidence` is that log's, None if the table does not have it; `errors` (parameters) are the
-    standard errors of the estimates, nan where there are none.
+    standard errors of the estimates, nan where there are none. `torques` (joints) are half the
+    95 % intervals of the predicted torques, relative to the torques; 0 where they are not known.
     """
 
     evidence: LogEvidence | None
     errors: Array
+    torques: Array | float = 0.0
 
     @property
     def remark(self) -> str:
@@ -76,7 +79,14 @@ def known(table: Table, robot: Robot, errors: Array) -> Known:
         np.array(stored["deviations"]),
         np.zeros((stored["blocks"], len(kept))),
     )
-    return Known(found, errors)
+    return Known(found, errors, _torques(table, joints, found.blocks))
+
+
+def _torques(table: Table, joints: int, blocks: int) -> Array:
+    """Half the 95 % intervals of the predicted torques, relative to the torques (joints)."""
+    stated = [x.get("torque_error") for x in table.meta.extra.get("joints", [])]
+    known = len(stated) == joints and None not in stated
+    return quantile(0.975, blocks - 1.0) * np.array(stated if known else [0.0] * joints)
 
 
 def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
@@ -85,7 +95,8 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
     steps = rewired(robot, rows, theta)
     if steps:
         return of_wiring(steps)
-    now = evidence(in_step(rows, theta, model.delay, low_pass=model.low_pass), theta)
+    rows = in_step(rows, theta, model.delay, low_pass=model.low_pass)
+    now = evidence(rows, theta)
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)
     ratios = None
@@ -95,7 +106,12 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
     else:
         possible = [h for h in possible if h.kind not in (DELAY, OFFSET)]
     values = dict(zip(robot.names, theta.tolist(), strict=True))
-    return of_change(change(Difference.between(first, now), possible), values, ratios)
+    found = change(Difference.between(first, now), possible)
+    slight = None
+    if found.changed:
+        shares = torque_shares(rows, theta, found.amounts)
+        slight = float(shares.max()) if np.all(shares <= before.torques) else None
+    return of_change(found, values, ratios, slight)
 
 
 def _alike(now: LogEvidence, errors: Array, robot: Robot) -> LogEvidence:

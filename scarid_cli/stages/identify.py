@@ -77,9 +77,11 @@ def identify(
         matched=_matched(table),
         unexplained=times.unexplained(found.diagnostics.bursts),
     )
-    if not treatment.counting:
-        return result
-    extra = {**result.meta.extra, "left_out": left_out.counts}
+    extra = dict(result.meta.extra)
+    if bandwidth := table.meta.extra.get("bandwidth"):
+        extra["bandwidth"] = bandwidth
+    if treatment.counting:
+        extra["left_out"] = left_out.counts
     return replace(result, meta=replace(result.meta, extra=extra))
 
 

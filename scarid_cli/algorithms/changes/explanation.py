@@ -16,6 +16,7 @@ from scarid_cli.algorithms.changes.likelihood import (
     tested,
 )
 from scarid_cli.algorithms.statistics.tails import log_tail_f
+from scarid_cli.arrays import Array
 
 FALSE_ALARMS = 0.01  # of comparisons in which nothing changed, over all tests together
 MOST = 3  # changes that are named
@@ -45,7 +46,7 @@ class Change:
 
     `p_value` is the smallest of all tests, multiplied by their number `tests` (Bonferroni).
     `explained` is the share of the difference that the explanations account for, and `left` the
-    p-value of the rest.
+    p-value of the rest. `whole` (columns) is the change of all columns that fits best.
     """
 
     p_value: float
@@ -53,6 +54,15 @@ class Change:
     explanations: tuple[Explanation, ...] = ()
     explained: float = 0.0
     left: float = 0.0
+    whole: tuple[float, ...] = ()
+
+    @property
+    def amounts(self) -> Array:
+        """How far all columns changed (columns): as explained, or in whatever way."""
+        if not self.complete:
+            return np.array(self.whole)
+        parts = [e.hypothesis.directions @ np.array(e.amounts) for e in self.explanations]
+        return np.asarray(np.sum(parts, axis=0))
 
     @property
     def changed(self) -> bool:
@@ -74,13 +84,14 @@ def change(difference: Difference, possible: list[Hypothesis]) -> Change:
         return Change(exp(log_p), len(log_ps))
     chosen, rivals = _chosen(difference, possible, whole)
     if not chosen:
-        return Change(exp(log_p), len(log_ps))
+        return Change(exp(log_p), len(log_ps), whole=tuple(whole.amounts.tolist()))
     found = tested(difference, chosen)
     rest, rank = max(whole.raw - found.raw, 0.0), max(whole.rank - found.rank, 1)
     left = log_tail_f(rest / whole.excess / rank, rank, difference.freedom)
     share = found.beyond_noise / (found.beyond_noise + max(rest - rank * whole.excess, 0.0))
     explanations = _described(chosen, rivals, found)
-    return Change(exp(log_p), len(log_ps), explanations, share, exp(left))
+    amounts = tuple(whole.amounts.tolist())
+    return Change(exp(log_p), len(log_ps), explanations, share, exp(left), amounts)
 
 
 def _chosen(

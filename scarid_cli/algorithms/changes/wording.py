@@ -9,6 +9,7 @@ import numpy as np
 
 from scarid_cli.algorithms.changes.explanation import Change, Explanation
 from scarid_cli.algorithms.changes.hypotheses import DELAY, DRIFT, MOTOR, PAYLOAD, Hypothesis
+from scarid_cli.algorithms.statistics.sentences import percents
 from scarid_cli.arrays import Array
 
 SHOWN = 4  # amounts that a message names at most
@@ -40,11 +41,14 @@ def of_wiring(steps: tuple[str, ...]) -> Verdict:
     return Verdict(CHANGED, f"reversed or swapped joints: {', '.join(steps)}", {"wiring": [*steps]})
 
 
-def of_change(change: Change, values: dict[str, float], ratios: Array | None) -> Verdict:
+def of_change(
+    change: Change, values: dict[str, float], ratios: Array | None, slight: float | None = None
+) -> Verdict:
     """The verdict of the tests.
 
     `values` are the parameters at identification; `ratios` (joints) the deviations of the residual,
-    divided by those at identification, if these are known.
+    divided by those at identification, if these are known. A change of the torques by this part is
+    `slight`, because it is within the intervals of the identification.
     """
     noisy = [] if ratios is None else np.flatnonzero(ratios > NOISIER).tolist()
     noise = "; ".join(f"joint {j + 1} {ratios[j]:.2g} times" for j in noisy if ratios is not None)
@@ -61,6 +65,10 @@ def of_change(change: Change, values: dict[str, float], ratios: Array | None) ->
         )
         return Verdict(UNEXPLAINED, reason, facts)
     found = " and ".join(map(_sentence_of(values), change.explanations))
+    if slight is not None and not noise:
+        size = f"by at most {percents([slight])}, within the intervals of the identification"
+        cause = f" (if anything, {found})" if found else ""
+        return Verdict(UNCHANGED, f"the torques differ {size}{cause}", facts)
     if change.complete:
         share = f"explains {100.0 * change.explained:.3g} % of the difference"
         return Verdict(CHANGED, f"{found}; this {share}", facts)

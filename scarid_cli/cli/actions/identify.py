@@ -18,12 +18,11 @@ from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
-from scarid_cli.cli.measured import motion
+from scarid_cli.cli.measured import is_motion, motion, read
 from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.resampled import Resampled
 from scarid_cli.cli.treatment import behind_low_pass, for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import OK, REQUIRED, UsageFault
-from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document
 from scarid_cli.stages import identify as stage
@@ -103,7 +102,7 @@ def _read_logs(
     table, arm = read_logs(job, files, robot, reading, skip=given["skip"])
     arm, treatment = for_robot(arm, asked.treatment, given)
     chosen = replace(asked, treatment=treatment)
-    if chosen.method.FOLLOWS or numbered(table.columns, "ddq"):
+    if chosen.method.FOLLOWS or is_motion(table):
         return table, arm, chosen
     chosen = _for_measurement(chosen, given)
     options = _options(chosen.name, chosen.treatment)
@@ -158,17 +157,9 @@ def _read(
     job: Job, method: Any, resampled: Resampled, file: str, robot: str | Robot | None
 ) -> tuple[Table, Robot]:
     """The motion or measurement, or whatever else the estimator reads, and the robot."""
-    table, arm = job.read_for(
-        file,
-        "trajectory" if method.FOLLOWS else "motion",
-        robot,
-        torques=True,
-        reference=method.REFERENCE,
-        without_derivatives=None if method.FOLLOWS else "measurement",
-    )
-    if method.FOLLOWS or numbered(table.columns, "ddq"):
-        return table, arm
-    return resampled.table(file, table), arm
+    if method.FOLLOWS:
+        return job.read_for(file, "trajectory", robot, torques=True, reference=method.REFERENCE)
+    return read(job, resampled, file, robot, reference=method.REFERENCE)
 
 
 def _options(name: str, treatment: Treatment) -> list[str]:

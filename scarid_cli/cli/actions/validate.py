@@ -11,6 +11,8 @@ import pyarrow as pa
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
+from scarid_cli.cli.measured import is_motion, motion, read
+from scarid_cli.cli.resampled import Resampled
 from scarid_cli.cli.treatment import behind_low_pass, for_motion, for_robot, report, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.stated import stated_robot
@@ -38,8 +40,11 @@ def run(
     side = job.side_table(predictions)
     tables = [job.read(file, "parameters") for file in parameters]
     stated = robot or stated_robot(tables[0])
-    table, arm = read_logs(job, files, stated, partial(_read, job), skip=given["skip"])
+    resampled = Resampled(job)
+    table, arm = read_logs(job, files, stated, partial(read, job, resampled), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
+    if not is_motion(table):
+        table = motion(job, table, arm, [], resampled.rates, hertz=_bandwidth(tables))
     treatment = for_motion(table.meta, treatment, given)
     model, before = pooled_identifications([_stored(table, arm) for table in tables])
     result = stage.validate(
@@ -76,6 +81,7 @@ def _stored(table: Table, robot: Robot) -> Entry:
     return table.name, model, known(table, model.robot, errors_of(pa.Table.from_batches(batches)))
 
 
-def _read(job: Job, file: str, robot: str | Robot | None) -> tuple[Table, Robot]:
-    """A motion with torques, and the robot."""
-    return job.read_for(file, "motion", robot, torques=True)
+def _bandwidth(parameters: list[Table]) -> float | None:
+    """The lowest bandwidth [Hz] of the motions of these identifications, if it is known."""
+    known = [float(hertz) for table in parameters if (hertz := table.meta.extra.get("bandwidth"))]
+    return min(known, default=None)
