@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pyarrow as pa
 
+from scarid_cli.algorithms.checks.finding import FAILED, Finding
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows
@@ -19,7 +20,9 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import SEGMENT, Table, number, segment_field, with_columns
 from scarid_cli.stages import Sink
+from scarid_cli.stages.glance import of_axes
 from scarid_cli.stages.parameters import parameters
+from scarid_cli.stages.reach import Reach
 from scarid_cli.stages.rows import treated
 from scarid_cli.stages.times import Times
 
@@ -35,13 +38,16 @@ def identify(
     trace: Sink | None = None,
     checkpoint: Checkpoint | None = None,
     keep: Callable[[Checkpoint], None] | None = None,
+    findings: list[Finding] | None = None,
 ) -> Table:
     """The table of parameters, estimated from all rows of a motion.
 
     `initial` are the initial parameters, or zeros. `trace` receives the estimates after every
     sample (Fig. 6). `checkpoint` is the checkpoint of an earlier estimation that is continued, and
-    `keep` receives that of this one.
+    `keep` receives that of this one. `findings` receives what is not in order with the log; what
+    makes the result wrong enters the verdict as well.
     """
+    findings = [] if findings is None else findings
     treatment = treatment or Treatment()
     estimator = estimator.for_robot(robot)
     if trace:
@@ -54,7 +60,8 @@ def identify(
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
     left_out = checkpoint.left_out
     times = Times(table, checkpoint.seen)
-    table = times.watched(table)
+    reach = Reach(len(robot.joints))
+    table = times.watched(reach.watched(table))
     for batch, rows in treated(table, robot, treatment, checkpoint.seen, estimator, left_out):
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
@@ -67,6 +74,9 @@ def identify(
         raise _not_identifiable(table, robot, error) from None
     if keep:
         keep(checkpoint)
+    findings += reach.findings(robot, table.period)
+    if not estimator.FOLLOWS:
+        findings += of_axes(checkpoint.subsample.rows(), robot)
     meta = replace(table.meta, kind="parameters", robot=robot.name)
     result = parameters(
         found,
@@ -76,6 +86,7 @@ def identify(
         variance=variance,
         matched=_matched(table),
         unexplained=times.unexplained(found.diagnostics.bursts),
+        failed=[finding.text for finding in findings if finding.status == FAILED],
     )
     extra = dict(result.meta.extra)
     if bandwidth := table.meta.extra.get("bandwidth"):

@@ -93,11 +93,13 @@ def parameters(
     variance: str,
     matched: bool = False,
     unexplained: str = "",
+    failed: Sequence[str] = (),
 ) -> Table:
     """The parameter table, with the verdict in its metadata.
 
     `matched` tells that torques and derivatives are known to have passed the same filter, and
-    `unexplained` which torques are not explained, if they are few.
+    `unexplained` which torques are not explained, if they are few. `failed` are the checks that the
+    log did not pass.
     """
     labels = Labels.of(found, robot)
     known_errors = found.diagnostics.covariance
@@ -118,7 +120,7 @@ def parameters(
     else:
         schema = schema.remove(schema.get_field_index("stands_for"))
     evidence = replace(
-        _evidence(found, labels, treatment), matched=matched, unexplained=unexplained
+        _evidence(found, labels, treatment), matched=matched, unexplained=unexplained, failed=failed
     )
     extra = _judged(evidence, robot) | _facts(found, labels)
     return table_of("identify", schema, zip(*columns, strict=True), replace(meta, extra=extra))

@@ -1,25 +1,19 @@
-"""How far positions and torques reach that stream through: `identify` warns of wrong units.
-
-The checks themselves are imported only where something is out of the usual, so that they do not
-delay the start of a run in which nothing is.
-"""
+"""How far positions and torques reach that stream through: `identify` tells of wrong units."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from math import pi
 
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.checks.finding import Finding
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, settled
-
-LONGEST = 0.05  # s, of the period of a usual log
-FARTHEST = 4.0 * pi  # rad, of a usual joint without limits
+from scarid_cli.stages.glance import of_extremes
 
 
 @dataclass
@@ -51,24 +45,9 @@ class Reach:
                 self.high = np.maximum(self.high, signals.max(axis=1, initial=-np.inf))
             yield batch
 
-    def remarks(self, robot: Robot, period: float) -> list[str]:
+    def findings(self, robot: Robot, period: float) -> list[Finding]:
         """What is not in order, for rows every `period` [s]."""
         ends = np.column_stack((self.low, self.high))
-        if not np.all(self.low <= self.high) or self._usual(ends, robot, period):
+        if not np.all(self.low <= self.high):
             return []
-        from scarid_cli.stages.glance import of_extremes
-
-        found = of_extremes(ends[: self.joints], ends[self.joints :], robot, period)
-        return [finding.text for finding in found]
-
-    def _usual(self, ends: Array, robot: Robot, period: float) -> bool:
-        """Whether nothing can be out of order, because all is within the limits."""
-        reach = np.abs(ends).max(axis=1)
-        return period <= LONGEST and all(
-            max(joint.lower, -FARTHEST) <= low
-            and high <= min(joint.upper, FARTHEST)
-            and torque <= joint.torque_limit
-            for joint, (low, high), torque in zip(
-                robot.joints, ends[: self.joints], reach[self.joints :], strict=True
-            )
-        )
+        return of_extremes(ends[: self.joints], ends[self.joints :], robot, period)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scarid_cli.algorithms.changes.wiring import Wiring
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed
 from scarid_cli.arrays import Array, Numbers
@@ -47,6 +48,15 @@ class Samples:
         chosen = np.unique(np.linspace(0, kept - 1, samples).astype(np.int64))
         independent = min(1.0, 2.0 * cutoff * span / len(chosen))
         return cls(motion[:, :, chosen], counts[:, chosen], independent)
+
+    @classmethod
+    def of_rows(cls, rows: Rows, samples: int) -> Samples:
+        """So many of the rows of a regression, spread over the record."""
+        tau = rows.motion[3]
+        slope = np.gradient(tau, rows.h * rows.at, axis=1)
+        chosen = np.unique(np.linspace(0, rows.samples - 1, samples).astype(np.int64))
+        motion = np.stack((*rows.motion, slope))[:, :, chosen]
+        return cls(motion, (rows.scales[chosen].T > 0.0).astype(np.int64), 1.0)
 
     def wired(self, wiring: Wiring) -> Samples:
         """The samples with the signals that each joint has by this wiring."""

@@ -19,6 +19,7 @@ FAR = 2.0  # times a limit: degrees are 57 times too large, and overshoot is les
 # Wrong prefixes are factors of a thousand, so anything nearer to a thousand than to one is taken
 # for one of them.
 THOUSAND = 1000.0**0.5
+IDLE = 0.003  # of all limits: a log in kN m is below it if no torque exceeds three times its limit
 GEAR = 6.0  # times a limit: less is a limit of the cell or of an older description, more a gear
 
 
@@ -41,6 +42,9 @@ def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
         factors[revolute] = DEGREE
         figure = f"{names} up to {reach[outside].max():.3g}, far outside the limits in rad"
         advice = "positions seem to be in degrees: `scarid convert --unit 'q*=deg'`"
+        if len(degrees) < len(revolute):
+            single = " ".join(f"--unit q{i + 1}=deg" for i in degrees)
+            advice += f", or `{single}` if all others are in rad"
         return failed("positions", figure, advice), factors
     excess = max(_excess(log.q[i], robot, i, speeds[i]) for i in outside)
     figure = f"{names} at {excess:.3g} times the limits of {robot.short_name}"
@@ -91,9 +95,17 @@ def torques(log: Log, robot: Robot, ratios: Array) -> Finding:
     if excess > THOUSAND or THOUSAND < least < np.inf:
         figure += f", {max(excess, min(least, most)):.2g} times what {robot.short_name} has"
         advice = "torques seem to be in mN m: `scarid convert --unit 'tau*=mN m'`"
+        large = np.flatnonzero(reach / limits > THOUSAND).tolist()
+        if 0 < len(large) < log.joints:
+            single = " ".join(f"--unit 'tau{i + 1}=mN m'" for i in large)
+            advice += f", or `{single}` if all others are in N m"
         return failed("torques", figure, advice)
     if 0.0 < most < 1.0 / THOUSAND:
         figure += f", {most:.2g} of what {robot.short_name} needs"
+        return failed("torques", figure, "torques seem to be in kN m: convert them to N m")
+    used = float(np.max(reach / limits))
+    if np.isfinite(limits).all() and 0.0 < used < IDLE:
+        figure += f", at most {used:.2g} of the limits of {robot.short_name}"
         return failed("torques", figure, "torques seem to be in kN m: convert them to N m")
     if excess > SPARE:
         advice = "are these torques of the joints, in N m, of this robot?"

@@ -33,19 +33,42 @@ class Wired:
 
 def wired(robot: Robot, samples: Samples) -> Wired:
     """The wiring that explains the log, which is the log's own unless another is far better."""
+    found = _searched(robot, samples, _neighbours)
+    return _braking(found, lambda wiring: _tried(robot, samples, wiring))
 
-    def tried(wiring: Wiring) -> Wired:
-        return Wired(wiring, fitted(robot, samples.wired(wiring)))
 
-    found = tried(Wiring.same(len(robot.joints)))
+def reversed_axes(robot: Robot, samples: Samples) -> list[int]:
+    """The joints (from 1) whose axes point the other way than in the description.
+
+    The position and the torque of each are reversed; all else is taken to be as described.
+    """
+    found = _searched(robot, samples, _with_reversed_axes)
+    return [j for j, sign in enumerate(found.wiring.signs[0], start=1) if sign < 0]
+
+
+def _tried(robot: Robot, samples: Samples, wiring: Wiring) -> Wired:
+    return Wired(wiring, fitted(robot, samples.wired(wiring)))
+
+
+def _searched(robot: Robot, samples: Samples, neighbours: Callable[[Wired], list[Wiring]]) -> Wired:
+    """The wiring that leaves far less of the torques than all that come before it, if there is one.
+
+    `neighbours` are the wirings that are tried from one to the next.
+    """
+    found = _tried(robot, samples, Wiring.same(len(robot.joints)))
     for _ in range(STEPS):
-        others = [tried(wiring) for wiring in _neighbours(found)]
+        others = [_tried(robot, samples, wiring) for wiring in neighbours(found)]
         least = min(other.fit.misfit for other in others)
         if least > found.fit.misfit + np.log(FALL):
             break
         alike = [other for other in others if other.fit.misfit < least - np.log(FALL)]
         found = min(alike, key=lambda other: (len(other.fit.driving), other.fit.misfit))
-    return _braking(found, tried)
+    return found
+
+
+def _with_reversed_axes(found: Wired) -> list[Wiring]:
+    joints = range(len(found.fit.powers))
+    return [found.wiring.reversed(0, j).reversed(1, j) for j in joints]
 
 
 def _neighbours(found: Wired) -> list[Wiring]:

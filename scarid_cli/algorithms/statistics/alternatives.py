@@ -3,14 +3,14 @@
 A bias matters as far as it moves the estimates. Therefore the estimation is repeated with
 alternatives to what it takes for granted. Those of this module concern the torques: that friction
 has no offset, asymmetry, Stribeck effect or dependence on the load, that nothing else
-pulls on the joints, and that the logged torques are proportional to the real ones. Those of
-parallel.py concern the positions and their derivatives.
+pulls on the joints, that gravity acts as described, and that the logged torques are proportional to
+the real ones. Those of parallel.py concern the positions and their derivatives.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,8 +20,8 @@ from scarid_cli.algorithms.robots.terms import Mass, Term
 from scarid_cli.arrays import Array, Marks
 
 OFFSET, ASYMMETRY, STRIBECK, CURVATURE = "offset", "asymmetry", "Stribeck", "curvature"
-LOAD, SPRING, SATURATION, DRIFT = "load", "spring", "saturation", "drift"
-TORQUES = (OFFSET, ASYMMETRY, STRIBECK, CURVATURE, LOAD, SPRING, SATURATION, DRIFT)
+LOAD, SPRING, SATURATION, DRIFT, TILT = "load", "spring", "saturation", "drift", "tilt"
+TORQUES = (OFFSET, ASYMMETRY, STRIBECK, CURVATURE, LOAD, SPRING, SATURATION, DRIFT, TILT)
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
 FADED = 0.3  # of the root-mean-square velocity: where the Stribeck effect has decayed
 BESIDE_FRICTION = ("offset", "stribeck")  # terms that are not friction alone, but go with it
@@ -58,6 +58,20 @@ class Model:
         kept = [i for i, chosen in zip(self.kept, links, strict=True) if chosen]
         return self.robot.partial_torques(motion, kept, theta[links])
 
+    def tilted(self, q: Array, theta: Array) -> Array | None:
+        """The gravity torques (samples, joints, 2) of a base that is tilted about two axes, by 1.
+
+        q (joints, samples). None without a URDF or without gravity.
+        """
+        body = self.robot.body
+        if not body or not any(body.gravity):
+            return None
+        still = np.stack((q, np.zeros_like(q), np.zeros_like(q)))
+        sideways = np.linalg.svd(np.array([body.gravity]))[2][1:] * np.linalg.norm(body.gravity)
+        robots = [replace(self.robot, body=replace(body, gravity=tuple(g))) for g in sideways]
+        torques = [replace(self, robot=r).link_torques(still, theta) for r in robots]
+        return np.stack(torques, axis=2)
+
     def _marks(self, chosen: Callable[[Term], bool]) -> Marks:
         return np.array([chosen(self.robot.parameters[i].term) for i in self.kept], dtype=bool)
 
@@ -88,6 +102,9 @@ def torque_columns(rows: Rows, model: Model | None, estimates: Array) -> dict[st
     if model:
         own = np.flatnonzero(model.transmits)
         columns[LOAD] = diagonal(np.sign(v) * np.abs(rows.W[:, :, own] @ estimates[own]))
+        tilt = model.tilted(rows.motion[0], estimates[: len(model.kept)])
+        if tilt is not None:
+            columns[TILT] = tilt
     return columns
 
 

@@ -15,6 +15,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     SATURATION,
     SPRING,
     STRIBECK,
+    TILT,
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import CERTAIN, REVERSALS, Effect
@@ -33,6 +34,8 @@ ADVICE = {
     SPRING: "something pulls on a joint as a spring or a cable does, for which there is no term",
     SATURATION: "the logged torque is not proportional to the real one, as when a motor saturates",
     DRIFT: "the torque drifts during the log",
+    TILT: "gravity acts in another direction than described, as on a tilted base (state gravity = "
+    "[x, y, z] in the TOML file of the robot)",
     ENCODERS: "a position has an error that depends on the angle (an offset of the zero, or an "
     "eccentric encoder)",
     ELASTICITY: "a transmission is elastic (a gear or a belt between encoder and link)",

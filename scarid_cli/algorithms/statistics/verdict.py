@@ -70,7 +70,7 @@ class Evidence:
 
     The verdict does not recommend the options of the `treatment` that are already in use, nor a
     `matched` motion if this one is known to be so. `unexplained` says at which times the torques
-    are not explained, if they are few.
+    are not explained, if they are few, and `failed` which checks the log did not pass.
     """
 
     names: Sequence[str]
@@ -82,6 +82,7 @@ class Evidence:
     treatment: Treatment
     matched: bool = False
     unexplained: str = ""
+    failed: Sequence[str] = ()
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
@@ -91,8 +92,9 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     obstacles = [*_idle(joints, robot), *_undetermined(evidence)]
     biased = _biased(evidence)
     if obstacles:
-        return Verdict(NOT_IDENTIFIABLE, (*obstacles, summary), bool(biased))
+        return Verdict(NOT_IDENTIFIABLE, (*evidence.failed, *obstacles, summary), bool(biased))
     wrong = [
+        *evidence.failed,
         *_forgotten(evidence.diagnostics),
         *biased,
         *_changed(evidence, robot),

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.checks.finding import WARNING, Finding
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.regression.treatment import Treatment
@@ -27,7 +28,6 @@ from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document
 from scarid_cli.stages import identify as stage
 from scarid_cli.stages.parameters import identified
-from scarid_cli.stages.reach import Reach
 
 FOR_MOTION, FOR_MEASUREMENT = "rls", "gls"  # the estimator if none is given
 
@@ -55,13 +55,12 @@ def run(
     asked = _asked(given)
     side, place = job.side_table(given["trace"]), job.side_text(given["save"])
     table, arm, chosen = _read_logs(job, files, robot, asked, given)
-    reach = Reach(len(arm.joints))
-    table = reach.watched(table)
     chosen = _for_motion(table, chosen, given)
     solver = chosen.method(**chosen.values, **_single(given["forgetting"], arm.names))
     start = _initial(job, given["initial"], arm)
     fixed = _fixed(table, arm, chosen, solver, given["smooth_sign"])
     places: list[Checkpoint] = []
+    findings: list[Finding] = []
     result = stage.identify(
         job.recorded(table),
         arm,
@@ -72,12 +71,14 @@ def run(
         trace=side,
         checkpoint=_restored(given["resumed"], fixed),
         keep=places.append,
+        findings=findings,
     )
     job.write(result)
     if place:
         _save(place, places[0], fixed)
-    for remark in reach.remarks(arm, table.period):
-        job.say(f"warning: {remark}")
+    for finding in findings:
+        if finding.status == WARNING:
+            job.say(f"warning: {finding.text}")
     _tell(job, table, arm.name, chosen, result.meta.extra)
     return _status(job, require, result.meta.extra)
 
