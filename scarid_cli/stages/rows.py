@@ -43,6 +43,9 @@ def treated(
     those of the reference.
     """
     fitted = 0
+    if treatment.counting:
+        counting = replace(treatment.counting, motors=robot.motors)
+        treatment = replace(treatment, counting=counting)
     parts = _parts(table, robot, treatment, seen, estimator)
     for batch, rows in _treated(parts, treatment, left_out or LeftOut()):
         fitted += int(np.count_nonzero(rows.scales))

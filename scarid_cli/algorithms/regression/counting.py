@@ -8,13 +8,14 @@ arbitrary.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Generic, TypeVar
 
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.robots.coupled import CoupledMotor
 from scarid_cli.arrays import Array, Numbers
 
 # Chosen on simulated robots, see DESIGN.md, section "Rows that count".
@@ -33,11 +34,13 @@ class Counting:
 
     `bandwidth` [Hz] is that of the soft sensor, None if it is not known; rows near a reversal are
     then kept. `velocity_noise` (joints, or none if not known) is the standard deviation of the
-    noise of the velocity [rad/s or m/s].
+    noise of the velocity [rad/s or m/s]. `motors` are those that turn with two joints, whose
+    reversals count for both.
     """
 
     bandwidth: float | None = None
     velocity_noise: tuple[float, ...] = ()
+    motors: tuple[CoupledMotor, ...] = ()
 
     def window(self, h: float) -> int:
         """The number of samples left out before and after a reversal, sampled every h [s]."""
@@ -104,12 +107,14 @@ class LeftOut:
         self.standstill += int(np.count_nonzero(away & ~moving))
 
 
-def reversals(dq: Array, first: int) -> list[Numbers]:
+def reversals(dq: Array, first: int, motors: Sequence[CoupledMotor] = ()) -> list[Numbers]:
     """For each joint the samples k such that the sign of dq (joints, samples) differs at k + 1.
 
-    first: the number of the first sample.
+    So do those of the `motors` that turn with it. first: the number of the first sample.
     """
     changes = np.diff(np.sign(dq), axis=1) != 0.0
+    for motor in motors:
+        changes[[motor.joint - 1, motor.other - 1]] |= np.diff(np.sign(motor.speed(dq))) != 0.0
     return [first + np.flatnonzero(row) for row in changes]
 
 
@@ -129,6 +134,7 @@ class Waiting(Generic[T]):
 
     window: int
     turns: list[Numbers]
+    motors: tuple[CoupledMotor, ...] = ()
     parts: deque[tuple[T, Rows]] = field(default_factory=deque)
     last: tuple[int, Array] | None = None  # the last sample: its number, and dq (joints, 1)
 
@@ -136,7 +142,7 @@ class Waiting(Generic[T]):
         dq, first = rows.motion[1], int(rows.at[0])
         if self.last:
             dq, first = np.column_stack((self.last[1], dq)), first - 1
-        new = reversals(dq, first)
+        new = reversals(dq, first, self.motors)
         self.turns = [np.concatenate(pair) for pair in zip(self.turns, new, strict=True)]
         self.last = int(rows.at[-1]), rows.motion[1][:, -1:]
         self.parts.append((item, rows))
@@ -180,7 +186,8 @@ def _in_runs(
             waiting = None
         if waiting is None:
             none = np.empty(0, dtype=np.int64)
-            waiting = Waiting(counting.window(rows.h), [none] * rows.y.shape[1])
+            turns = [none] * rows.y.shape[1]
+            waiting = Waiting(counting.window(rows.h), turns, counting.motors)
         waiting.add(item, rows)
         yield from waiting.taken()
     if waiting:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from scarid_cli.algorithms.robots.coupled import CoupledMotor, sliding_motors
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.logs import LogFormat
 from scarid_cli.algorithms.robots.terms import Coulomb, JointMotion, StandardTerm, Stribeck, Term
@@ -85,6 +86,11 @@ class Robot:
     def apriori(self) -> Array:
         """A priori values (parameters), in SI units."""
         return np.array([parameter.apriori for parameter in self.parameters])
+
+    @property
+    def motors(self) -> tuple[CoupledMotor, ...]:
+        """The motors with Coulomb friction that turn with two joints."""
+        return sliding_motors(parameter.term for parameter in self.parameters)
 
     def value(self, term: str, joint: int | None = None) -> float:
         """The a priori value of a term, of a joint (from 1); 0 if there is no such parameter."""

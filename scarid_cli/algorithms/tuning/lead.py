@@ -37,7 +37,7 @@ def without_lead(
     steady, seconds = list(segments), 0.0
     longest = LONGEST * h * min(s.q.shape[1] for s in segments)
     for _ in range(FITS):
-        parts = [part for s in steady if (part := lowpassed(s, h, cutoff))]
+        parts = [part for s in steady if (part := lowpassed(s, h, cutoff, robot.motors))]
         parts = [part for part in parts if part.counts.shape[1] >= FEWEST]
         if not parts:
             return []

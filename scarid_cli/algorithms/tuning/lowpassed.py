@@ -19,6 +19,7 @@ from scarid_cli.algorithms.regression.counting import (
     away,
     reversals,
 )
+from scarid_cli.algorithms.robots.coupled import CoupledMotor
 from scarid_cli.arrays import Array, Numbers
 
 ORDER = 4
@@ -57,10 +58,12 @@ class Lowpassed:
     interval: float
 
 
-def lowpassed(segment: Segment, h: float, cutoff: float) -> Lowpassed | None:
+def lowpassed(
+    segment: Segment, h: float, cutoff: float, motors: tuple[CoupledMotor, ...] = ()
+) -> Lowpassed | None:
     """Every k-th sample of the segment behind the low-pass of a cut-off [Hz]; h [s].
 
-    None if the segment is too short for the cut-off.
+    `motors` are those that turn with two joints. None if the segment is too short for the cut-off.
     """
     end = int(END / cutoff / h) + REACH
     if segment.q.shape[1] <= 2 * end + 1:
@@ -71,7 +74,7 @@ def lowpassed(segment: Segment, h: float, cutoff: float) -> Lowpassed | None:
     dq, ddq = (_differences(q, taps) for taps in (FIRST / h, SECOND / h**2))
     stride = _stride(q.shape[1], h, cutoff)
     every = slice(None, None, stride)
-    counts = _counts(dq[:, inner], segment.noise, TWO_SIDED * cutoff, h)
+    counts = _counts(dq[:, inner], segment.noise, TWO_SIDED * cutoff, h, motors)
     motion = (np.ascontiguousarray(x[:, inner][:, every]) for x in (q, dq, ddq, tau))
     return Lowpassed(tuple(motion), counts[:, every], stride * h)  # type: ignore[arg-type]
 
@@ -93,11 +96,13 @@ def _padding(segment: Segment, h: float, cutoff: float) -> int:
     return min(len(segment.q[0]) - 1, rows)
 
 
-def _counts(dq: Array, noise: Array, bandwidth: float, h: float) -> Numbers:
+def _counts(
+    dq: Array, noise: Array, bandwidth: float, h: float, motors: tuple[CoupledMotor, ...]
+) -> Numbers:
     counting = Counting(bandwidth, tuple(velocity_noise(x, bandwidth, h) for x in noise.tolist()))
     at = np.arange(dq.shape[1])
     moving = Speeds(np.zeros(len(dq))).moving(dq, counting.floor(len(dq)))
-    return np.asarray(moving & away(reversals(dq, 0), at, counting.window(h)))
+    return np.asarray(moving & away(reversals(dq, 0, motors), at, counting.window(h)))
 
 
 def _both_ways(x: Array, lowpass: Butterworth, padding: int, h: float) -> Array:

@@ -64,7 +64,7 @@ def curve(
     found: list[Scatter] = []
     cutoff = _first(robot, segments, h)
     while cutoff < HIGHEST / h:
-        parts = [part for s in segments if (part := lowpassed(s, h, cutoff))]
+        parts = [part for s in segments if (part := lowpassed(s, h, cutoff, robot.motors))]
         found.append(_scatter(robot, parts, cutoff))
         progress()
         least = min(point.scatter for point in found)
