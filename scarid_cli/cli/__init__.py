@@ -17,7 +17,7 @@ COMMANDS = {
     "filter": "Low-pass filter columns of a log.",
     "tune": "Find the settings of differentiators from a log.",
     "differentiate": "Estimate velocities and accelerations from positions (the soft sensor).",
-    "identify": "Estimate a robot's dynamic parameters from a motion.",
+    "identify": "Estimate a robot's dynamic parameters from a log.",
     "validate": "Measure how well identified parameters predict torques.",
     "compare": "Tell which parameters of two identifications differ, and how they drift.",
     "report": "Print tables and draw figures of parameters, traces, metrics and predictions.",
@@ -89,12 +89,11 @@ def scarid() -> None:
     """Identify the dynamic parameters of a robot from its log, in one pipe.
 
     \b
-      scarid trajgen --seed 1 | scarid simulate | scarid filter |
-        scarid differentiate --method p2smd | scarid identify
+      scarid trajgen --seed 1 | scarid simulate | scarid identify
 
     Each command reads one table (CSV, Parquet or Arrow) from a FILE or from standard input, and
     writes one to standard output or to -o FILE. The word `then` joins commands like a pipe, but in
-    one process, which is several times as fast and keeps units, robot and history:
+    one process, which saves time and keeps units, robot and history:
 
     \b
       scarid filter --cutoff 20 log.csv then differentiate then identify

@@ -16,7 +16,8 @@ from scarid_cli.cli.described import describing
 @click.option(
     "--estimator",
     type=click.Choice(ESTIMATORS.names),
-    help="The estimator; see below.  [default: rls; gls for a measurement]",
+    help="The estimator; see below.  [default: rls; gls for a measurement, unless --trace, "
+    "--save, --from, --set, --initial or --forgetting is given]",
 )
 @options.settings_of("estimator")
 @click.option(

@@ -27,7 +27,11 @@ GAINS = options.Numbers(options.Range(-1e12, 1e12))
 )
 @click.option("--kp", type=GAINS, help="Proportional gains.  [default: see --bandwidth]")
 @click.option("--kd", type=GAINS, help="Derivative gains.  [default: see --bandwidth]")
-@click.option("--ki", type=GAINS, help="Integral gains.  [default: see --bandwidth]")
+@click.option(
+    "--ki",
+    type=GAINS,
+    help="Integral gains.  [default: the robot's; else from --bandwidth for pid, and 0]",
+)
 @click.option(
     "--control-rate",
     type=options.RATE,
@@ -58,10 +62,20 @@ GAINS = options.Numbers(options.Range(-1e12, 1e12))
     "per joint; repeatable. They are listed below.  [default: those of the description]",
 )
 @click.option(
-    "--encoder-bits", type=NUMBERS, help="The same as --with encoder-bits=...; 0 for perfect ones."
+    "--encoder-bits",
+    type=NUMBERS,
+    help="The same as --with encoder-bits=...; 0 for perfect ones.  [default: the robot's]",
 )
-@click.option("--position-noise", type=NUMBERS, help="The same as --with position-noise=...")
-@click.option("--torque-noise", type=NUMBERS, help="The same as --with torque-noise=...")
+@click.option(
+    "--position-noise",
+    type=NUMBERS,
+    help="The same as --with position-noise=...  [default: the robot's]",
+)
+@click.option(
+    "--torque-noise",
+    type=NUMBERS,
+    help="The same as --with torque-noise=...  [default: the robot's]",
+)
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the noise."
 )

@@ -64,13 +64,15 @@ from scarid_cli.cli.options import NUMBERS
     type=click.Choice(("balanced", "d", "a", "c", "scaled-c")),
     help="What makes a motion the best: a small volume of the error ellipsoid (d), small errors of "
     "the torques that parameters stand for (a), a small condition number of W (c) or of its scaled "
-    "columns (scaled-c), or d and c in equal parts (balanced).  [default: balanced; d with --for]",
+    "columns (scaled-c), or d and c in equal parts (balanced).  Needs --optimise.  [default: "
+    "balanced; d with --for]",
 )
 @click.option(
     "--for",
     "wanted",
     metavar="NAME,...",
-    help="Optimise the errors of these parameters alone, the others being nuisance parameters.",
+    help="Optimise the errors of these parameters alone, the others being nuisance parameters.  "
+    "Needs --optimise.",
 )
 @click.option(
     "--after",
@@ -88,16 +90,17 @@ from scarid_cli.cli.options import NUMBERS
     "--workspace",
     type=NUMBERS,
     metavar="XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX",
-    help="Box that the tool must not leave, in the frame of the base [m].",
+    help="Box that the tool must not leave, in the frame of the base [m].  Needs --optimise.",
 )
 @click.option(
     "--budget", type=options.DURATION, metavar="SECONDS",
-    help="Time for random starts of --optimise.  [default: 10]",
+    help="Time for the random starts of --optimise, which it needs.  [default: 10]",
 )  # fmt: skip
 @click.option(
     "--starts",
     type=click.IntRange(1, 100_000),
-    help="Number of random starts instead of a time; gives the same motion each time.",
+    help="Number of random starts instead of a time, which gives the same motion each time.  Needs "
+    "--optimise.  [default: as many as --budget allows]",
 )
 @options.side_output(
     "--expected", help="Write the expected error of each parameter to FILE, a table."
@@ -111,7 +114,8 @@ from scarid_cli.cli.options import NUMBERS
 @click.option(
     "--align",
     is_flag=True,
-    help="Predict errors for `identify` with this option, which also fits a delay.",
+    help="Predict errors for `identify` with this option, which also fits a delay.  Needs "
+    "--expected or --optimise.",
 )
 @click.option(
     "--repeat",
@@ -157,7 +161,7 @@ def command() -> None:
     velocity and acceleration, which are those of the robot's description unless an option narrows
     them. A motion that would leave its limits is refused before anything is written. The
     condition number of the robot's observation matrix W along the motion is reported on standard
-    error; if it is below about 100, the motion excites the robot well.
+    error; about 30 is good for a few parameters, 100 to 1000 for six axes.
 
     --optimise also keeps the torque limits, computed with the a priori parameters, and keeps links
     apart whose shapes are described. It reports what limits the motion, and the error of each

@@ -93,6 +93,11 @@ def report(job: Job, table: Table, counting: Counting | None, left_out: dict[str
         )
 
 
+def lead(delay: float) -> str:
+    """By what time the torques lead the motion [s], or lag behind it."""
+    return f"torques {'lead' if delay >= 0.0 else 'lag'} by {1e3 * abs(delay):.3g} ms"
+
+
 def behind_low_pass(delay: float) -> str:
     """The end of the clause that torques lead by a delay [s], if a low-pass causes it."""
     return f", as behind a low-pass of {0.5 / (math.pi * abs(delay)):.3g} Hz"

@@ -34,10 +34,17 @@ USES = {
     "via": ("you", "`trajgen --via`"),
     "trajectory": ("`trajgen`", "`simulate`"),
     "expected": ("`trajgen --expected`", "you"),
-    "measurement": ("`simulate`, a real robot", "`resample`, `filter`, `tune`, `differentiate`"),
+    "measurement": (
+        "`simulate`, a real robot",
+        "`resample`, `check`, `filter`, `tune`, `differentiate`, `identify`, `validate`",
+    ),
     "trials": ("`tune`", "you"),
     "motion": ("`differentiate`", "`identify`, `validate`"),
-    "parameters": ("`identify`", "`validate --parameters`, `compare`, `urdf --parameters`"),
+    "parameters": (
+        "`identify`",
+        "`validate --parameters`, `compare`, `urdf --parameters`, `report`, `identify --initial`, "
+        "`trajgen --after`",
+    ),
     "trace": ("`identify --trace`", "`report`"),
     "metrics": ("`validate`", "`report`"),
     "comparison": ("`compare`", "you"),

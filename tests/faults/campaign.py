@@ -69,7 +69,7 @@ def classes(share: float, seconds: float) -> Iterator[tuple[str, Callable[[], Co
         lambda: _pairs("concurrent writers", processes.together(max(1, int(5 * share)))),
     )
     if share >= 1.0:
-        yield "bombs", lambda: trials("bombs", bombs.bombs())
+        yield "decompression bombs", lambda: trials("decompression bombs", bombs.bombs())
 
 
 def _closed() -> Count:

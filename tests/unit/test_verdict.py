@@ -81,8 +81,9 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         (
             {},
             "good",
-            "8 of 8 parameters known within 30 %, torque within 0.2, 0.4 % on motions like this "
-            "one, inertia within 0.61, 0.81 %, R2 0.9990, 0.9990, condition number 20",
+            "8 of 8 parameters known within 30 %, model torque within 0.2, 0.4 % on motions like "
+            "this one, residual 0.1, 0.1 %, inertia within 0.61, 0.81 %, R2 0.9990, 0.9990, "
+            "condition number 20",
         ),
         (
             {"effects": (effect(PARALLEL, **FAR),)},
@@ -143,7 +144,7 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         (
             consequence(torque=np.array([0.1, 0.1])),
             "good",
-            "torque within 20, 20 % on motions like this one",
+            "model torque within 20, 20 % on motions like this one",
         ),
         (
             consequence(torque=np.array([0.1, 0.2])),

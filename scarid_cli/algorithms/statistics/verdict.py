@@ -270,7 +270,12 @@ def _summary(evidence: Evidence) -> str:
     found, width = evidence.diagnostics.consequences, _width(evidence)
     parts = [known]
     if np.isfinite(found.torque).all():
-        parts.append(f"torque within {percents(width * found.torque)} on motions like this one")
+        parts.append(
+            f"model torque within {percents(width * found.torque)} on motions like this one"
+        )
+    residuals = np.array([joint.relative_error for joint in evidence.diagnostics.joints])
+    if np.isfinite(residuals).all():
+        parts.append(f"residual {percents(0.01 * residuals)}")
     if np.isfinite(found.inertia).all():
         parts.append(f"inertia within {percents(width * found.inertia)}")
     r2 = [joint.r2 for joint in evidence.diagnostics.joints]

@@ -22,13 +22,21 @@ from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import is_motion, motion, read
 from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.resampled import Resampled
-from scarid_cli.cli.treatment import behind_low_pass, for_motion, for_robot, report, treatment_of
+from scarid_cli.cli.treatment import (
+    behind_low_pass,
+    for_motion,
+    for_robot,
+    lead,
+    report,
+    treatment_of,
+)
 from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document
 from scarid_cli.stages import identify as stage
 from scarid_cli.stages.parameters import identified
 
+CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
 FOR_MOTION, FOR_MEASUREMENT = "rls", "gls"  # the estimator if none is given
 
 
@@ -272,8 +280,10 @@ def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[st
     if "delay" in extra:
         error = extra["delay_error"]
         known = "error unknown" if error is None else f"+- {1e3 * error:.2g}"
-        line += f", torques lead by {1e3 * extra['delay']:.3g} ms ({known})"
+        line += f", {lead(extra['delay'])} ({known})"
         line += behind_low_pass(extra["delay"]) if extra["low_pass"] else ""
+        if error is not None and extra["delay"] < -CLEAR * error:
+            line += ", as if logged late, or as if the positions were commands"
     if "dropped" in extra:
         names = ", ".join(extra["dropped"])
         line += f", dropped {names} (residual {100 * extra['dropped_cost']:.2g} % greater)"

@@ -13,7 +13,14 @@ from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import is_motion, motion, read
 from scarid_cli.cli.resampled import Resampled
-from scarid_cli.cli.treatment import behind_low_pass, for_motion, for_robot, report, treatment_of
+from scarid_cli.cli.treatment import (
+    behind_low_pass,
+    for_motion,
+    for_robot,
+    lead,
+    report,
+    treatment_of,
+)
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
@@ -65,8 +72,7 @@ def _tell(job: Job, model: Identified, before: Known, extra: dict[str, Any]) -> 
     """Say which delay was applied, and whether the robot has changed."""
     if model.delay:
         how = behind_low_pass(model.delay) if model.low_pass else ""
-        delay = 1e3 * model.delay
-        job.say(f"applied the delay that identify fitted: torques lead by {delay:.3g} ms{how}")
+        job.say(f"applied the delay that identify fitted: {lead(model.delay)}{how}")
     if before.testable:
         change = extra["change"]
         job.say(f"{change['verdict']}: {change['reason']}", change["verdict"])
