@@ -167,14 +167,14 @@ def test_a_worse_verdict_than_required_exits_with_3_and_writes_the_table(
     assert "all friction that is known is negative: the torques' sign seems reversed" in plain.err
 
 
-def test_identify_warns_of_degrees_and_of_held_samples(
+def test_identify_tells_of_degrees_and_of_held_samples(
     scarid: Run, log: Path, tmp_path: Path
 ) -> None:
     def degrees(_row: int, cells: list[str]) -> list[str]:
         return [cells[0], *(str(57.29578 * float(x)) for x in cells[1:3]), *cells[3:]]
 
     result = scarid("identify", "--robot", "scara2", changed(log, tmp_path / "a.csv", degrees))
-    assert "warning: positions: joints 1, 2 up to 8" in result.err
+    assert "doubtful: positions: joints 1, 2 up to 8" in result.err
     assert "positions seem to be in degrees: `scarid convert --unit" in result.err
     last: list[list[str]] = []
 

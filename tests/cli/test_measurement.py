@@ -179,6 +179,37 @@ def test_rows_that_count_are_the_same_in_identify_and_validate(shell: Run) -> No
     assert "left out" not in all_rows.err
 
 
+def test_validate_takes_a_log_with_the_bandwidth_of_the_identification(shell: Run) -> None:
+    identified = shell("scarid identify $SAMPLES/scara2.csv -o p.parquet")
+    (hertz,) = re.findall(r"cut-off ([\d.]+) Hz", identified.err)
+    once = shell("scarid validate --parameters p.parquet $SAMPLES/scara2.csv")
+    assert once.status == 0, once.err
+    (found,) = re.findall(r"bandwidth is that of the identification, ([\d.]+) Hz", once.err)
+    assert float(found) == pytest.approx(float(hertz) * (2.0**0.5 - 1.0) ** 0.125, rel=0.01)
+    assert "unchanged: the residuals are those of the identification" in once.err
+    (line,) = re.findall(r"^scarid validate: the same as: (.*)$", once.err, re.MULTILINE)
+    assert shell(line).out == once.out
+    of_identify = pipe(identified.err).split(" | ")[0]
+    assert line.split(" | ")[0] == of_identify
+
+
+def test_validate_chooses_a_bandwidth_where_the_parameters_have_none(shell: Run) -> None:
+    shell("scarid identify $SAMPLES/scara2.csv -o p.csv")
+    found = shell("scarid validate --parameters p.csv $SAMPLES/scara2.csv")
+    assert found.status == 0, found.err
+    assert "because the parameters scatter least" in found.err
+
+
+@pytest.mark.parametrize(("late", "told"), [("0.02", "lag by"), ("0", "lead by")])
+def test_torques_that_lag_are_told_with_their_likely_causes(
+    late: str, told: str, shell: Run
+) -> None:
+    log = f"scarid trajgen --seed 1 | scarid simulate --with torque-delay={late}"
+    found = shell(f"{log} | scarid identify")
+    assert f"torques {told}" in found.err
+    assert ("as if the positions were commands" in found.err) == (told == "lag by")
+
+
 def test_csv_loses_the_bandwidth_and_says_so(shell: Run) -> None:
     csv = shell("scarid differentiate $SAMPLES/scara2.csv | scarid identify")
     assert "give --bandwidth HZ" in csv.err

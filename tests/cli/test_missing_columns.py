@@ -11,14 +11,6 @@ from conftest import Result
 Run = Callable[..., Result]
 
 
-def test_a_motion_without_derivatives_points_to_differentiate(scarid: Run, samples: Path) -> None:
-    log, parameters = samples / "scara2.csv", samples / "scara2.parameters.csv"
-    result = scarid("validate", "--parameters", parameters, log)
-    assert result.status == 65
-    assert "column dq1" in result.err
-    assert "estimate it with `scarid differentiate`" in result.err
-
-
 @pytest.mark.parametrize("command", ["identify", "validate"])
 def test_a_motion_without_torques_is_reported(
     command: str, scarid: Run, samples: Path, tmp_path: Path

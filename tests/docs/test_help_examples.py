@@ -119,7 +119,7 @@ identify --robot arm.urdf --estimator wls arm-motion.parquet -o arm-urdf.parquet
 """
 # The other names that the examples use for these files.
 NAMES = {
-    "log.csv": ["monday.csv", "tuesday.csv"],
+    "log.csv": ["monday.csv", "tuesday.csv", "july.csv"],
     "log.parquet": ["monday.parquet", "tuesday.parquet"],
     "p.parquet": [
         "before.parquet",
@@ -131,7 +131,6 @@ NAMES = {
         "may.parquet",
         "june.parquet",
     ],
-    "motion.parquet": ["july-motion.parquet"],
     "metrics.parquet": ["runs/1/p2smd.cross.metrics.parquet", "runs/2/p2smd.cross.metrics.parquet"],
 }
 OF_THE_ARM = {"arm-motion.parquet": ["motion.parquet"], "arm-toml.parquet": ["p.parquet"]}

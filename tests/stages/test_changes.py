@@ -14,8 +14,10 @@ from crossvalidation import COMMON, log
 from stages.tables import SCARA
 from unit.support import adjusted
 
+from scarid_cli.algorithms.changes.evidence import torque_shares
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
+from scarid_cli.algorithms.regression.rows import rows_of
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
@@ -98,6 +100,29 @@ def test_a_motor_constant_that_is_off(joint: int) -> None:
     assert kinds(found) == [("motor constant", [joint])]
     (amount,), (error,) = (found["explanations"][0][key].values() for key in ("amounts", "errors"))
     assert amount == pytest.approx(0.05, abs=4.0 * error)
+
+
+def test_the_torque_that_a_change_makes_is_relative_to_that_of_each_joint() -> None:
+    rows = rows_of(SCARA, np.random.default_rng(1).standard_normal((4, 2, 50)), np.arange(50), 0.01)
+    theta, changed = SCARA.apriori, np.zeros(8 + 1 + 2 * 2)
+    changed[3] = 0.2
+    torques, moved = rows.W @ theta, rows.W[:, :, 3] * 0.2
+    expected = np.sqrt((moved**2).sum(axis=0) / (torques**2).sum(axis=0))
+    np.testing.assert_allclose(torque_shares(rows, theta, changed), expected, rtol=1e-9)
+    changed = np.zeros(8 + 1 + 2 * 2)
+    changed[8 + 1 + 1] = 0.05  # the motor constant of joint 2
+    np.testing.assert_allclose(torque_shares(rows, theta, changed), [0.0, 0.05], atol=1e-12)
+
+
+def test_a_change_within_the_stated_intervals_is_named_but_is_none() -> None:
+    before, gain = parameters(), scaled(1, 1.05)(*LOGS[12])
+    stated = before.meta.extra["joints"]
+    known_worse = [{**joint, "torque_error": 0.04} for joint in stated]
+    extra = {**before.meta.extra, "joints": known_worse}
+    found = change(replace(before, meta=replace(before.meta, extra=extra)), *gain)
+    assert found["verdict"] == "unchanged"
+    assert kinds(found) == [("motor constant", [1])]
+    assert "%, within the intervals of the identification (if anything, motor" in found["reason"]
 
 
 def test_another_delay() -> None:

@@ -17,6 +17,7 @@ from scarid_cli.algorithms.regression.counting import (
     counted,
 )
 from scarid_cli.algorithms.regression.rows import Rows, joined
+from scarid_cli.algorithms.robots.coupled import CoupledMotor
 from scarid_cli.arrays import Array, Numbers
 
 H = 0.01
@@ -128,3 +129,22 @@ def test_the_window_is_half_a_period_of_the_bandwidth() -> None:
     assert Counting(bandwidth=4.0).window(H) == int(REVERSAL / 4.0 / H) == 12
     assert Counting().window(H) == 0
     assert Counting(bandwidth=100.0).decimated(0.05).bandwidth == pytest.approx(8.0)
+
+
+@given(sizes=SIZES)
+@settings(max_examples=10, deadline=None)
+def test_rows_near_a_reversal_of_a_motor_that_turns_with_two_joints_are_left_out_of_both(
+    sizes: list[int],
+) -> None:
+    """As if each of the joints had reversed with the motor; the third joint has nothing to do."""
+    t = H * np.arange(600)
+    dq = np.stack((1.0 + 0.3 * np.sin(5.0 * t), -0.9 + 0.4 * np.cos(3.0 * t), 1.0 + 0.0 * t))
+    motor = CoupledMotor(joint=1, other=2, ratio=1.0)
+    found = scales(rows_of(dq), Counting(2.0, motors=(motor,)), sizes)
+    alone = scales(rows_of(motor.speed(dq)[None] + 0.0), Counting(2.0))[:, 0]
+    turned = np.flatnonzero(np.diff(np.sign(motor.speed(dq))))
+    assert len(turned) > 1
+    near = np.min(np.abs(np.arange(600)[:, None] - turned - 0.5), axis=1) < Counting(2.0).window(H)
+    np.testing.assert_array_equal(found[:, :2] == 0.0, np.column_stack((near, near)))
+    assert np.all(found[:, 2] == 1.0)
+    assert np.all(alone[near] == 0.0)

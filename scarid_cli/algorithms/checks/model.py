@@ -16,7 +16,7 @@ from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array, Marks
 
 PER_COLUMN, FEWEST, MOST = 8, 300, 1500  # samples that are fitted, spread over the log
 EXTRA = 4  # columns added for each joint: viscous, Coulomb, offset, derivative of the torque
@@ -35,7 +35,7 @@ class Samples:
     """
 
     motion: Array
-    counts: Numbers
+    counts: Marks
     independent: float
 
     @classmethod
@@ -56,7 +56,7 @@ class Samples:
         slope = np.gradient(tau, rows.h * rows.at, axis=1)
         chosen = np.unique(np.linspace(0, rows.samples - 1, samples).astype(np.int64))
         motion = np.stack((*rows.motion, slope))[:, :, chosen]
-        return cls(motion, (rows.scales[chosen].T > 0.0).astype(np.int64), 1.0)
+        return cls(motion, rows.scales[chosen].T > 0.0, 1.0)
 
     def wired(self, wiring: Wiring) -> Samples:
         """The samples with the signals that each joint has by this wiring."""
@@ -131,7 +131,7 @@ class Solution:
     residuals: Array
 
 
-def solved(W: Array, tau: Array, counts: Numbers) -> Solution:
+def solved(W: Array, tau: Array, counts: Marks) -> Solution:
     """The fit of tau (joints, samples) by W (samples, joints, parameters).
 
     Each joint is weighted by the residual of a first fit. What the rows do not determine stays
@@ -159,13 +159,13 @@ def fitted(robot: Robot, samples: Samples) -> Fit:
     return Fit(found.residuals, _powers(robot, wide, samples, found))
 
 
-def _deviations(tau: Array, counts: Numbers) -> Array:
+def _deviations(tau: Array, counts: Marks) -> Array:
     """The standard deviation of the torque of each joint over the rows that count."""
     found = [x[k].std() if k.any() else 0.0 for x, k in zip(tau, counts, strict=True)]
     return np.array([x if x > 0.0 else 1.0 for x in found])
 
 
-def _weighted(wide: Array, tau: Array, counts: Numbers, weights: Array) -> tuple[Array, Array]:
+def _weighted(wide: Array, tau: Array, counts: Marks, weights: Array) -> tuple[Array, Array]:
     factors = counts * weights[:, None]
     A = np.concatenate([wide[:, j] * factors[j][:, None] for j in range(len(tau))])
     return A, np.concatenate(list(tau * factors))

@@ -20,6 +20,7 @@ from scarid_cli.algorithms.robots.description import Robot
 
 FALL = 0.5  # of the mean square residual: what a wiring must leave at most to be preferred
 EXPLAINED = 0.02  # of the mean square torque of each joint: exchanged joints leave far more
+UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
 STEPS = 3  # reversals or exchanges that are looked for, one after the other
 
 
@@ -33,16 +34,20 @@ class Wired:
 
 def wired(robot: Robot, samples: Samples) -> Wired:
     """The wiring that explains the log, which is the log's own unless another is far better."""
-    found = _searched(robot, samples, _neighbours)
+    found = _searched(robot, samples, _neighbours, FALL)
     return _braking(found, lambda wiring: _tried(robot, samples, wiring))
 
 
 def reversed_axes(robot: Robot, samples: Samples) -> list[int]:
     """The joints (from 1) whose axes point the other way than in the description.
 
-    The position and the torque of each are reversed; all else is taken to be as described.
+    The position and the torque of each are reversed; all else is taken to be as described. The
+    product of the residuals of all joints has to fall to a half, as the last joints of an arm
+    matter for few of them. There are none if the model then leaves a joint unexplained.
     """
-    found = _searched(robot, samples, _with_reversed_axes)
+    found = _searched(robot, samples, _with_reversed_axes, FALL ** (1.0 / len(robot.joints)))
+    if found.fit.residuals.max() > UNEXPLAINED:
+        return []
     return [j for j, sign in enumerate(found.wiring.signs[0], start=1) if sign < 0]
 
 
@@ -50,18 +55,21 @@ def _tried(robot: Robot, samples: Samples, wiring: Wiring) -> Wired:
     return Wired(wiring, fitted(robot, samples.wired(wiring)))
 
 
-def _searched(robot: Robot, samples: Samples, neighbours: Callable[[Wired], list[Wiring]]) -> Wired:
+def _searched(
+    robot: Robot, samples: Samples, neighbours: Callable[[Wired], list[Wiring]], fall: float
+) -> Wired:
     """The wiring that leaves far less of the torques than all that come before it, if there is one.
 
-    `neighbours` are the wirings that are tried from one to the next.
+    `neighbours` are the wirings that are tried from one to the next, and `fall` is what one must
+    leave at most of the mean square residual.
     """
     found = _tried(robot, samples, Wiring.same(len(robot.joints)))
     for _ in range(STEPS):
         others = [_tried(robot, samples, wiring) for wiring in neighbours(found)]
         least = min(other.fit.misfit for other in others)
-        if least > found.fit.misfit + np.log(FALL):
+        if least > found.fit.misfit + np.log(fall):
             break
-        alike = [other for other in others if other.fit.misfit < least - np.log(FALL)]
+        alike = [other for other in others if other.fit.misfit < least - np.log(fall)]
         found = min(alike, key=lambda other: (len(other.fit.driving), other.fit.misfit))
     return found
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.coupled import CoupledMotor
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array, Marks, Numbers
 
 # Chosen on simulated robots, see DESIGN.md, section "Rows that count".
 SLOW = 0.02  # share of the root-mean-square velocity so far
@@ -64,7 +64,7 @@ class Speeds:
     sums: Array
     samples: int = 0
 
-    def moving(self, dq: Array, floor: Array) -> Numbers:
+    def moving(self, dq: Array, floor: Array) -> Marks:
         """Whether each velocity of dq (joints, samples) is above both bounds."""
         # One addition after the other, so that the bits do not depend on the batches.
         sums = np.cumsum(np.column_stack((self.sums, dq**2)), axis=1)[:, 1:]
@@ -100,7 +100,7 @@ class LeftOut:
             f"{share:.1f} % of the rows {why}" for share, why in shares if share >= 0.05
         )
 
-    def add(self, moving: Numbers, away: Numbers) -> None:
+    def add(self, moving: Marks, away: Marks) -> None:
         """Count rows (joints, samples) that are `moving`, and those `away` from a reversal."""
         self.rows += away.size
         self.reversal += int(np.count_nonzero(~away))
@@ -118,7 +118,7 @@ def reversals(dq: Array, first: int, motors: Sequence[CoupledMotor] = ()) -> lis
     return [first + np.flatnonzero(row) for row in changes]
 
 
-def away(turns: list[Numbers], at: Numbers, window: int) -> Numbers:
+def away(turns: list[Numbers], at: Numbers, window: int) -> Marks:
     """Whether none of the reversals of a joint is within `window` samples of the samples `at`."""
     return np.array(
         [
@@ -147,7 +147,7 @@ class Waiting(Generic[T]):
         self.last = int(rows.at[-1]), rows.motion[1][:, -1:]
         self.parts.append((item, rows))
 
-    def taken(self, *, rest: bool = False) -> Iterator[tuple[T, Rows, Numbers]]:
+    def taken(self, *, rest: bool = False) -> Iterator[tuple[T, Rows, Marks]]:
         """The parts whose following samples are known, or all, and which rows are away."""
         newest = self.last[0] if self.last else 0
         while self.parts and (rest or int(self.parts[0][1].at[-1]) + self.window <= newest):
@@ -175,7 +175,7 @@ def counted(
 
 def _in_runs(
     parts: Iterable[tuple[T, Rows]], counting: Counting
-) -> Iterator[tuple[T, Rows, Numbers]]:
+) -> Iterator[tuple[T, Rows, Marks]]:
     """The parts, and which of their rows are away from every reversal of the same run."""
     waiting: Waiting[T] | None = None
     for item, rows in parts:

@@ -92,7 +92,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     obstacles = [*_idle(joints, robot), *_undetermined(evidence)]
     biased = _biased(evidence)
     if obstacles:
-        return Verdict(NOT_IDENTIFIABLE, (*evidence.failed, *obstacles, summary), bool(biased))
+        return Verdict(NOT_IDENTIFIABLE, (*obstacles, *evidence.failed, summary), bool(biased))
     wrong = [
         *evidence.failed,
         *_forgotten(evidence.diagnostics),

@@ -20,7 +20,7 @@ from scarid_cli.algorithms.regression.counting import (
     reversals,
 )
 from scarid_cli.algorithms.robots.coupled import CoupledMotor
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array, Marks
 
 ORDER = 4
 TWO_SIDED = (2.0**0.5 - 1.0) ** (0.5 / ORDER)  # the bandwidth of both passes, over the cut-off
@@ -54,7 +54,7 @@ class Lowpassed:
     """
 
     motion: tuple[Array, Array, Array, Array]
-    counts: Numbers
+    counts: Marks
     interval: float
 
 
@@ -98,7 +98,7 @@ def _padding(segment: Segment, h: float, cutoff: float) -> int:
 
 def _counts(
     dq: Array, noise: Array, bandwidth: float, h: float, motors: tuple[CoupledMotor, ...]
-) -> Numbers:
+) -> Marks:
     counting = Counting(bandwidth, tuple(velocity_noise(x, bandwidth, h) for x in noise.tolist()))
     at = np.arange(dq.shape[1])
     moving = Speeds(np.zeros(len(dq))).moving(dq, counting.floor(len(dq)))

@@ -20,7 +20,7 @@ from scarid_cli.algorithms.regression.information import inverse_deviations
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
 from scarid_cli.algorithms.tuning.spectrum import bandwidths
-from scarid_cli.arrays import Array, Numbers, varies
+from scarid_cli.arrays import Array, Marks, Numbers, varies
 
 STEP = 2.0**0.25  # from one cut-off to the next
 PARTS = 20  # of the record, each left out once
@@ -116,7 +116,7 @@ def _scatter(robot: Robot, parts: Sequence[Lowpassed], cutoff: float) -> Scatter
     return Scatter(cutoff, value, int(rows.sum()), share)
 
 
-def sums_of(W: Array, tau: Array, counts: Numbers) -> Array:
+def sums_of(W: Array, tau: Array, counts: Marks) -> Array:
     """[W y]'[W y] of the rows that count (parts, joints, parameters + 1, parameters + 1)."""
     samples, joints, count = W.shape
     edges = np.arange(PARTS + 1) * samples // PARTS

@@ -1,0 +1,72 @@
+"""Logs that wrong parameters explain well: the verdict says what is wrong with them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT, Result
+
+Run = Callable[..., Result]
+
+UR10E = ROOT / "samples" / "robots"
+
+
+def verdict(result: Result) -> str:
+    found = re.search(
+        r"^scarid identify: ((?:good|doubtful|not identifiable): .*)$", result.err, re.M
+    )
+    assert found, result.err
+    return found[1]
+
+
+def spoiled(log: Path, path: Path, factors: dict[str, float]) -> Path:
+    """The log with some columns multiplied."""
+    names, *rows = log.read_text("utf-8").splitlines()
+    scales = [factors.get(name, 1.0) for name in names.split(",")]
+    cells = (
+        ",".join(str(float(x) * scale) for x, scale in zip(row.split(","), scales, strict=True))
+        for row in rows
+    )
+    path.write_text("\n".join([names, *cells, ""]))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("factors", "told"),
+    [
+        ({}, "good: "),
+        (
+            {"q2": -1.0, "tau2": -1.0},
+            "doubtful: axes: the model fits far better with the position and the torque of joint ",
+        ),
+        ({"q1": 57.3, "q2": 57.3}, "doubtful: positions: joints 1, 2 up to 8"),
+        ({"q1": 1000.0}, "doubtful: positions: joint 1 at "),
+    ],
+)
+def test_a_check_that_fails_makes_the_verdict_doubtful(
+    factors: dict[str, float], told: str, samples: Path, tmp_path: Path, scarid: Run
+) -> None:
+    log = spoiled(samples / "scara2.csv", tmp_path / "log.csv", factors)
+    assert verdict(scarid("identify", "--robot", "scara2", log)).startswith(told)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 5.0])
+def test_a_tilted_base_is_named(degrees: float, tmp_path: Path, scarid: Run) -> None:
+    pytest.importorskip("pinocchio")
+    upright = UR10E / "ur10e.toml"
+    gravity = -9.81 * np.array([np.sin(np.deg2rad(degrees)), 0.0, np.cos(np.deg2rad(degrees))])
+    tilted = tmp_path / "tilted.toml"
+    description = upright.read_text("utf-8").replace('"ur10e.urdf"', f'"{UR10E / "ur10e.urdf"}"')
+    tilted.write_text(f"gravity = {gravity.tolist()}\n{description}")
+    reference, log = tmp_path / "reference.parquet", tmp_path / "log.parquet"
+    for words in (
+        ("trajgen", "--robot", tilted, "--seed", "1", "-o", reference),
+        ("simulate", "--robot", tilted, "--seed", "1", reference, "-o", log),
+    ):
+        assert scarid(*words).status == 0
+    found = verdict(scarid("identify", "--robot", upright, log))
+    assert ("gravity acts in another direction" in found) == (degrees > 0.0)
