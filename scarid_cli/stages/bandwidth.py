@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.checks.finding import joints_text
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.equivalent import chain, equivalent, typed
@@ -22,6 +23,7 @@ from scarid_cli.stages.record import Record
 from scarid_cli.stages.tune import BANDWIDTH, SCATTER, Progress, Tried, nearest
 
 CHOICES = 3  # at most, each without the lead of the torques behind the cut-off of the one before
+STILL = 10.0  # standard deviations of its noise within which a joint rests
 NEAR = 0.1  # octaves between two cut-offs that count as the same
 
 
@@ -62,11 +64,7 @@ def bandwidth(record: Record, robot: Robot, progress: Progress = lambda: None) -
     segments = record.segments
     points = curve(robot, segments, record.h, progress)
     if not _known(points):
-        raise BadData(
-            f"{record.name}: too few rows are away from reversals and standstill to choose a "
-            f"bandwidth for the {len(robot.parameters)} parameters of {robot.name}; give a longer "
-            "log, in which every joint moves"
-        )
+        raise _too_few(record, robot)
     for _ in range(CHOICES):
         before = chosen(points).cutoff
         steady = without_lead(robot, segments, record.h, before)
@@ -76,6 +74,25 @@ def bandwidth(record: Record, robot: Robot, progress: Progress = lambda: None) -
             break
     choice = chosen(points)
     return Bandwidth(choice, tuple(points), _noise(segments, record.h, choice.cutoff))
+
+
+def _too_few(record: Record, robot: Robot) -> BadData:
+    """Why no bandwidth can be chosen: joints that do not move, or too short a log."""
+    segments = record.segments
+    low = np.min([s.q.min(axis=1) for s in segments], axis=0)
+    high = np.max([s.q.max(axis=1) for s in segments], axis=0)
+    noise = np.max([s.noise for s in segments], axis=0)
+    still = (np.flatnonzero(high - low < STILL * noise) + 1).tolist()
+    if still:
+        return BadData(
+            f"{record.name}: {joints_text(still)} {'does' if len(still) == 1 else 'do'} not move; "
+            "give a log in which every joint moves, or fix these joints in the description"
+        )
+    return BadData(
+        f"{record.name}: too few rows are away from reversals and standstill to choose a "
+        f"bandwidth for the {len(robot.parameters)} parameters of {robot.name}; give a longer "
+        "log, in which every joint moves"
+    )
 
 
 def _known(points: Sequence[Scatter]) -> bool:

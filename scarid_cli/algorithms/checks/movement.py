@@ -16,6 +16,7 @@ from scarid_cli.algorithms.tuning.scatter import HIGHEST
 from scarid_cli.arrays import Array
 
 STILL = 0.5  # of the time at rest: the other half would give the same parameters
+ROUNDING = 1e-12  # rad/s or m/s: what a low-pass makes of a position that does not change
 LITTLE = 0.02  # of the speed of the fastest joint, or of the limit
 # Noise of part p of the acceleration reduces inertias by p^2 (errors in variables): 1 % and 25 %.
 NOISY, NOISE = 0.1, 0.5
@@ -44,7 +45,8 @@ def range_of_joints(parts: list[Lowpassed], robot: Robot) -> Finding:
     text = ", ".join(
         f"{speed:.2g} {joint.unit}/s" for speed, joint in zip(speeds, robot.joints, strict=True)
     )
-    idle = [i for i in range(len(speeds)) if speeds[i] < LITTLE * _typical(speeds, robot, i)]
+    least = [max(LITTLE * _typical(speeds, robot, i), ROUNDING) for i in range(len(speeds))]
+    idle = [i for i in range(len(speeds)) if speeds[i] < least[i]]
     if not idle:
         return ok("motion", f"{text} rms")
     names = joints_text(i + 1 for i in idle)
@@ -55,7 +57,7 @@ def range_of_joints(parts: list[Lowpassed], robot: Robot) -> Finding:
 def _typical(speeds: Array, robot: Robot, i: int) -> float:
     """The speed of the fastest joint of the same type as joint i [rad/s or m/s]."""
     alike = [j for j, joint in enumerate(robot.joints) if joint.type == robot.joints[i].type]
-    return float(speeds[alike].max()) or float("inf")
+    return float(speeds[alike].max())
 
 
 def bandwidths(motion: Motion) -> Finding:
