@@ -23,6 +23,7 @@ from scarid_cli.stages.record import Record
 from scarid_cli.stages.tune import BANDWIDTH, SCATTER, Progress, Tried, nearest
 
 CHOICES = 3  # at most, each without the lead of the torques behind the cut-off of the one before
+FEWEST = 100  # rows: a shorter log says little about which joints move
 STILL = 10.0  # standard deviations of its noise within which a joint rests
 NEAR = 0.1  # octaves between two cut-offs that count as the same
 
@@ -83,7 +84,7 @@ def _too_few(record: Record, robot: Robot) -> BadData:
     high = np.max([s.q.max(axis=1) for s in segments], axis=0)
     noise = np.max([s.noise for s in segments], axis=0)
     still = (np.flatnonzero(high - low < STILL * noise) + 1).tolist()
-    if still:
+    if still and sum(s.q.shape[1] for s in segments) >= FEWEST:
         return BadData(
             f"{record.name}: {joints_text(still)} {'does' if len(still) == 1 else 'do'} not move; "
             "give a log in which every joint moves, or fix these joints in the description"
