@@ -50,23 +50,13 @@ def identify(
     findings = [] if findings is None else findings
     treatment = treatment or Treatment()
     estimator = estimator.for_robot(robot)
-    if trace:
-        schema = _trace_schema(robot, table)
-        meta = replace(table.meta, kind="trace", robot=robot.name)
-        trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
     if checkpoint is None:
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
-    left_out = checkpoint.left_out
-    times = Times(table, checkpoint.seen)
-    reach = Reach(len(robot.joints))
-    table = times.watched(reach.watched(table))
-    for batch, rows in treated(table, robot, treatment, checkpoint.seen, estimator, left_out):
-        checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
-        if trace and batch is not None:
-            new = dict(zip(robot.names, estimates.T, strict=True))
-            trace.write(with_columns(batch, schema, new))
+    times, reach = Times(table, checkpoint.seen), Reach(len(robot.joints))
+    watched = times.watched(reach.watched(table))
+    checkpoint = _after_all_rows(watched, robot, estimator, treatment, checkpoint, trace)
     _check_enough(table, robot, checkpoint.subsample.counted)
     try:
         found = outcome(estimator, initial, checkpoint, treatment, robot)
@@ -77,11 +67,10 @@ def identify(
     findings += reach.findings(robot, table.period)
     if not estimator.FOLLOWS:
         findings += of_axes(checkpoint.subsample.rows(), robot)
-    meta = replace(table.meta, kind="parameters", robot=robot.name)
     result = parameters(
         found,
         robot,
-        meta,
+        replace(table.meta, kind="parameters", robot=robot.name),
         treatment,
         variance=variance,
         matched=_matched(table),
@@ -92,8 +81,30 @@ def identify(
     if bandwidth := table.meta.extra.get("bandwidth"):
         extra["bandwidth"] = bandwidth
     if treatment.counting:
-        extra["left_out"] = left_out.counts
+        extra["left_out"] = checkpoint.left_out.counts
     return replace(result, meta=replace(result.meta, extra=extra))
+
+
+def _after_all_rows(
+    table: Table,
+    robot: Robot,
+    estimator: BaseEstimator,
+    treatment: Treatment,
+    checkpoint: Checkpoint,
+    trace: Sink | None,
+) -> Checkpoint:
+    """The checkpoint after the last row; the trace receives the estimates after every row."""
+    schema = _trace_schema(robot, table)
+    if trace:
+        meta = replace(table.meta, kind="trace", robot=robot.name)
+        trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
+    parts = treated(table, robot, treatment, checkpoint.seen, estimator, checkpoint.left_out)
+    for batch, rows in parts:
+        checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
+        if trace and batch is not None:
+            new = dict(zip(robot.names, estimates.T, strict=True))
+            trace.write(with_columns(batch, schema, new))
+    return checkpoint
 
 
 def _matched(table: Table) -> bool:
