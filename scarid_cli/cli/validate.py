@@ -44,6 +44,6 @@ def command() -> None:
     the motor constant or the offset of a joint, another delay, reversed or swapped joints), or
     `unexplained`. Noise alone makes at most one of a hundred comparisons of an unchanged robot end
     otherwise than `unchanged`. A change of the torques within the intervals that the identification
-    states is named, but counts as `unchanged`. Parameters in a CSV file lack what the tests of
-    delay and offsets need: write them as Parquet or Arrow.
+    states, and within 10 %, is named, but counts as `unchanged`. Parameters in a CSV file lack what
+    the tests of delay and offsets need: write them as Parquet or Arrow.
     """

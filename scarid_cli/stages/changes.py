@@ -21,6 +21,7 @@ from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.jackknife import quantile
+from scarid_cli.algorithms.statistics.verdict import VAGUE
 from scarid_cli.arrays import Array, median
 from scarid_cli.io.table import Table
 from scarid_cli.stages.parameters import EVIDENCE, Identified
@@ -110,7 +111,8 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
     slight = None
     if found.changed:
         shares = torque_shares(rows, theta, found.amounts)
-        slight = float(shares.max()) if np.all(shares <= before.torques) else None
+        within = np.all(shares <= np.minimum(before.torques, VAGUE))
+        slight = float(shares.max()) if within else None
     return of_change(found, values, ratios, slight)
 
 
