@@ -68,7 +68,8 @@ from scarid_cli.cli.described import describing
     cls=options.Unrecorded,
     type=click.Choice(("good", "not-biased", "identifiable")),
     help="Exit with status 3 if the verdict is worse; the table is written all the same. A "
-    "doubtful verdict is not-biased unless the soft sensor or a delay changes the estimates.",
+    "doubtful verdict is not-biased unless the soft sensor or a delay changes the estimates, or "
+    "the log fails a check.",
 )
 @options.side_output("--trace", help="Write the estimates after every sample (rls, ekf).")
 @options.input_file(

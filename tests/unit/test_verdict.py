@@ -190,6 +190,15 @@ def test_the_verdict_says_what_is_wrong(
     assert any(reason in found for found in judged.reasons), judged.reasons
 
 
+@pytest.mark.parametrize("scaled", [5.0, 1e6])
+def test_a_log_that_fails_a_check_is_not_to_be_relied_on(scaled: float) -> None:
+    found = verdict(evidence(failed=("positions: in degrees",), scaled_condition=scaled), SCARA)
+    assert found.grade == ("doubtful" if scaled < 1e4 else "not identifiable")
+    assert "positions: in degrees" in found.reasons
+    assert found.biased
+    assert not verdict(evidence(), SCARA).biased
+
+
 def test_a_delay_is_not_advised_twice() -> None:
     effects = (effect(PARALLEL), effect(SIGNALS, **FAR))
     judged = verdict(evidence(treatment=Treatment(align=True), effects=effects), SCARA)

@@ -43,8 +43,8 @@ FEW = 3  # unknown parameters that are named
 class Verdict:
     """The grade and its reasons, each a clause without its full stop.
 
-    `biased` tells whether an alternative to the signals moves the estimates too far, or none could
-    be tried.
+    `biased` tells whether the log failed a check, an alternative to the signals moves the estimates
+    too far, or none could be tried.
     """
 
     grade: str
@@ -90,13 +90,12 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     joints = evidence.diagnostics.joints
     summary = _summary(evidence)
     obstacles = [*_idle(joints, robot), *_undetermined(evidence)]
-    biased = _biased(evidence)
+    bias = [*evidence.failed, *_biased(evidence)]
     if obstacles:
-        return Verdict(NOT_IDENTIFIABLE, (*obstacles, *evidence.failed, summary), bool(biased))
+        return Verdict(NOT_IDENTIFIABLE, (*obstacles, *evidence.failed, summary), bool(bias))
     wrong = [
-        *evidence.failed,
+        *bias,
         *_forgotten(evidence.diagnostics),
-        *biased,
         *_changed(evidence, robot),
         *_poor(joints),
         *_vague(evidence),
@@ -105,7 +104,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     if wrong and evidence.unexplained:
         wrong = [evidence.unexplained, *wrong]
     notes = [*_inertia_unknown(evidence), *notes_of(evidence.names, evidence.diagnostics)]
-    return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes), bool(biased))
+    return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes), bool(bias))
 
 
 def _idle(joints: Sequence[JointResidual], robot: Robot) -> list[str]:
