@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from scarid_cli.algorithms.checks import clock, model, units, values, wiring
-from scarid_cli.algorithms.checks.finding import OK, Finding, failed, joints_text
+from scarid_cli.algorithms.checks import clock, units, values
+from scarid_cli.algorithms.checks.finding import OK, Finding
 from scarid_cli.algorithms.checks.log import Log
-from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table
 from scarid_cli.stages.logs import log_of
-
-FEWEST = 100  # rows of each joint with which another direction of an axis is tried
 
 
 def of_extremes(q: Array, tau: Array, robot: Robot, period: float) -> list[Finding]:
@@ -30,18 +27,6 @@ def of_rate(period: float) -> Finding | None:
     """What is not in order in a clock with this period [s], if anything."""
     finding, _ = clock.unit(clock.Clock(np.array([period]), period))
     return finding if finding.status != OK else None
-
-
-def of_axes(rows: Rows, robot: Robot) -> list[Finding]:
-    """Joints whose positions and torques are both reversed, which hardly increases a residual."""
-    if rows.samples < FEWEST or not np.all(np.count_nonzero(rows.scales, axis=0) >= FEWEST):
-        return []
-    joints = wiring.reversed_axes(robot, model.Samples.of_rows(rows, model.enough(robot)))
-    if not joints:
-        return []
-    names = joints_text(joints)
-    figure = f"the model fits far better with the position and the torque of {names} reversed"
-    return [failed("axes", figure, "does the axis point the other way than in the description?")]
 
 
 def of_measurement(table: Table, robot: Robot) -> list[Finding]:

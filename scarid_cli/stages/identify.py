@@ -20,7 +20,7 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import SEGMENT, Table, number, segment_field, with_columns
 from scarid_cli.stages import Sink
-from scarid_cli.stages.glance import of_axes
+from scarid_cli.stages.axes import of_axes
 from scarid_cli.stages.parameters import parameters
 from scarid_cli.stages.reach import Reach
 from scarid_cli.stages.rows import treated

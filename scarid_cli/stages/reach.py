@@ -1,9 +1,14 @@
-"""How far positions and torques reach that stream through: `identify` tells of wrong units."""
+"""How far positions and torques reach that stream through: `identify` tells of wrong units.
+
+The checks themselves are imported only where something is out of the usual, so that they do not
+delay the start of a run in which nothing is.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from math import pi
 
 import numpy as np
 import pyarrow as pa
@@ -13,7 +18,10 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, settled
-from scarid_cli.stages.glance import of_extremes
+
+LONGEST = 0.05  # s, of the period of a usual log
+FARTHEST = 4.0 * pi  # rad, of a usual joint without limits
+LEAST = 0.003  # of the torque limit, which a usual log exceeds at some joint
 
 
 @dataclass
@@ -48,6 +56,21 @@ class Reach:
     def findings(self, robot: Robot, period: float) -> list[Finding]:
         """What is not in order, for rows every `period` [s]."""
         ends = np.column_stack((self.low, self.high))
-        if not np.all(self.low <= self.high):
+        if not np.all(self.low <= self.high) or self._usual(ends, robot, period):
             return []
+        from scarid_cli.stages.glance import of_extremes
+
         return of_extremes(ends[: self.joints], ends[self.joints :], robot, period)
+
+    def _usual(self, ends: Array, robot: Robot, period: float) -> bool:
+        """Whether nothing can be out of order, because all is within the limits."""
+        reach = np.abs(ends).max(axis=1)
+        joints = list(zip(robot.joints, ends[: self.joints], reach[self.joints :], strict=True))
+        within = all(
+            max(joint.lower, -FARTHEST) <= low
+            and high <= min(joint.upper, FARTHEST)
+            and torque <= joint.torque_limit
+            for joint, (low, high), torque in joints
+        )
+        used = any(not torque < LEAST * joint.torque_limit < np.inf for joint, _, torque in joints)
+        return period <= LONGEST and within and used

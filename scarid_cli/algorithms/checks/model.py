@@ -9,14 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.tuning.lowpassed import Lowpassed
 from scarid_cli.arrays import Array, Marks
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.tuning.lowpassed import Lowpassed
 
 PER_COLUMN, FEWEST, MOST = 8, 300, 1500  # samples that are fitted, spread over the log
 EXTRA = 4  # columns added for each joint: viscous, Coulomb, offset, derivative of the torque
