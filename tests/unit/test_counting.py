@@ -17,7 +17,7 @@ from scarid_cli.algorithms.regression.counting import (
     counted,
 )
 from scarid_cli.algorithms.regression.rows import Rows, joined
-from scarid_cli.algorithms.robots.coupled import CoupledMotor
+from scarid_cli.algorithms.robots.coupled import CoupledCoulomb
 from scarid_cli.arrays import Array, Numbers
 
 H = 0.01
@@ -139,7 +139,7 @@ def test_rows_near_a_reversal_of_a_motor_that_turns_with_two_joints_are_left_out
     """As if each of the joints had reversed with the motor; the third joint has nothing to do."""
     t = H * np.arange(600)
     dq = np.stack((1.0 + 0.3 * np.sin(5.0 * t), -0.9 + 0.4 * np.cos(3.0 * t), 1.0 + 0.0 * t))
-    motor = CoupledMotor(joint=1, other=2, ratio=1.0)
+    motor = CoupledCoulomb(joint=1, other=2, ratio=1.0)
     found = scales(rows_of(dq), Counting(2.0, motors=(motor,)), sizes)
     alone = scales(rows_of(motor.speed(dq)[None] + 0.0), Counting(2.0))[:, 0]
     turned = np.flatnonzero(np.diff(np.sign(motor.speed(dq))))

@@ -10,13 +10,15 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.robots.coupled import CoupledMotor
 from scarid_cli.arrays import Array, Marks, Numbers
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.robots.coupled import CoupledTerm
 
 # Chosen on simulated robots, see DESIGN.md, section "Rows that count".
 SLOW = 0.02  # share of the root-mean-square velocity so far
@@ -40,7 +42,7 @@ class Counting:
 
     bandwidth: float | None = None
     velocity_noise: tuple[float, ...] = ()
-    motors: tuple[CoupledMotor, ...] = ()
+    motors: tuple[CoupledTerm, ...] = ()
 
     def window(self, h: float) -> int:
         """The number of samples left out before and after a reversal, sampled every h [s]."""
@@ -107,7 +109,7 @@ class LeftOut:
         self.standstill += int(np.count_nonzero(away & ~moving))
 
 
-def reversals(dq: Array, first: int, motors: Sequence[CoupledMotor] = ()) -> list[Numbers]:
+def reversals(dq: Array, first: int, motors: Sequence[CoupledTerm] = ()) -> list[Numbers]:
     """For each joint the samples k such that the sign of dq (joints, samples) differs at k + 1.
 
     So do those of the `motors` that turn with it. first: the number of the first sample.
@@ -134,7 +136,7 @@ class Waiting(Generic[T]):
 
     window: int
     turns: list[Numbers]
-    motors: tuple[CoupledMotor, ...] = ()
+    motors: tuple[CoupledTerm, ...] = ()
     parts: deque[tuple[T, Rows]] = field(default_factory=deque)
     last: tuple[int, Array] | None = None  # the last sample: its number, and dq (joints, 1)
 

@@ -5,7 +5,6 @@ They act between the two joints; what the motor does at each of them alone is a 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -13,19 +12,6 @@ import numpy as np
 
 from scarid_cli.algorithms.robots.terms import INERTIA, TORQUE, VISCOUS, Column, JointMotion, Term
 from scarid_cli.arrays import Array
-
-
-@dataclass(frozen=True)
-class CoupledMotor:
-    """A motor that turns with the joint `other`, and `ratio` times with `joint` (from 1)."""
-
-    joint: int
-    other: int
-    ratio: float
-
-    def speed(self, dq: Array) -> Array:
-        """Its velocity (samples), from those of the joints (joints, samples)."""
-        return np.asarray(self.ratio * dq[self.joint - 1] + dq[self.other - 1])
 
 
 @dataclass(frozen=True)
@@ -42,10 +28,9 @@ class CoupledTerm(Term):
     def joints(self) -> tuple[int, ...]:
         return (self.joint, self.other)
 
-    @property
-    def motor(self) -> CoupledMotor:
-        """The motor that it belongs to."""
-        return CoupledMotor(self.joint, self.other, self.ratio)
+    def speed(self, dq: Array) -> Array:
+        """The velocity of the motor (samples), from those of the joints (joints, samples)."""
+        return np.asarray(self.ratio * dq[self.joint - 1] + dq[self.other - 1])
 
 
 class CoupledInertia(CoupledTerm):
@@ -76,13 +61,8 @@ class CoupledCoulomb(CoupledTerm):
 
     def column(self, samples: JointMotion) -> Column:
         one, two = self.joint - 1, self.other - 1
-        direction = np.sign(self.motor.speed(samples.dq))
+        direction = np.sign(self.speed(samples.dq))
         return {one: self.ratio * direction, two: direction}
 
 
 COUPLED_TERMS: tuple[type[CoupledTerm], ...] = (CoupledInertia, CoupledViscous, CoupledCoulomb)
-
-
-def sliding_motors(terms: Iterable[Term]) -> tuple[CoupledMotor, ...]:
-    """The motors of these terms that have Coulomb friction."""
-    return tuple(dict.fromkeys(t.motor for t in terms if isinstance(t, CoupledCoulomb)))

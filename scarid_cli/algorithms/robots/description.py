@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from scarid_cli.algorithms.robots.coupled import CoupledMotor, sliding_motors
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.logs import LogFormat
 from scarid_cli.algorithms.robots.terms import Coulomb, JointMotion, StandardTerm, Stribeck, Term
 from scarid_cli.arrays import Array
 
 if TYPE_CHECKING:
+    from scarid_cli.algorithms.robots.coupled import CoupledTerm
     from scarid_cli.algorithms.robots.rigid import Body
 
 BLOCK = 512  # samples whose columns are written together, so that they stay in the cache
@@ -88,9 +88,11 @@ class Robot:
         return np.array([parameter.apriori for parameter in self.parameters])
 
     @property
-    def motors(self) -> tuple[CoupledMotor, ...]:
-        """The motors with Coulomb friction that turn with two joints."""
-        return sliding_motors(parameter.term for parameter in self.parameters)
+    def motors(self) -> tuple[CoupledTerm, ...]:
+        """The Coulomb friction of motors that turn with two joints."""
+        terms = (parameter.term for parameter in self.parameters)
+        shared = (term for term in terms if term.JUMPS and len(term.joints) > 1)
+        return cast("tuple[CoupledTerm, ...]", tuple(shared))
 
     def value(self, term: str, joint: int | None = None) -> float:
         """The a priori value of a term, of a joint (from 1); 0 if there is no such parameter."""

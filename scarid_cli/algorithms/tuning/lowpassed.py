@@ -7,6 +7,7 @@ chain of four integrators is the same filter (docs/theory.md, section "One bandw
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,8 +20,10 @@ from scarid_cli.algorithms.regression.counting import (
     away,
     reversals,
 )
-from scarid_cli.algorithms.robots.coupled import CoupledMotor
 from scarid_cli.arrays import Array, Marks
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.robots.coupled import CoupledTerm
 
 ORDER = 4
 TWO_SIDED = (2.0**0.5 - 1.0) ** (0.5 / ORDER)  # the bandwidth of both passes, over the cut-off
@@ -59,7 +62,7 @@ class Lowpassed:
 
 
 def lowpassed(
-    segment: Segment, h: float, cutoff: float, motors: tuple[CoupledMotor, ...] = ()
+    segment: Segment, h: float, cutoff: float, motors: tuple[CoupledTerm, ...] = ()
 ) -> Lowpassed | None:
     """Every k-th sample of the segment behind the low-pass of a cut-off [Hz]; h [s].
 
@@ -97,7 +100,7 @@ def _padding(segment: Segment, h: float, cutoff: float) -> int:
 
 
 def _counts(
-    dq: Array, noise: Array, bandwidth: float, h: float, motors: tuple[CoupledMotor, ...]
+    dq: Array, noise: Array, bandwidth: float, h: float, motors: tuple[CoupledTerm, ...]
 ) -> Marks:
     counting = Counting(bandwidth, tuple(velocity_noise(x, bandwidth, h) for x in noise.tolist()))
     at = np.arange(dq.shape[1])
