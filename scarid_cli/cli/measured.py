@@ -56,6 +56,7 @@ def motion(
     `rates` those at which files were resampled. The bandwidth is chosen unless it is given as
     `hertz`.
     """
+    from scarid_cli.algorithms.tuning.lowpassed import TWO_SIDED
     from scarid_cli.stages.glance import of_measurement
     from scarid_cli.stages.recommended import motion_of, motion_passing  # needed only here
 
@@ -66,7 +67,7 @@ def motion(
     with steps(quiet=job.quiet) as progress, explained(measurement):
         if hertz:
             found, smoother = motion_passing(measurement, robot, hertz, job.left_out)
-            text = f"the bandwidth is that of the identification, {hertz:.3g} Hz"
+            text = f"cut-off {hertz / TWO_SIDED:.3g} Hz for all joints, as at the identification"
         else:
             found, bandwidth, smoother = motion_of(measurement, robot, progress, job.left_out)
             text = bandwidth.text
