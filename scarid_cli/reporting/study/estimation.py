@@ -47,7 +47,8 @@ def methods(view: View) -> Iterator[Chapter]:
         )
     note = "Whether the estimates of each method can be relied on, and why; the best first."
     said = " ".join(reason for standing in ranked for reason in standing.reasons)
-    words = [word for word in ("known within 30 %", "matched", "soft sensor") if word in said]
+    asked = ("known within 30 %", "model torque within", "residual", "matched", "soft sensor")
+    words = [word for word in asked if word in said]
     yield Chapter("Verdicts", "Verdicts", note, ("verdict", *words), tuple(blocks))
 
 

@@ -10,6 +10,8 @@ TERMS = {
     "determine the parameters.",
     "known within 30 %": "the standard error of a parameter, robust to autocorrelated residuals, "
     "is at most 30 % of its estimate.",
+    "model torque within": "half the 95 % interval of the torque that the estimates give on a motion "
+    "like that of the log, in percent of the torque. A prediction is also off by the residual.",
     "95 % interval": "in 95 of 100 experiments an interval calculated in this way contains the "
     "true value, if the model holds. It allows for autocorrelated residuals.",
     "a priori": "the value in the description of the robot; for a simulated robot the true one.",
@@ -30,7 +32,7 @@ TERMS = {
     "these are used.",
     "lag share": "the part of a soft sensor's error that a pure delay explains.",
     "soft sensor": "the algorithm that estimates velocity and acceleration from the position.",
-    "residual": "predicted minus measured torque.",
+    "residual": "predicted minus measured torque, of which noise is a part.",
     "condition number": "how much the least-squares problem amplifies errors; above about 100 some "
     "combination of parameters is weakly determined, unless the columns merely differ in scale.",
 }
