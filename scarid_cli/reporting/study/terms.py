@@ -10,8 +10,9 @@ TERMS = {
     "determine the parameters.",
     "known within 30 %": "the standard error of a parameter, robust to autocorrelated residuals, "
     "is at most 30 % of its estimate.",
-    "model torque within": "half the 95 % interval of the torque that the estimates give on a motion "
-    "like that of the log, in percent of the torque. A prediction is also off by the residual.",
+    "model torque within": "half the 95 % interval of the torque that the estimates give on a "
+    "motion like that of the log, in percent of the torque. A prediction is also off by the "
+    "residual.",
     "95 % interval": "in 95 of 100 experiments an interval calculated in this way contains the "
     "true value, if the model holds. It allows for autocorrelated residuals.",
     "a priori": "the value in the description of the robot; for a simulated robot the true one.",
