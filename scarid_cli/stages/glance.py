@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from math import isfinite
+
 import numpy as np
 
 from scarid_cli.algorithms.checks import clock, units, values
-from scarid_cli.algorithms.checks.finding import OK, Finding
+from scarid_cli.algorithms.checks.finding import FAILED, OK, WARNING, Finding
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
@@ -16,11 +19,21 @@ from scarid_cli.stages.logs import log_of
 def of_extremes(q: Array, tau: Array, robot: Robot, period: float) -> list[Finding]:
     """What is not in order in the extremes of positions and torques (joints, 2).
 
-    The rows follow each other every `period` [s].
+    The rows follow each other every `period` [s]. Only stated limits make a failure of positions
+    that are far: a joint without limits may turn many times. A low rate may be that of the log.
     """
     log, none = Log(np.zeros(2), q, tau), np.full(len(q), np.nan)
-    found = [units.positions(log, robot, np.zeros(len(q)))[0], units.torques(log, robot, none)]
-    return [f for f in (*found, of_rate(period)) if f and f.status != OK]
+    positions, _ = units.positions(log, robot, np.zeros(len(q)))
+    if not all(isfinite(joint.lower) and isfinite(joint.upper) for joint in robot.joints):
+        positions = _as_warning(positions)
+    found = [positions, units.torques(log, robot, none)]
+    if rate := of_rate(period):
+        found.append(_as_warning(rate))
+    return [finding for finding in found if finding.status != OK]
+
+
+def _as_warning(finding: Finding) -> Finding:
+    return replace(finding, status=WARNING) if finding.status == FAILED else finding
 
 
 def of_rate(period: float) -> Finding | None:

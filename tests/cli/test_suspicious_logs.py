@@ -10,6 +10,10 @@ import numpy as np
 import pytest
 from conftest import ROOT, Result
 
+from scarid_cli.algorithms.checks.finding import FAILED, WARNING
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.stages.glance import of_extremes
+
 Run = Callable[..., Result]
 
 UR10E = ROOT / "samples" / "robots"
@@ -70,3 +74,13 @@ def test_a_tilted_base_is_named(degrees: float, tmp_path: Path, scarid: Run) -> 
         assert scarid(*words).status == 0
     found = verdict(scarid("identify", "--robot", upright, log))
     assert ("gravity acts in another direction" in found) == (degrees > 0.0)
+
+
+def test_joints_without_limits_may_turn_many_times() -> None:
+    """The pendulum of the gauntlet whirls: positions in degrees are only suspected."""
+    turns = np.array([[-1.0, 53.0], [-50.0, 2.0]])
+    torques = np.array([[-5.0, 5.0], [-2.0, 2.0]])
+    (found,) = of_extremes(turns, torques, load("planar2-gravity"), 0.005)
+    assert (found.name, found.status) == ("positions", WARNING)
+    (found,) = of_extremes(turns, torques, load("scara2"), 0.005)
+    assert (found.name, found.status) == ("positions", FAILED)
