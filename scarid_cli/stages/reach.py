@@ -21,7 +21,7 @@ from scarid_cli.io.table import Table, matrix, settled
 
 LONGEST = 0.05  # s, of the period of a usual log
 FARTHEST = 4.0 * pi  # rad, of a usual joint without limits
-LEAST = 0.003  # of the torque limit, which a usual log exceeds at some joint
+LEAST = 0.003  # of the torque limit, which a usual log exceeds at some joint (units.IDLE)
 
 
 @dataclass

@@ -60,7 +60,7 @@ def test_the_printed_command_for_several_measurements_gives_the_same_bytes(
     assert found[1].count("<(scarid differentiate") == 2
     again = users_shell(found[1])
     assert again.out == once.out
-    assert once.err.count("cut-off") == once.err.count("torques l") == 1
+    assert once.err.count("cut-off") == once.err.count("torques lag by") == 1
 
 
 def test_several_measurements_are_identified_nearly_as_the_whole_log(shell: Shell) -> None:

@@ -23,19 +23,6 @@ MOST_LEVERAGE = 0.9  # of a block that counts in full
 FLAT = 1e-10  # of the largest eigenvalue: directions below it are not in the motion
 
 
-def torque_shares(rows: Rows, theta: Array, change: Array) -> Array:
-    """The rms of what a change of all columns (columns) does to the torque of each joint (joints).
-
-    It is relative to the rms of the torque that the parameters predict.
-    """
-    products = _products(rows, theta, 0.0).sum(axis=1)[:, :-1, :-1]
-    changes = np.einsum("i,jik,k->j", change, products, change).clip(min=0.0)
-    joints = np.arange(len(products))
-    torques = products[joints, len(theta) + 1 + joints, len(theta) + 1 + joints]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.sqrt(changes / torques))
-
-
 @dataclass(frozen=True)
 class LogEvidence:
     """The information of a log about all columns, at given parameters.
@@ -82,6 +69,19 @@ def evidence(rows: Rows, theta: Array, delay: float = 0.0) -> LogEvidence:
         deviations=np.sqrt(variances),
         scores=np.tensordot(weights, scores, 1),
     )
+
+
+def torque_shares(rows: Rows, theta: Array, change: Array) -> Array:
+    """The rms of what a change of all columns (columns) does to the torque of each joint (joints).
+
+    It is relative to the rms of the torque that the parameters predict.
+    """
+    products = _products(rows, theta, 0.0).sum(axis=1)[:, :-1, :-1]
+    changes = np.einsum("i,jik,k->j", change, products, change).clip(min=0.0)
+    joints = np.arange(len(products))
+    torques = products[joints, len(theta) + 1 + joints, len(theta) + 1 + joints]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.sqrt(changes / torques))
 
 
 def solved(gram: Array, right: Array) -> Array:

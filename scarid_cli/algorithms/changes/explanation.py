@@ -82,15 +82,15 @@ def change(difference: Difference, possible: list[Hypothesis]) -> Change:
     log_p = min(min(log_ps) + log(len(log_ps)), 0.0)
     if not log_p < log(FALSE_ALARMS):
         return Change(exp(log_p), len(log_ps))
+    amounts = tuple(whole.amounts.tolist())
     chosen, rivals = _chosen(difference, possible, whole)
     if not chosen:
-        return Change(exp(log_p), len(log_ps), whole=tuple(whole.amounts.tolist()))
+        return Change(exp(log_p), len(log_ps), whole=amounts)
     found = tested(difference, chosen)
     rest, rank = max(whole.raw - found.raw, 0.0), max(whole.rank - found.rank, 1)
     left = log_tail_f(rest / whole.excess / rank, rank, difference.freedom)
     share = found.beyond_noise / (found.beyond_noise + max(rest - rank * whole.excess, 0.0))
     explanations = _described(chosen, rivals, found)
-    amounts = tuple(whole.amounts.tolist())
     return Change(exp(log_p), len(log_ps), explanations, share, exp(left), amounts)
 
 

@@ -64,6 +64,8 @@ def _warn(job: Job, held: record.Record) -> None:
     """Report an unlikely rate, and that the joints would have chosen different bandwidths."""
     if finding := of_rate(held.h):
         job.say(f"warning: {finding.text}")
+    if held.joints == 1:
+        return
     apart, own = stage.octaves(held)
     if apart > stage.OCTAVE:
         listed = ", ".join(f"{hertz:.3g}" for hertz in own)
