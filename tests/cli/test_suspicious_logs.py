@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from conftest import ROOT, Result
 from scarid_cli.algorithms.checks.finding import FAILED, WARNING
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.stages.glance import of_extremes
+from scarid_cli.stages.reach import Reach
 
 Run = Callable[..., Result]
 
@@ -84,3 +86,16 @@ def test_joints_without_limits_may_turn_many_times() -> None:
     assert (found.name, found.status) == ("positions", WARNING)
     (found,) = of_extremes(turns, torques, load("scara2"), 0.005)
     assert (found.name, found.status) == ("positions", FAILED)
+
+
+@pytest.mark.parametrize(("torque", "status"), [(20.0, None), (0.02, FAILED), (2.0, None)])
+def test_torques_in_kilonewton_metres_are_told(torque: float, status: str | None) -> None:
+    """Of motors that give 40 N m: 20 N m are usual, and 0.02 can only be kN m."""
+    robot = load("scara2")
+    robot = replace(robot, joints=tuple(replace(j, torque_limit=40.0) for j in robot.joints))
+    reach = Reach(2)
+    reach.high = np.array([1.0, 1.0, torque, 0.5 * torque])
+    reach.low = -reach.high
+    found = reach.findings(robot, 0.005)
+    assert [finding.status for finding in found] == [status] * (status is not None)
+    assert all("torques seem to be in kN m" in finding.advice for finding in found)
