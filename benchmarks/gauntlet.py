@@ -203,8 +203,8 @@ def hindsight(robot: Robot, measured: Table, noise: float) -> Iterator[Array | N
         try:
             parts = [rows for _, rows in treated(motion, robot, treatment)]
             rows, solver = joined(parts), wls.Estimator()
-            found = aligned(solver.widened(), np.zeros(rows.W.shape[2] + 1), rows,
-                            solver.of_rows(rows))  # fmt: skip
+            found = aligned(solver.widened(1), np.zeros(rows.W.shape[2] + 1), rows,
+                            solver.of_rows(rows).fit.estimates)  # fmt: skip
         except (ScaridError, ValueError):
             yield None
             continue

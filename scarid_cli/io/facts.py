@@ -74,6 +74,7 @@ def _rows_of_joints(x: Any) -> bool:
 
 CHECKS: dict[str, Check] = {
     "bandwidth": _or_none(_frequency),
+    "two_sided_order": _or_none(_count),
     "velocity_noise": _or_none(_list(_size)),
     "delay": _or_none(number),
     "delay_error": _or_none(_size),

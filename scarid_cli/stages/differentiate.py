@@ -14,6 +14,7 @@ from scarid_cli.algorithms.filters.kalman_method import KalmanMethod
 from scarid_cli.algorithms.processes.bandwidth import bandwidth_of, velocity_noise
 from scarid_cli.algorithms.processes.matching import settling_rows
 from scarid_cli.algorithms.processes.method import MatchedForm, Method
+from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import TooShort
 from scarid_cli.io.table import SEGMENT, Table, matrix, number, without
 from scarid_cli.stages.columns import Edges, Plan, Task, processed
@@ -153,11 +154,13 @@ def _passed(methods: list[Method], period: float, planner: Planner) -> dict[str,
     known = [hertz for hertz in found if hertz is not None]
     if len(known) < len(found) or not known:
         return {}
+    orders = {method.two_sided_order for method in methods}
+    low_pass = {"bandwidth": min(known), ORDER: orders.pop() if len(orders) == 1 else None}
     if planner is _matching_velocities:
-        return {"bandwidth": min(known)}
+        return low_pass
     stated = [m.noise if isinstance(m, KalmanMethod) else 0.0 for m in methods]
     noise = [velocity_noise(x, hertz, period) for x, hertz in zip(stated, known, strict=True)]
-    return {"bandwidth": min(known), "velocity_noise": noise}
+    return {**low_pass, "velocity_noise": noise}
 
 
 def _edges(forms: list[MatchedForm], period: float) -> Edges:

@@ -11,7 +11,14 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.regression.counting import LeftOut, counted
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
-from scarid_cli.algorithms.regression.rows import Rows, joined, rows_of, runs, without_slow
+from scarid_cli.algorithms.regression.rows import (
+    ORDER,
+    Rows,
+    joined,
+    rows_of,
+    runs,
+    without_slow,
+)
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
@@ -88,7 +95,8 @@ def _parts(
         if known and estimator and estimator.REFERENCE:
             reference = _signals(robot, kept, *REFERENCE)
         rows = rows_of(robot, motion, at, table.period, slow=slow, reference=reference)
-        yield kept, replace(rows, bandwidth=table.meta.extra.get("bandwidth"))
+        extra = table.meta.extra
+        yield kept, replace(rows, bandwidth=extra.get("bandwidth"), order=extra.get(ORDER))
 
 
 def _signals(robot: Robot, batch: pa.RecordBatch, *names: str) -> Array:

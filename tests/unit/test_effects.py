@@ -16,7 +16,7 @@ from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.regression.rows import Rows, rows_of, thinned
 from scarid_cli.algorithms.regression.shifting import led, shifted
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.alignment import aligned
+from scarid_cli.algorithms.statistics.alignment import Aligned, aligned
 from scarid_cli.algorithms.statistics.alternatives import (
     CURVATURE,
     DRIFT,
@@ -218,6 +218,11 @@ def test_rows_of_a_fast_log_are_thinned_to_5_ms() -> None:
     np.testing.assert_array_equal(few.y, rows.y[::5])
 
 
+def aligned_by_least_squares(rows: Rows) -> Aligned:
+    estimates = estimated(ls.Estimator(), rows).fit.estimates
+    return aligned(ls.Estimator(), np.zeros(2), rows, estimates)
+
+
 @given(samples=st.floats(-8.0, 8.0))
 def test_the_delay_of_the_torques_is_found_however_long(samples: float) -> None:
     """The shift is by interpolation: to first order, half a sample would bias by 2e-4."""
@@ -229,7 +234,7 @@ def test_the_delay_of_the_torques_is_found_however_long(samples: float) -> None:
     motion = np.stack((*true, torque(t + samples * H)[None]))
     rows = rows_of(AXIS, motion, np.arange(2000), H)
     rows = forward(replace(rows, W=torque(t)[:, None, None]))
-    found = aligned(ls.Estimator(), np.zeros(2), rows, estimated(ls.Estimator(), rows))
+    found = aligned_by_least_squares(rows)
     assert found.delay == pytest.approx(samples * H, abs=1e-6)
     assert found.found.fit.estimates[0] == pytest.approx(1.0, abs=1e-6)
 
@@ -260,7 +265,7 @@ def test_a_low_pass_is_told_from_a_delay(kind: str) -> None:
     rows, logged = behind(kind, 0.004)
     noise = 0.01 * np.random.default_rng(7).standard_normal(len(logged))
     rows = replace(rows, y=rows.y + noise[:, None])
-    found = aligned(ls.Estimator(), np.zeros(2), rows, estimated(ls.Estimator(), rows))
+    found = aligned_by_least_squares(rows)
     assert found.lead.low_pass == (kind != "delay")
     assert found.delay == pytest.approx(0.004 if kind == "drive" else -0.004, abs=1e-4)
     assert found.found.fit.estimates[0] == pytest.approx(1.0, abs=5e-4)
@@ -276,7 +281,7 @@ def test_estimates_are_uncertain_where_a_low_pass_and_a_delay_cannot_be_told_apa
     rows, logged = behind("delay", 0.004)
     noise = 5.0 * np.random.default_rng(7).standard_normal(len(logged))
     rows = replace(rows, y=rows.y + noise[:, None])
-    found = aligned(ls.Estimator(), np.zeros(2), rows, estimated(ls.Estimator(), rows))
+    found = aligned_by_least_squares(rows)
     assert found.lead.doubt is not None
     mean_square = sum((a * w) ** 2 for a, w in WAVES) / sum(a**2 for a, _ in WAVES)
     difference = 0.5 * found.delay**2 * mean_square

@@ -45,6 +45,10 @@ class Differentiator(KalmanMethod, RecordMethod):
         require_not_negative(self, "noise", "intensity")
 
     @property
+    def two_sided_order(self) -> int | None:
+        return None if self.damping or self.frequency else self.states
+
+    @property
     def is_fitted(self) -> bool:
         return bool(self.noise and self.intensity)
 

@@ -33,6 +33,10 @@ class Differentiator(RecordMethod):
     MATCHING = Matching.EXACT
     TUNED: ClassVar = {"cutoff": Range(0.5, 50.0)}
 
+    @property
+    def two_sided_order(self) -> int:
+        return self.order
+
     def check(self) -> None:
         self.torque_filter()
 

@@ -97,11 +97,11 @@ class Estimator(BaseEstimator):
         )
         return WeightedInformation(information, residuals), estimates
 
-    def widened(self) -> Estimator:
-        """The estimator with one more factor: the delay is forgotten as slowly as any parameter."""
+    def widened(self, columns: int) -> Estimator:
+        """The estimator with more factors: new parameters are forgotten as slowly as any other."""
         if not isinstance(self.forgetting, tuple):
             return self
-        return replace(self, forgetting=(*self.forgetting, max(self.forgetting)))
+        return replace(self, forgetting=(*self.forgetting, *[max(self.forgetting)] * columns))
 
     def fit(self, state: WeightedInformation) -> Estimation:
         whitening = None

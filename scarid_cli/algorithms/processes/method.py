@@ -74,6 +74,11 @@ class Method(Validated, Process):
         return not nonlinear and not self.FOLLOWS_NOISE
 
     @property
+    def two_sided_order(self) -> int | None:
+        """The order of the Butterworth filter that it is, run forwards and backwards; or None."""
+        return None
+
+    @property
     def is_fitted(self) -> bool:
         """Whether the settings are known without a record."""
         return not self.TUNES_ITSELF

@@ -81,8 +81,8 @@ class BaseEstimator(Validated, ABC):
         """The estimator for this robot."""
         return self
 
-    def widened(self) -> Self:
-        """The estimator for rows with one more column, that of the delay of the torques."""
+    def widened(self, columns: int) -> Self:  # noqa: ARG002 (most take as many as there are)
+        """The estimator for rows with so many more columns, of nuisance parameters."""
         return self
 
     def quick(self) -> BaseEstimator:

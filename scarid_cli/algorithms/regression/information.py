@@ -80,9 +80,18 @@ class Fit:
         return errors
 
     def part(self, kept: slice | list[int]) -> Fit:
-        """The fit of some of the parameters, with the statistics of the fit of all of them."""
-        covariance = self.unit_covariance[kept][:, kept]
-        return replace(self, estimates=self.estimates[kept], unit_covariance=covariance)
+        """The fit of some of the parameters, with the residual of the fit of all of them."""
+        estimates, covariance = self.estimates[kept], self.unit_covariance[kept][:, kept]
+        condition = self.condition
+        if len(estimates) < len(self.estimates):
+            condition = condition_number(covariance)
+        return replace(self, estimates=estimates, unit_covariance=covariance, condition=condition)
+
+
+def condition_number(covariance: Array) -> float:
+    """The condition number of the observation matrix, from the covariance of its estimates."""
+    values = np.linalg.eigvalsh(covariance)
+    return float(np.sqrt(values[-1] / max(values[0], 1e-300)))
 
 
 def empty(parameters: int) -> Information:

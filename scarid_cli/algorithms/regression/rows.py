@@ -11,6 +11,7 @@ import numpy as np
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array, Numbers
 
+ORDER = "two_sided_order"  # in the metadata of a motion, that of Rows
 INTERVAL = 0.005  # s: rows are thinned to intervals of at most this length
 
 
@@ -23,7 +24,8 @@ class Rows:
     numbers jump, the record has a gap. `motion` (4, joints, samples) has the position, velocity,
     acceleration and torque that the rows were computed from, and `reference` (2, joints, samples)
     the reference position and velocity, if the log has them. `bandwidth` [Hz] is that of the soft
-    sensor behind them, None if it is not known.
+    sensor behind them, None if it is not known, and `order` that of the Butterworth filter which
+    this is, run forwards and backwards, None if it is another.
     """
 
     W: Array
@@ -34,6 +36,7 @@ class Rows:
     motion: Array
     reference: Array | None = None
     bandwidth: float | None = None
+    order: int | None = None
 
     @property
     def samples(self) -> int:
@@ -50,6 +53,7 @@ class Rows:
             np.ascontiguousarray(self.motion[:, :, chosen]),
             None if self.reference is None else self.reference[:, :, chosen],
             self.bandwidth,
+            self.order,
         )
 
 
@@ -121,6 +125,7 @@ def joined(parts: Sequence[Rows]) -> Rows:
         np.concatenate([part.motion for part in parts], axis=2),
         np.concatenate(references, axis=2) if len(references) == len(parts) else None,
         parts[0].bandwidth,
+        parts[0].order,
     )
 
 

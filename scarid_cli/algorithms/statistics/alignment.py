@@ -53,13 +53,15 @@ class Aligned:
         return self.lead.seconds + float(self.found.fit.estimates[-1])
 
 
-def aligned(estimator: BaseEstimator, start: Array, rows: Rows, found: Estimation) -> Aligned:
+def aligned(estimator: BaseEstimator, start: Array, rows: Rows, theta: Array) -> Aligned:
     """The estimation with the delay of the torques: a shift, and what remains as a parameter.
+
+    The search begins with the estimates `theta`, without a delay.
 
     If a low-pass is the likelier cause of the lead, the torques are straightened too. The error of
     what remains enters those of the parameters.
     """
-    lead = _searched(estimator.quick(), start, thinned(rows), found.fit.estimates)
+    lead = _searched(estimator.quick(), start, thinned(rows), theta)
     own = lead.theta[: rows.W.shape[2]]
     wide = with_delay(in_step(rows, own, lead.seconds, low_pass=lead.low_pass), own)
     return Aligned(wide, estimator.of_rows(wide, start), lead)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.regression.information import Fit
+from scarid_cli.algorithms.regression.information import Fit, condition_number
 from scarid_cli.arrays import Array
 
 RATIO = 30.0
@@ -85,7 +85,7 @@ def essential(fit: Fit, noise: Noise, own: int) -> Essential:
         unit_covariance=covariance[np.ix_(kept, kept)],
         variance=variance,
         sample_variance=variance * freedom / (noise.rows - 1.0),
-        condition=_condition(covariance[np.ix_(kept, kept)]),
+        condition=condition_number(covariance[np.ix_(kept, kept)]),
     )
     return Essential(reduced, kept, tuple(dropped), cost, limit)
 
@@ -102,12 +102,6 @@ def _worst(theta: Array, covariance: Array, kept: list[int]) -> int | None:
 def _relative(growth: float, first: float) -> float:
     """The relative growth of the deviation of the residual, from that of its sum of squares."""
     return float(np.sqrt(1.0 + growth / first) - 1.0) if first > 0.0 else 0.0
-
-
-def _condition(covariance: Array) -> float:
-    """The condition number of the observation matrix, from the covariance of its estimates."""
-    values = np.linalg.eigvalsh(covariance)
-    return float(np.sqrt(values[-1] / max(values[0], 1e-300)))
 
 
 def without(theta: Array, covariance: Array, i: int) -> tuple[Array, Array]:

@@ -12,12 +12,13 @@ from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.alignment import Lead, aligned
+from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
+from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.arrays import Array, median
 
 
@@ -28,7 +29,7 @@ class Problem:
     The first `own` columns of W belong to the robot's parameters, the others to nuisance
     parameters. `record` has the blocks of all rows if `rows` are a subsample. `model` is None if
     the columns of W are not those of the robot's regressor. `lead` is that of the torques, None if
-    it was not fitted; what remains of it is the parameter after the robot's.
+    it was not fitted; what remains of it is the last parameter.
     """
 
     rows: Rows
@@ -41,7 +42,7 @@ class Problem:
     @property
     def rest(self) -> float:
         """What remains of the delay [s] in these rows."""
-        return float(self.found.fit.estimates[self.own]) if self.lead else 0.0
+        return float(self.found.fit.estimates[-1]) if self.lead else 0.0
 
     def diagnostics(self, gain_error: float) -> Diagnostics:
         doubt = self.lead.doubt if self.lead else None
@@ -123,7 +124,7 @@ def outcome(
     kept = (reduction.kept if reduction else list(range(own)))[:own]
     lead, delay = problem.lead, None
     if lead:
-        delay = lead.seconds + problem.rest, float(diagnostics.scatter[own])
+        delay = lead.seconds + problem.rest, float(diagnostics.scatter[-1])
     return Outcome(
         found=replace(problem.found, fit=fit.part(slice(own))),
         diagnostics=diagnostics,
@@ -153,13 +154,13 @@ def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -
 def _problem(
     estimator: BaseEstimator, initial: Array, end: Checkpoint, robot: Robot, *, align: bool
 ) -> Problem:
-    rows, quick = end.subsample.rows(), estimator.quick() if align else estimator
-    plain = quick is estimator
-    found = estimator.fit(end.state) if plain else quick.of_rows(thinned(rows), initial)
-    own, fitted = len(found.fit.estimates), None
+    rows, lead = end.subsample.rows(), None
     if align:
-        fitted = aligned(estimator.widened(), np.append(initial, 0.0), rows, found)
-        rows, found = fitted.rows, fitted.found
+        fitted = _aligned(estimator, initial, with_ringing(rows, robot))
+        rows, found, own, lead = fitted.rows, fitted.found, len(initial), fitted.lead
+    else:
+        found = estimator.fit(end.state)
+        own = len(found.fit.estimates)
     model = Model(robot, list(range(own))) if own == len(robot.parameters) else None
     if found.scores and found.scores.rows:
         rows = found.scores.rows
@@ -169,7 +170,15 @@ def _problem(
         per_row = factor**end.subsample.thin
         rows, record = faded(rows, per_row), record and record.faded(factor)
         found = replace(found, scores=replace(found.scores, forgetting=per_row))
-    return Problem(rows, found, own, record, model, fitted.lead if fitted else None)
+    return Problem(rows, found, own, record, model, lead)
+
+
+def _aligned(estimator: BaseEstimator, initial: Array, rows: Rows) -> Aligned:
+    """The estimation with the delay of the torques, and with nuisance parameters from 0."""
+    further = rows.W.shape[2] - len(initial)
+    start = np.append(initial, np.zeros(further))
+    found = estimator.widened(further).quick().of_rows(thinned(rows), start)
+    return aligned(estimator.widened(further + 1), np.append(start, 0.0), rows, found.fit.estimates)
 
 
 def _noise(problem: Problem, diagnostics: Diagnostics, counted: int) -> Noise:

@@ -113,7 +113,7 @@ def _columns(
     signals = [diagonal(first), diagonal(curvature)]
     if rows.W.shape[2] > own:
         delay = delay_column(moved, whole)
-        W = np.concatenate((W, delay[:, :, None]), axis=2)
+        W = np.concatenate((W, rows.W[:, :, own:-1], delay[:, :, None]), axis=2)
     else:
         signals.append(diagonal(delay_column(moved, rest)))
     motion = np.stack((q, dq, ddq))

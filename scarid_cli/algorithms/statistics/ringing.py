@@ -1,0 +1,78 @@
+"""What a sharp low-pass makes of Coulomb friction beside a reversal.
+
+The torque behind a two-sided low-pass rings where friction jumps: half a period of the bandwidth
+away by 14 % of the friction, a whole period away by 4 %. The sign of the smoothed velocity does not
+ring. How much there is depends on the joint: all of it if it turns at once, next to none if it
+sticks for longer than a period. Therefore the ringing of the friction of a joint is a column of its
+own, beside those of the parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.rows import Rows, runs
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.jackknife import block_numbers
+from scarid_cli.arrays import Array
+
+PADDING = 3.0  # periods of the cut-off, after which the ringing has decayed to 1e-4
+BLOCKS = 5.0  # effective ones, below which the error of an estimate is not known
+
+
+@dataclass(frozen=True)
+class LowPass:
+    """A Butterworth filter, forwards and backwards; the cut-off in cycles per sample."""
+
+    cutoff: float
+    order: int
+
+    def over(self, x: Array) -> Array:
+        """x (samples of a run) behind the filter, as if its first and last value went on."""
+        edge = int(PADDING / self.cutoff) + 1
+        length = 1 << (len(x) + 2 * edge - 1).bit_length()
+        padded = np.pad(x, (edge, length - len(x) - edge), mode="edge")
+        gain = 1.0 / (1.0 + (np.fft.rfftfreq(length) / self.cutoff) ** (2 * self.order))
+        passed = np.fft.irfft(gain * np.fft.rfft(padded), length)
+        return np.asarray(passed[edge : edge + len(x)])
+
+
+def with_ringing(rows: Rows, robot: Robot) -> Rows:
+    """The rows with further columns: the ringing of each Coulomb friction.
+
+    There are none if the low-pass behind the rows is not known to be a two-sided Butterworth
+    filter, nor for a friction that reverses in too few blocks of time.
+    """
+    if not (rows.order and rows.bandwidth and rows.h > 0.0):
+        return rows
+    cutoff = rows.bandwidth / (2.0**0.5 - 1.0) ** (0.5 / rows.order)
+    low_pass = LowPass(cutoff * rows.h, rows.order)
+    columns = [c for c in _columns(rows, robot, low_pass) if _determined(rows, c)]
+    if not columns:
+        return rows
+    return replace(rows, W=np.concatenate((rows.W, np.stack(columns, axis=2)), axis=2))
+
+
+def _columns(rows: Rows, robot: Robot, low_pass: LowPass) -> Iterator[Array]:
+    """The ringing (samples, joints) of the frictions of a joint, or of a motor of two joints."""
+    frictions: dict[tuple[int, ...], list[int]] = {}
+    for index, parameter in enumerate(robot.parameters):
+        if parameter.term.JUMPS:
+            frictions.setdefault(parameter.term.joints, []).append(index)
+    for joints, indices in frictions.items():
+        column = np.zeros(rows.y.shape)
+        for j in (joint - 1 for joint in joints):
+            friction = rows.W[:, j, indices].sum(axis=1)
+            for run in runs(rows.at):
+                column[run, j] = low_pass.over(friction[run]) - friction[run]
+        yield column
+
+
+def _determined(rows: Rows, column: Array) -> bool:
+    """Whether the power of a column (samples, joints) is that of enough blocks of time."""
+    power = np.sum((column * (rows.scales > 0.0)) ** 2, axis=1)
+    blocks = np.bincount(block_numbers(rows.at, rows.h)[0], weights=power)
+    return bool(blocks.sum() ** 2 >= BLOCKS * (blocks**2).sum() > 0.0)
