@@ -55,6 +55,7 @@ from scarid_cli.algorithms.regression.rows import joined
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alignment import aligned
+from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.algorithms.tuning.equivalent import chain
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, ScaridError
@@ -202,9 +203,9 @@ def hindsight(robot: Robot, measured: Table, noise: float) -> Iterator[Array | N
         treatment = Treatment(counting=_counting(motion), align=True)
         try:
             parts = [rows for _, rows in treated(motion, robot, treatment)]
-            rows, solver = joined(parts), wls.Estimator()
-            found = aligned(solver.widened(1), np.zeros(rows.W.shape[2] + 1), rows,
-                            solver.of_rows(rows).fit.estimates)  # fmt: skip
+            rows, solver = with_ringing(joined(parts), robot), wls.Estimator()
+            start = np.zeros(rows.W.shape[2] + 1)
+            found = aligned(solver, start, rows, solver.of_rows(rows).fit.estimates)
         except (ScaridError, ValueError):
             yield None
             continue
