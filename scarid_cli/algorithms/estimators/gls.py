@@ -9,10 +9,11 @@ are held in memory. No settings.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from scarid_cli.algorithms.choices.settings import GIVEN
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
@@ -27,6 +28,11 @@ CLEARLY = 0.8  # times the scatter (a variance): 5 of 240 logs with white noise 
 
 @dataclass(frozen=True)
 class Estimator(HoldingEstimator):
+    nuisance: int = field(default=0, metadata=GIVEN)  # columns at the end, whose scatter is no matter
+
+    def widened(self, columns: int) -> Estimator:
+        return replace(self, nuisance=self.nuisance + columns)
+
     def quick(self) -> wls.Estimator:
         return wls.Estimator()
 
@@ -42,7 +48,7 @@ class Estimator(HoldingEstimator):
             found = wls.Estimator().of_rows(white)
         except NotIdentifiableError:
             return plain
-        torque = _torque(rows)
+        torque = _torque(rows, rows.W.shape[2] - self.nuisance)
         if not _scatter(white, found, torque) < CLEARLY * _scatter(rows, plain, torque):
             return plain
         assert found.scores is not None
@@ -50,16 +56,16 @@ class Estimator(HoldingEstimator):
         return replace(found, scores=scores, extra={WHITENED: True})
 
 
-def _torque(rows: Rows) -> Array:
-    """W'W (parameters, parameters), with the mean square torque of each joint as its unit."""
+def _torque(rows: Rows, own: int) -> Array:
+    """W'W of the first `own` columns, with the mean square torque of each joint as its unit."""
     counts = rows.scales > 0.0
     squares = np.sum(rows.y**2 * counts, axis=0)
     units = counts / np.sqrt(np.where(squares > 0.0, squares, 1.0))
-    scaled = (rows.W * units[:, :, None]).reshape(-1, rows.W.shape[2])
+    scaled = (rows.W[:, :, :own] * units[:, :, None]).reshape(-1, own)
     return np.asarray(scaled.T @ scaled)
 
 
 def _scatter(rows: Rows, found: Estimation, torque: Array) -> float:
     """The share of the torque that the scatter of the estimates stands for."""
-    moved = shifts(rows, found)
+    moved = shifts(rows, found)[:, : len(torque)]
     return float(np.einsum("ki,ij,kj->", moved, torque, moved))
