@@ -205,7 +205,8 @@ def hindsight(robot: Robot, measured: Table, noise: float) -> Iterator[Array | N
             parts = [rows for _, rows in treated(motion, robot, treatment)]
             rows, solver = with_ringing(joined(parts), robot), wls.Estimator()
             start = np.zeros(rows.W.shape[2] + 1)
-            found = aligned(solver, start, rows, solver.of_rows(rows).fit.estimates)
+            first = solver.of_rows(rows).fit.estimates
+            found = aligned(solver, start, rows, first, len(robot.parameters))
         except (ScaridError, ValueError):
             yield None
             continue

@@ -220,7 +220,7 @@ def test_rows_of_a_fast_log_are_thinned_to_5_ms() -> None:
 
 def aligned_by_least_squares(rows: Rows) -> Aligned:
     estimates = estimated(ls.Estimator(), rows).fit.estimates
-    return aligned(ls.Estimator(), np.zeros(2), rows, estimates)
+    return aligned(ls.Estimator(), np.zeros(2), rows, estimates, 1)
 
 
 @given(samples=st.floats(-8.0, 8.0))

@@ -68,7 +68,7 @@ def fitted(rows: Rows) -> tuple[float, Array]:
     """The delay [s], and the estimates."""
     solver = ls.Estimator()
     start = np.zeros(rows.W.shape[2] + 1)
-    found = aligned(solver, start, rows, solver.of_rows(rows).fit.estimates)
+    found = aligned(solver, start, rows, solver.of_rows(rows).fit.estimates, 4)
     return found.delay, found.found.fit.estimates
 
 

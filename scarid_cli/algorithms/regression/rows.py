@@ -137,9 +137,17 @@ def runs(at: Numbers) -> Iterator[slice]:
         yield slice(start, end)
 
 
+def predicted(rows: Rows, theta: Array) -> Array:
+    """The torques (samples, joints) of the first columns of W, whose parameters are theta."""
+    return np.asarray(rows.W[:, :, : len(theta)] @ theta)
+
+
 def with_delay(rows: Rows, theta: Array) -> Rows:
-    """The rows with one more column, whose parameter is the time [s] by which the torques lead."""
-    column = delay_column(rows, rows.W @ theta[: rows.W.shape[2]])
+    """The rows with one more column, whose parameter is the time [s] by which the torques lead.
+
+    theta: the estimates of the first columns of W, whose torques the delay moves.
+    """
+    column = delay_column(rows, predicted(rows, theta))
     return replace(rows, W=np.ascontiguousarray(np.concatenate((rows.W, column[:, :, None]), 2)))
 
 

@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from scarid_cli.algorithms.regression.rows import Rows, curvature, runs
+from scarid_cli.algorithms.regression.rows import Rows, curvature, predicted, runs
 from scarid_cli.arrays import Array, Numbers
 
 NODES = np.arange(-2, 4)  # of the polynomial, counted from the last sample before the instant
@@ -63,7 +63,7 @@ def in_step(rows: Rows, theta: Array, delay: float, *, low_pass: bool = False) -
     if not (delay and rows.h > 0.0):
         return rows
     rows = shifted(rows, delay / rows.h)
-    return replace(rows, y=rows.y + bend(rows, rows.W @ theta, delay)) if low_pass else rows
+    return replace(rows, y=rows.y + bend(rows, predicted(rows, theta), delay)) if low_pass else rows
 
 
 def _directions(rows: Rows) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
-from scarid_cli.algorithms.regression.rows import Rows, thinned, with_delay
+from scarid_cli.algorithms.regression.rows import Rows, predicted, thinned, with_delay
 from scarid_cli.algorithms.regression.shifting import bend, in_step
 from scarid_cli.algorithms.statistics.curvature import log_likelihood_ratio
 from scarid_cli.arrays import Array
@@ -53,53 +53,61 @@ class Aligned:
         return self.lead.seconds + float(self.found.fit.estimates[-1])
 
 
-def aligned(estimator: BaseEstimator, start: Array, rows: Rows, theta: Array) -> Aligned:
+def aligned(estimator: BaseEstimator, start: Array, rows: Rows, theta: Array, own: int) -> Aligned:
     """The estimation with the delay of the torques: a shift, and what remains as a parameter.
 
-    The search begins with the estimates `theta`, without a delay.
+    The search begins with the estimates `theta`, without a delay. The first `own` columns of W are
+    those of the parameters; the delay moves their torques alone. The ringing of friction, of which
+    little is known but its size, has derivatives that are large where nothing else is.
 
     If a low-pass is the likelier cause of the lead, the torques are straightened too. The error of
     what remains enters those of the parameters.
     """
-    lead = _searched(estimator.quick(), start, thinned(rows), theta)
-    own = lead.theta[: rows.W.shape[2]]
-    wide = with_delay(in_step(rows, own, lead.seconds, low_pass=lead.low_pass), own)
+    lead = _Search(estimator.quick(), start, own).lead(thinned(rows), theta)
+    moved = lead.theta[:own]
+    wide = with_delay(in_step(rows, moved, lead.seconds, low_pass=lead.low_pass), moved)
     return Aligned(wide, estimator.of_rows(wide, start), lead)
 
 
-def _searched(quick: BaseEstimator, start: Array, rows: Rows, theta: Array) -> Lead:
-    """The lead from these rows, by fits that begin with the estimates `theta`.
+@dataclass(frozen=True)
+class _Search:
+    """The search for the lead by fits from initial parameters, of which the first are `own`."""
 
-    tau(t) = W(t + T) theta is linear in T only if T is small. Therefore the torques are shifted
-    until next to nothing remains.
-    """
-    seconds, longest = 0.0, min(LONGEST, 0.25 * rows.samples * rows.h)
-    for fit in range(FITS):
-        wide = with_delay(in_step(rows, theta, seconds), theta)
-        found = quick.of_rows(wide, start)
-        theta = found.fit.estimates
-        rest = float(theta[-1])
-        near = not abs(rest) > NEAR * rows.h or abs(seconds + rest) > longest
-        if near and fit + 1 >= FEWEST:
-            break
-        if not near and fit > 0:
-            seconds += rest
-    return _likelier(Lead(seconds, theta), wide, found, quick, start)
+    quick: BaseEstimator
+    start: Array
+    own: int
 
+    def lead(self, rows: Rows, theta: Array) -> Lead:
+        """The lead from these rows, by fits that begin with the estimates `theta`.
 
-def _likelier(
-    delay: Lead, rows: Rows, found: Estimation, quick: BaseEstimator, start: Array
-) -> Lead:
-    """The lead as behind a delay, with its rows and fit, or a low-pass if that is likelier."""
-    if not rows.h > 0.0:
-        return delay
-    bent = bend(rows, rows.W[:, :, :-1] @ delay.theta[:-1], delay.seconds)
-    straight = replace(rows, y=rows.y + bent)
-    other = quick.of_rows(straight, start)
-    residuals = [x.y - x.W @ y.fit.estimates for x, y in ((rows, found), (straight, other))]
-    ratio = log_likelihood_ratio(rows, bent, residuals)
-    probability = np.exp(-np.logaddexp(0.0, abs(ratio)))
-    doubt = np.sqrt(probability) * (other.fit.estimates - delay.theta)
-    if ratio > CLEAR:
-        return Lead(delay.seconds, other.fit.estimates, low_pass=True, doubt=doubt)
-    return replace(delay, doubt=doubt)
+        tau(t) = W(t + T) theta is linear in T only if T is small. Therefore the torques are shifted
+        until next to nothing remains.
+        """
+        seconds, longest = 0.0, min(LONGEST, 0.25 * rows.samples * rows.h)
+        for fit in range(FITS):
+            own = theta[: self.own]
+            wide = with_delay(in_step(rows, own, seconds), own)
+            found = self.quick.of_rows(wide, self.start)
+            theta = found.fit.estimates
+            rest = float(theta[-1])
+            near = not abs(rest) > NEAR * rows.h or abs(seconds + rest) > longest
+            if near and fit + 1 >= FEWEST:
+                break
+            if not near and fit > 0:
+                seconds += rest
+        return self.likelier(Lead(seconds, theta), wide, found)
+
+    def likelier(self, delay: Lead, rows: Rows, found: Estimation) -> Lead:
+        """The lead as behind a delay, with its rows and fit, or a low-pass if that is likelier."""
+        if not rows.h > 0.0:
+            return delay
+        bent = bend(rows, predicted(rows, delay.theta[: self.own]), delay.seconds)
+        straight = replace(rows, y=rows.y + bent)
+        other = self.quick.of_rows(straight, self.start)
+        residuals = [x.y - x.W @ y.fit.estimates for x, y in ((rows, found), (straight, other))]
+        ratio = log_likelihood_ratio(rows, bent, residuals)
+        probability = np.exp(-np.logaddexp(0.0, abs(ratio)))
+        doubt = np.sqrt(probability) * (other.fit.estimates - delay.theta)
+        if ratio > CLEAR:
+            return Lead(delay.seconds, other.fit.estimates, low_pass=True, doubt=doubt)
+        return replace(delay, doubt=doubt)

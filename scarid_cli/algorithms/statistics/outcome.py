@@ -178,7 +178,13 @@ def _aligned(estimator: BaseEstimator, initial: Array, rows: Rows) -> Aligned:
     further = rows.W.shape[2] - len(initial)
     start = np.append(initial, np.zeros(further))
     found = estimator.widened(further).quick().of_rows(thinned(rows), start)
-    return aligned(estimator.widened(further + 1), np.append(start, 0.0), rows, found.fit.estimates)
+    return aligned(
+        estimator.widened(further + 1),
+        np.append(start, 0.0),
+        rows,
+        found.fit.estimates,
+        len(initial),
+    )
 
 
 def _noise(problem: Problem, diagnostics: Diagnostics, counted: int) -> Noise:
