@@ -28,9 +28,8 @@ CLEARLY = 0.8  # times the scatter (a variance): 5 of 240 logs with white noise 
 
 @dataclass(frozen=True)
 class Estimator(HoldingEstimator):
-    nuisance: int = field(
-        default=0, metadata=GIVEN
-    )  # columns at the end, whose scatter is no matter
+    # The number of columns at the end whose scatter does not matter.
+    nuisance: int = field(default=0, metadata=GIVEN)
 
     def widened(self, columns: int) -> Estimator:
         return replace(self, nuisance=self.nuisance + columns)

@@ -178,13 +178,8 @@ def _aligned(estimator: BaseEstimator, initial: Array, rows: Rows) -> Aligned:
     further = rows.W.shape[2] - len(initial)
     start = np.append(initial, np.zeros(further))
     found = estimator.widened(further).quick().of_rows(thinned(rows), start)
-    return aligned(
-        estimator.widened(further + 1),
-        np.append(start, 0.0),
-        rows,
-        found.fit.estimates,
-        len(initial),
-    )
+    wide, theta = estimator.widened(further + 1), found.fit.estimates
+    return aligned(wide, np.append(start, 0.0), rows, theta, len(initial))
 
 
 def _noise(problem: Problem, diagnostics: Diagnostics, counted: int) -> Noise:
