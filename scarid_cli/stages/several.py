@@ -9,6 +9,7 @@ from typing import Any
 import pyarrow as pa
 
 from scarid_cli.algorithms.processes.rates import rate_text
+from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.clock import DRIFT
 from scarid_cli.io.schemas import numbered
@@ -76,8 +77,14 @@ def _require_alike(first: Table, table: Table) -> None:
 
 
 def _extra(tables: Sequence[Table]) -> dict[str, Any]:
-    """The metadata of the first log, with the least bandwidth and the greatest noise of all."""
+    """The metadata of the first log, with the least bandwidth and the greatest noise of all.
+
+    Logs behind different low-passes have passed none that could be stated.
+    """
     extra = dict(tables[0].meta.extra)
+    passed = {(t.meta.extra.get("bandwidth"), t.meta.extra.get(ORDER)) for t in tables}
+    if len(passed) > 1:
+        extra[ORDER] = None
     extra["bandwidth"] = min(table.meta.extra.get("bandwidth") or 0.0 for table in tables) or None
     noise = [table.meta.extra.get("velocity_noise") or [] for table in tables]
     alike = len({len(values) for values in noise}) == 1

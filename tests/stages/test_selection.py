@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from stages.tables import PERIOD, SCARA, collected, motion, table
 
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
+from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import BadData
 from scarid_cli.io.reader import checked
 from scarid_cli.io.selection import Lacking, Selection, within
@@ -152,6 +153,19 @@ def test_logs_are_joined_unless_they_state_different_units(
     parts = [replace(log(), schema=log().schema.set(1, number("q1", u))) for u in units]
     with nullcontext() if alike else pytest.raises(BadData, match="unit m, expected rad"):
         joined(parts)
+
+
+@pytest.mark.parametrize(("other", "common"), [((8.0, 4), 4), ((9.0, 4), None), ((8.0, 3), None)])
+def test_logs_behind_different_low_passes_have_none_in_common(
+    other: tuple[float, int], common: int | None
+) -> None:
+    parts = [
+        replace(own := log(), meta=replace(own.meta, extra={"bandwidth": hertz, ORDER: order}))
+        for hertz, order in ((8.0, 4), other)
+    ]
+    extra = joined(parts).meta.extra
+    assert extra[ORDER] == common
+    assert extra["bandwidth"] == 8.0
 
 
 def test_estimates_from_several_logs_are_those_of_all_their_rows() -> None:
