@@ -7,7 +7,8 @@
 Each robot follows random trajectories in its control loop, with one condition (an imperfection, a
 rate, a duration) at a time. *Blind* is `scarid identify --robot R LOG` with nothing set, *default*
 `scarid differentiate LOG | scarid identify` as it was before rows were left out and joints were
-weighted, and *hindsight* the best of all cut-offs, by `wls`. Errors are those of the predicted
+weighted, and *hindsight* the best of all cut-offs, by `wls` with a delay and nothing else: a
+reference that remains the same when the procedure changes. Errors are those of the predicted
 torque: the true regressor of another trajectory times the error of the estimates, relative to the
 torque, as a mean over the joints. The columns of the table are
 
@@ -55,7 +56,6 @@ from scarid_cli.algorithms.regression.rows import joined
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alignment import aligned
-from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.algorithms.tuning.equivalent import chain
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, ScaridError
@@ -203,7 +203,7 @@ def hindsight(robot: Robot, measured: Table, noise: float) -> Iterator[Array | N
         treatment = Treatment(counting=_counting(motion), align=True)
         try:
             parts = [rows for _, rows in treated(motion, robot, treatment)]
-            rows, solver = with_ringing(joined(parts), robot), wls.Estimator()
+            rows, solver = joined(parts), wls.Estimator()
             start = np.zeros(rows.W.shape[2] + 1)
             first = solver.of_rows(rows).fit.estimates
             found = aligned(solver, start, rows, first, len(robot.parameters))
