@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.tables import collected, table
 
-from scarid_cli.algorithms.checks import values
+from scarid_cli.algorithms.checks import clock, values
 from scarid_cli.algorithms.checks.clock import GAP
 from scarid_cli.algorithms.checks.finding import FAILED, STATUSES, worst
 from scarid_cli.algorithms.checks.log import Log
@@ -143,6 +143,21 @@ def test_a_log_is_checked_for_held_samples_by_the_rule_of_resample() -> None:
     clocks: list[Clock] = []
     collected(resample(table({"t": t, "q1": x, "tau1": np.cos(x)}), 100.0, report=clocks.append))
     assert clocks[0].held == 3
+
+
+def test_sensors_without_noise_at_rest_are_no_slower_sensors() -> None:
+    """Their values change by one step of resolution now and then, some of them together."""
+    rng = np.random.default_rng(3)
+    t = 0.005 * np.arange(4000.0)
+    moving = np.maximum(t - 10.0, 0.0)
+    q, tau = (np.array([f(moving), f(3.0 * moving)]) for f in (np.sin, np.cos))
+    noise = 0.3 * rng.standard_normal((4, len(t)))
+    q, tau = (1e-4 * np.round(1e4 * x + n) for x, n in ((q, noise[:2]), (tau, noise[2:])))
+    rest = Log(t, q, tau)
+    assert np.mean(rest.held[0]) > clock.HELD
+    assert clock.held(rest).status == "ok"
+    read = 10 * (np.arange(len(t)) // 10)  # every tenth row
+    assert clock.held(Log(t, q[:, read], tau[:, read])).status == "warning"
 
 
 @pytest.mark.parametrize("joints", [1, 5])

@@ -9,9 +9,9 @@ import numpy as np
 from scarid_cli.algorithms.checks.finding import Finding, failed, ok, several, warning
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.processes.filling import reading_interval
-from scarid_cli.algorithms.processes.holding import MAX_GAP
+from scarid_cli.algorithms.processes.holding import MAX_GAP, TOGETHER
 from scarid_cli.algorithms.processes.rates import lost_rows, mean_rate
-from scarid_cli.arrays import Array, median
+from scarid_cli.arrays import Array, Marks, median
 
 # Hz. Friction and inertia are told apart where the velocity changes within tenths of a second, so
 # that a log of fewer rows per second is of no use, and one of more is no log of joints.
@@ -117,12 +117,28 @@ def held(log: Log) -> Finding:
     """Held samples, by the rule by which `resample` leaves them out."""
     rows, _ = log.held
     count = int(np.count_nonzero(rows))
-    share = count / max(log.rows, 1)
-    figure = f"{several(count, 'row')}, {100.0 * share:.2g} %, with all values of the row before"
-    if share <= HELD:
-        return ok("held samples", figure if count else "none")
+    share = 1.0 / max(log.rows, 1)
+    figure = f"{several(count, 'row')}, {100.0 * count * share:.2g} %"
+    figure += ", with all values of the row before"
+    if not count:
+        return ok("held samples", "none")
+    if _followed_by_leaps(log.sensed, rows) * share <= HELD:
+        return ok("held samples", figure)
     advice = f"a slower sensor behind a faster logger: {log.resampling()} keeps the first of each"
     return warning("held samples", figure, advice)
+
+
+def _followed_by_leaps(values: Array, held: Marks) -> int:
+    """How many of the `held` rows end with a change beyond the resolution of the values.
+
+    Of half of the values (columns, rows) at least. Noise at rest changes them by one step.
+    """
+    starts, ends = np.flatnonzero(np.diff(held, prepend=False, append=False)).reshape(-1, 2).T
+    ends = np.minimum(ends, len(held) - 1)
+    changes = np.abs(np.diff(values, axis=1))
+    steps = np.min(changes, axis=1, where=changes > 0.0, initial=np.inf)
+    leap = np.mean(changes[:, ends - 1] > 1.5 * steps[:, None], axis=0) >= TOGETHER
+    return int((ends - starts)[leap].sum())
 
 
 def slower(log: Log) -> Finding:
