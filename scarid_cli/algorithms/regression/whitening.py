@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from scarid_cli.algorithms.filters.butterworth import both_ways
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array, Marks, Numbers
 
@@ -26,7 +27,7 @@ LONGEST = 2.0  # s, of its lags
 MOST = 64  # rows that predict the next one
 BEYOND = 3.0
 ORDER = 8  # of the low-pass that stands for any soft sensor: both passes of a Butterworth of four
-CUTOFF = (2.0**0.5 - 1.0) ** (-1.0 / ORDER)  # of one pass, over the bandwidth of both
+CUTOFF = 1.0 / both_ways(ORDER // 2)  # of one pass, over the bandwidth of both
 POINTS = 512  # frequencies at which it is integrated
 UNPREDICTABLE = 1e-3  # of the variance, that of noise that is white for certain
 CHUNK = 64  # rows that are whitened by one matrix product

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from scarid_cli.algorithms.filters.butterworth import both_ways
 from scarid_cli.algorithms.regression.rows import Rows, runs
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
@@ -48,7 +49,7 @@ def with_ringing(rows: Rows, robot: Robot) -> Rows:
     """
     if not (rows.order and rows.bandwidth and rows.h > 0.0):
         return rows
-    cutoff = rows.bandwidth / (2.0**0.5 - 1.0) ** (0.5 / rows.order)
+    cutoff = rows.bandwidth / both_ways(rows.order)
     low_pass = LowPass(cutoff * rows.h, rows.order)
     columns = [c for c in _columns(rows, robot, low_pass) if _determined(rows, c)]
     if not columns:
