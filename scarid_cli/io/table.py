@@ -36,6 +36,10 @@ class Metadata:
     history: tuple[dict[str, Any], ...] = ()
     extra: dict[str, Any] = field(default_factory=dict)
 
+    def without(self, *keys: str) -> Metadata:
+        """The metadata without these keys of `extra`."""
+        return replace(self, extra={k: x for k, x in self.extra.items() if k not in keys})
+
     def to_json(self) -> bytes:
         return json.dumps(asdict(self), sort_keys=True, separators=(",", ":")).encode()
 

@@ -57,6 +57,8 @@ def matched(
 
 
 UNUSED = ""  # the name of an output that is no column
+PASSED = ("bandwidth", ORDER, "velocity_noise")  # the metadata of what positions have passed
+
 Planner = Callable[[Table, list[Method]], Plan]
 
 
@@ -71,7 +73,7 @@ def _motion(
 ) -> Table:
     """The table as a motion, with the lag of its rows [s] and the bandwidth in the metadata."""
     period = table.period
-    extra = dict(table.meta.extra)
+    extra = table.meta.without(*PASSED).extra
     schema = _schema(table, len(methods), [pa.field("settled", pa.int64())] if marked else [])
     if not all(method.is_fitted for method in methods):  # the others need the whole record first
         rows = inf
@@ -154,8 +156,10 @@ def _passed(methods: list[Method], period: float, planner: Planner) -> dict[str,
     known = [hertz for hertz in found if hertz is not None]
     if len(known) < len(found) or not known:
         return {}
+    low_pass: dict[str, Any] = {"bandwidth": min(known)}
     orders = {method.two_sided_order for method in methods}
-    low_pass = {"bandwidth": min(known), ORDER: orders.pop() if len(orders) == 1 else None}
+    if None not in orders and len(orders) == len(set(known)) == 1:
+        low_pass |= {ORDER: orders.pop()}
     if planner is _matching_velocities:
         return low_pass
     stated = [m.noise if isinstance(m, KalmanMethod) else 0.0 for m in methods]

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from scarid_cli.algorithms.processes.process import Process
+from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import TooShort
 from scarid_cli.io.table import Table
 from scarid_cli.stages.columns import Plan, Task, processed
@@ -18,4 +21,5 @@ def filtered(
     """
     plan = Plan([Task(name, lowpass, (name,)) for name, lowpass in filters.items()])
     plan.check(table.period)
+    table = replace(table, meta=table.meta.without(ORDER))  # another low-pass follows
     return processed(table, table.schema, lambda segment: (segment, plan), left_out)

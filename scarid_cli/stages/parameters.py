@@ -166,13 +166,7 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         "joints": _joints(found.diagnostics),
         "effects": _effects(found.diagnostics),
         "widened": _widened(found.diagnostics),
-        "torque_constants": dict(
-            zip(
-                [labels.names[i] for i in found.kept],
-                found.diagnostics.gains.T.tolist(),
-                strict=False,
-            )
-        ),
+        "torque_constants": _torque_constants(found, labels),
         EVIDENCE: stored(found.evidence, labels.names),
         **found.found.extra,
     }
@@ -187,6 +181,14 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         extra["dropped_allowed"] = found.reduction.allowed
         extra["full_estimates"] = found.full.estimates.tolist()
     return extra
+
+
+def _torque_constants(found: Outcome, labels: Labels) -> dict[str, list[float]]:
+    """How far each estimate moves per relative change of the torque constant of each joint."""
+    moves = found.diagnostics.gains.T
+    if not np.isfinite(moves).all():
+        return {}
+    return dict(zip([labels.names[i] for i in found.kept], moves.tolist(), strict=False))
 
 
 def _joints(diagnostics: Diagnostics) -> list[dict[str, Any]]:

@@ -18,6 +18,7 @@ from scarid_cli.algorithms.processes.resampling import (
     Resampler,
     ResamplerState,
 )
+from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.table import (
@@ -56,7 +57,7 @@ def resample(
     """
     fields = [field for field in table.schema if field.name != SEGMENT]
     schema = pa.schema([*fields, pa.field(SEGMENT, pa.int64())])
-    meta = replace(table.meta, period=1.0 / rate)
+    meta = replace(table.meta.without(ORDER), period=1.0 / rate)
     table = replace(table, batches=_ordered(table))
     batches = _rows(table, schema, 1.0 / rate, max_gap, report)
     return replace(table, schema=schema, meta=meta, batches=batches)

@@ -95,8 +95,18 @@ def _parts(
         if known and estimator and estimator.REFERENCE:
             reference = _signals(robot, kept, *REFERENCE)
         rows = rows_of(robot, motion, at, table.period, slow=slow, reference=reference)
-        extra = table.meta.extra
-        yield kept, replace(rows, bandwidth=extra.get("bandwidth"), order=extra.get(ORDER))
+        bandwidth, order = _low_pass(table, treatment)
+        yield kept, replace(rows, bandwidth=bandwidth, order=order)
+
+
+def _low_pass(table: Table, treatment: Treatment) -> tuple[float | None, int | None]:
+    """The bandwidth [Hz] and the order of what the motion has passed, as far as they are known.
+
+    The order is that of the bandwidth in the metadata, and of no other one that a user states.
+    """
+    bandwidth = table.meta.extra.get("bandwidth")
+    stated = treatment.counting.bandwidth if treatment.counting else None
+    return bandwidth, table.meta.extra.get(ORDER) if stated in (None, bandwidth) else None
 
 
 def _signals(robot: Robot, batch: pa.RecordBatch, *names: str) -> Array:

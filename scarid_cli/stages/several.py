@@ -84,7 +84,7 @@ def _extra(tables: Sequence[Table]) -> dict[str, Any]:
     extra = dict(tables[0].meta.extra)
     passed = {(t.meta.extra.get("bandwidth"), t.meta.extra.get(ORDER)) for t in tables}
     if len(passed) > 1:
-        extra[ORDER] = None
+        extra.pop(ORDER, None)
     extra["bandwidth"] = min(table.meta.extra.get("bandwidth") or 0.0 for table in tables) or None
     noise = [table.meta.extra.get("velocity_noise") or [] for table in tables]
     alike = len({len(values) for values in noise}) == 1

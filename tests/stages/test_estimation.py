@@ -14,6 +14,7 @@ from crossvalidation import log, seen
 from defaults import PERIOD
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
@@ -125,6 +126,20 @@ def test_torques_without_noise_are_fitted_by_maximum_likelihood() -> None:
     np.testing.assert_allclose(column(result, "estimate"), SCARA.apriori, atol=1e-6)
 
 
+def test_parameters_that_no_motion_tells_apart_are_named_and_nothing_else() -> None:
+    """Each friction twice: with a delay and with what a low-pass makes of both."""
+    again = [replace(p, name=f"{p.name} again") for p in SCARA.parameters if p.term.JUMPS]
+    robot = replace(SCARA, parameters=(*SCARA.parameters, *again))
+    with pytest.raises(BadData, match=r"the motion leaves (Fs\d( again)?( [-+] )?)+ undetermined"):
+        identify(
+            behind(motion(), 10.0, 4),
+            robot,
+            ESTIMATORS.load("wls")(),
+            robot.apriori,
+            treatment=Treatment(align=True),
+        )
+
+
 def test_barely_excited_rows_with_a_delay_get_a_verdict() -> None:
     """A quarter of a second, of which few rows are fast; the triangle is singular to rounding."""
     for rows in range(30, 80, 5):
@@ -133,12 +148,19 @@ def test_barely_excited_rows_with_a_delay_get_a_verdict() -> None:
             assert result.meta.extra["scaled_condition_number"] > 0.0
 
 
-def test_validation_applies_the_delay_that_was_fitted() -> None:
+def behind(source: Table, bandwidth: float, order: int) -> Table:
+    """The motion as if it had passed a two-sided low-pass of this bandwidth [Hz]."""
+    return replace(source, meta=replace(source.meta, extra={"bandwidth": bandwidth, ORDER: order}))
+
+
+@pytest.mark.parametrize("order", [0, 4])
+def test_validation_applies_the_delay_that_was_fitted(order: int) -> None:
     """On the rows it was identified from, R2 is the one that identify reports.
 
-    But for the two last samples, which have no torque of two samples later.
+    But for the two last samples, which have no torque of two samples later. What is fitted beside
+    the parameters of the robot, the ringing of friction, predicts nothing.
     """
-    parameters = found(motion(late=2), "wls", align=True)
+    parameters = found(behind(motion(late=2), 10.0, order), "wls", align=True)
     expected = [joint["r2"] for joint in parameters.meta.extra["joints"]]
     model = identified(parameters, SCARA)
     assert model.delay == parameters.meta.extra["delay"] < -5e-3

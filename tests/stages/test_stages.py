@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -9,14 +11,18 @@ from stages.tables import PERIOD, SCARA, Kept, collected, cut, motion, table
 
 from scarid_cli.algorithms.differentiators.central import Differentiator as Central
 from scarid_cli.algorithms.differentiators.p2smd import Differentiator as P2smd
+from scarid_cli.algorithms.differentiators.zero_phase import Differentiator as ZeroPhase
 from scarid_cli.algorithms.estimators.ls import Estimator as LeastSquares
 from scarid_cli.algorithms.filters.butterworth import Butterworth
+from scarid_cli.algorithms.processes.method import Method
+from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Table, doubles, number
-from scarid_cli.stages.differentiate import differentiate
+from scarid_cli.stages.differentiate import PASSED, differentiate, matched
 from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
 from scarid_cli.stages.parameters import Identified
+from scarid_cli.stages.resample import resample
 from scarid_cli.stages.validate import validate
 
 
@@ -50,6 +56,23 @@ def test_a_method_that_looks_ahead_keeps_each_row_with_its_time() -> None:
     np.testing.assert_array_equal(result.column("t"), columns["t"])
     np.testing.assert_array_equal(result.column("q1"), columns["q1"])
     np.testing.assert_allclose(result.column("dq1"), velocity, rtol=1e-13)
+
+
+def test_a_motion_states_the_order_of_the_only_low_pass_that_it_has_passed() -> None:
+    def order(*methods: Method, of: Table | None = None) -> int | None:
+        found = matched(of or table(motion()), list(methods))
+        return found.meta.extra.get(ORDER)
+
+    slow, fast = ZeroPhase(cutoff=5.0), ZeroPhase(cutoff=20.0, order=3)
+    assert order(slow, slow) == 4
+    assert order(fast, fast) == 3
+    assert order(slow, replace(slow, cutoff=20.0)) is None
+    assert order(slow, fast) is None
+    once = matched(table(motion()), [slow, slow])
+    assert differentiate(once, [Central()] * 2).meta.extra.keys().isdisjoint(PASSED)
+    for again in (filtered(once, {"q1": Butterworth(20.0)}), resample(once, 100.0)):
+        assert ORDER not in again.meta.extra
+        assert again.meta.extra["bandwidth"] == once.meta.extra["bandwidth"]
 
 
 def test_differentiating_again_replaces_the_derivatives() -> None:

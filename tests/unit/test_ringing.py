@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from scipy.signal import butter, sosfiltfilt
 
 from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.filters.butterworth import both_ways
 from scarid_cli.algorithms.processes.bandwidth import bandwidth_of
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
 from scarid_cli.algorithms.robots.description import Robot
@@ -24,7 +25,7 @@ AXIS = load("emps")
 FRICTION = 2  # the index of its Coulomb friction
 H = 0.001  # s
 BANDWIDTH, ORDER = 8.0, 4  # Hz
-CUTOFF = BANDWIDTH / (2.0**0.5 - 1.0) ** (0.5 / ORDER)
+CUTOFF = BANDWIDTH / both_ways(ORDER)
 LATE = 0.004  # s
 
 
@@ -122,9 +123,18 @@ def test_nothing_is_added_where_the_low_pass_is_unknown_or_reversals_are_few() -
     assert columns(rows) == 1
     assert columns(replace(rows, order=None)) == 0
     assert columns(replace(rows, bandwidth=None)) == 0
+    for hertz in (1e-6, 0.5 / H, 1e9):  # of runs too short for it, and what passes everything
+        assert columns(replace(rows, bandwidth=hertz)) == 0
     assert columns(replace(rows, scales=0.0 * rows.scales)) == 0
     near = rows.at < 4 / H / 12 * 3
     assert columns(replace(rows, scales=rows.scales * near[:, None])) == 0
+
+
+def test_friction_that_never_reverses_does_not_ring() -> None:
+    rows = behind_the_low_pass()
+    W = rows.W.copy()
+    W[:, :, FRICTION] = 0.1
+    assert columns(replace(rows, W=W)) == 0
 
 
 def test_what_lies_beyond_a_gap_does_not_ring() -> None:

@@ -89,9 +89,15 @@ class Fit:
 
 
 def condition_number(covariance: Array) -> float:
-    """The condition number of the observation matrix, from the covariance of its estimates."""
-    values = np.linalg.eigvalsh(covariance)
-    return float(np.sqrt(values[-1] / max(values[0], 1e-300)))
+    """The condition number of the observation matrix, from the covariance of its estimates.
+
+    Of the triangle of the covariance, as that of the covariance is its square, of which half the
+    digits are left; inf if there is none.
+    """
+    try:
+        return float(np.linalg.cond(np.linalg.cholesky(covariance)))
+    except np.linalg.LinAlgError:
+        return float("inf")
 
 
 def empty(parameters: int) -> Information:

@@ -68,6 +68,7 @@ def diagnose(
     own: int,
     record: Blocks | None = None,
     *,
+    modelled: Array | None = None,
     model: Model | None = None,
     doubt: Array | None = None,
     gain_error: float = 0.0,
@@ -76,9 +77,10 @@ def diagnose(
 
     `record` has the blocks of the whole record if `rows` are only a subsample of it. The first
     `own` columns of W belong to the robot, whose `model` is None if the rows are not those of its
-    regressor; the others are nuisance parameters. `doubt` (own) is how far the estimates may be off
-    because torques may lead as behind a low-pass or as behind a delay. `gain_error` is the relative
-    standard error of the torque constants.
+    regressor; the others are nuisance parameters. `modelled` (columns) are the estimates that
+    predict torques later, by which the residuals of the joints are stated. `doubt` (own) is how far
+    the estimates may be off because torques may lead as behind a low-pass or as behind a delay.
+    `gain_error` is the relative standard error of the torque constants.
     """
     noise = found.noise
     white = noise.rows(rows) if noise else rows
@@ -101,7 +103,7 @@ def diagnose(
         scatter=scatter,
         errors=stated.errors,
         matrix=stated.matrix,
-        joints=residuals(rows, estimates, record),
+        joints=residuals(rows, estimates if modelled is None else modelled, record),
         effects=effects,
         gains=gains,
         consequences=consequences(

@@ -8,7 +8,7 @@ import numpy as np
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
-from scarid_cli.algorithms.regression.information import Fit
+from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
@@ -44,6 +44,13 @@ class Problem:
         """What remains of the delay [s] in these rows."""
         return float(self.found.fit.estimates[-1]) if self.lead else 0.0
 
+    @property
+    def modelled(self) -> Array:
+        """The estimates without nuisance parameters, but for the delay: what predicts torques."""
+        estimates = self.found.fit.estimates.copy()
+        estimates[self.own : -1 if self.lead else None] = 0.0
+        return estimates
+
     def diagnostics(self, gain_error: float) -> Diagnostics:
         doubt = self.lead.doubt if self.lead else None
         return diagnose(
@@ -51,6 +58,7 @@ class Problem:
             self.found,
             self.own,
             self.record,
+            modelled=self.modelled,
             model=self.model,
             doubt=None if doubt is None else doubt[: self.own],
             gain_error=gain_error,
@@ -156,7 +164,7 @@ def _problem(
 ) -> Problem:
     rows, lead = end.subsample.rows(), None
     if align:
-        fitted = _aligned(estimator, initial, with_ringing(rows, robot))
+        fitted = _aligned(estimator, initial, rows, robot)
         rows, found, own, lead = fitted.rows, fitted.found, len(initial), fitted.lead
     else:
         found = estimator.fit(end.state)
@@ -173,7 +181,15 @@ def _problem(
     return Problem(rows, found, own, record, model, lead)
 
 
-def _aligned(estimator: BaseEstimator, initial: Array, rows: Rows) -> Aligned:
+def _aligned(estimator: BaseEstimator, initial: Array, rows: Rows, robot: Robot) -> Aligned:
+    """The estimation with the delay of the torques, and with the ringing of friction if it can."""
+    try:
+        return _with_delay(estimator, initial, with_ringing(rows, robot))
+    except NotIdentifiableError:
+        return _with_delay(estimator, initial, rows)
+
+
+def _with_delay(estimator: BaseEstimator, initial: Array, rows: Rows) -> Aligned:
     """The estimation with the delay of the torques, and with nuisance parameters from 0."""
     further = rows.W.shape[2] - len(initial)
     start = np.append(initial, np.zeros(further))

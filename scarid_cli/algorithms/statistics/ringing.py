@@ -21,6 +21,8 @@ from scarid_cli.algorithms.statistics.jackknife import block_numbers
 from scarid_cli.arrays import Array
 
 PADDING = 3.0  # periods of the cut-off, after which the ringing has decayed to 1e-4
+SHORTEST = 0.5  # periods of the cut-off, of a run with any ringing to speak of
+NOTHING = 1e-12  # of the power of the friction, below which that of the ringing is rounding
 BLOCKS = 5.0  # effective ones, below which the error of an estimate is not known
 
 
@@ -50,30 +52,36 @@ def with_ringing(rows: Rows, robot: Robot) -> Rows:
     if not (rows.order and rows.bandwidth and rows.h > 0.0):
         return rows
     cutoff = rows.bandwidth / both_ways(rows.order)
-    low_pass = LowPass(cutoff * rows.h, rows.order)
-    columns = [c for c in _columns(rows, robot, low_pass) if _determined(rows, c)]
+    if cutoff * rows.h >= 0.5:  # it passes everything
+        return rows
+    columns = list(_columns(rows, robot, LowPass(cutoff * rows.h, rows.order)))
     if not columns:
         return rows
     return replace(rows, W=np.concatenate((rows.W, np.stack(columns, axis=2)), axis=2))
 
 
 def _columns(rows: Rows, robot: Robot, low_pass: LowPass) -> Iterator[Array]:
-    """The ringing (samples, joints) of the frictions of a joint, or of a motor of two joints."""
+    """The ringing (samples, joints) of the frictions of a joint, or of a motor of two joints.
+
+    Of those alone for which the rows determine it.
+    """
+    long = [run for run in runs(rows.at) if (run.stop - run.start) * low_pass.cutoff > SHORTEST]
     frictions: dict[tuple[int, ...], list[int]] = {}
     for index, parameter in enumerate(robot.parameters):
         if parameter.term.JUMPS:
             frictions.setdefault(parameter.term.joints, []).append(index)
     for joints, indices in frictions.items():
-        column = np.zeros(rows.y.shape)
+        friction, column = rows.W[:, :, indices].sum(axis=2), np.zeros(rows.y.shape)
         for j in (joint - 1 for joint in joints):
-            friction = rows.W[:, j, indices].sum(axis=1)
-            for run in runs(rows.at):
-                column[run, j] = low_pass.over(friction[run]) - friction[run]
-        yield column
+            for run in long:
+                column[run, j] = low_pass.over(friction[run, j]) - friction[run, j]
+        if _determined(rows, friction, column):
+            yield column
 
 
-def _determined(rows: Rows, column: Array) -> bool:
-    """Whether the power of a column (samples, joints) is that of enough blocks of time."""
-    power = np.sum((column * (rows.scales > 0.0)) ** 2, axis=1)
+def _determined(rows: Rows, friction: Array, ringing: Array) -> bool:
+    """Whether the power of a ringing (samples, joints) is that of enough blocks of time."""
+    power, whole = (np.sum((x * (rows.scales > 0.0)) ** 2, axis=1) for x in (ringing, friction))
     blocks = np.bincount(block_numbers(rows.at, rows.h)[0], weights=power)
-    return bool(blocks.sum() ** 2 >= BLOCKS * (blocks**2).sum() > 0.0)
+    enough = blocks.sum() ** 2 >= BLOCKS * (blocks**2).sum()
+    return bool(enough and blocks.sum() > NOTHING * whole.sum())
