@@ -249,11 +249,12 @@ def truth_of(robot: Robot, condition: Condition) -> Array:
 
 
 def mean_drift(condition: Condition) -> float:
-    """The mean over the log of what drifting friction has grown by, relative to its value."""
+    """The mean over the motion of what drifting friction has grown by, relative to its value."""
     grown = condition.given.get("friction-drift", (0.0,))[0]
     time = condition.given.get("friction-drift-time", (1.0,))[0]
+    begun = float(np.exp(-condition.given.get("standstill-before", (0.0,))[0] / time))
     periods = condition.duration / time
-    return grown * (1.0 + float(np.expm1(-periods)) / periods)
+    return grown * (1.0 + begun * float(np.expm1(-periods)) / periods)
 
 
 def added_motors(robot: Robot) -> dict[str, float]:

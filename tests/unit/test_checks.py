@@ -75,6 +75,16 @@ def test_the_bandwidth_of_a_sine_is_its_frequency(frequency: float, rows: int) -
     assert bandwidth(x, 0.005, 1) == pytest.approx(frequency, abs=3.0 * resolution)
 
 
+@pytest.mark.parametrize("frequency", [0.1, 0.5])
+def test_the_bandwidth_of_a_motion_is_not_that_of_the_steps_of_its_encoder(
+    frequency: float,
+) -> None:
+    """11 bits, read at 1 kHz: a hundred steps per second or more."""
+    step = 2.0 * np.pi / 2048
+    x = step * np.round(np.sin(2.0 * np.pi * frequency * 0.001 * np.arange(20_000)) / step)
+    assert bandwidth(x, 0.001, 1) == pytest.approx(frequency, abs=0.15)
+
+
 @pytest.mark.parametrize(("periods", "segments"), [(GAP, 1), (GAP + 0.25, 2)])
 def test_a_motion_is_split_at_intervals_beyond_the_longest_one(
     periods: float, segments: int

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from scarid_cli.algorithms.tuning.likelihood import resolution_of
 from scarid_cli.algorithms.tuning.lowpassed import Segment
 from scarid_cli.arrays import Array
 
@@ -24,13 +25,17 @@ def bandwidth(x: Array, h: float, derivative: int) -> float:
     """The frequency [Hz] below which POWER of a signal's (or its derivative's) power lies.
 
     x (rows) is sampled every h [s]. Frequencies at which the density does not exceed that of white
-    noise, found from the highest quarter of all frequencies, do not count. 0 for a signal at rest.
+    noise, found from the highest quarter of all frequencies, do not count. Nor do those above which
+    there is no more power than rounding to the resolution of x may cause, an error of up to half a
+    step: that of an encoder that is read often has tones. 0 for a signal at rest.
     """
-    trend = np.linspace(x[0], x[-1], len(x))
-    density = np.abs(np.fft.rfft((x - trend) * np.hanning(len(x)))) ** 2
+    trend, window = np.linspace(x[0], x[-1], len(x)), np.hanning(len(x))
+    density = np.abs(np.fft.rfft((x - trend) * window)) ** 2
     floor = density[-(len(density) // 4) :].mean()
+    above = np.cumsum(density[::-1])[::-1] * 2.0 / (len(x) * np.sum(window**2))
+    signal = (density > ABOVE * floor) & (above > (0.5 * resolution_of(x)) ** 2)
     frequency = np.fft.rfftfreq(len(x), h)
-    power = np.where(density > ABOVE * floor, density, 0.0) * frequency ** (2 * derivative)
+    power = np.where(signal, density, 0.0) * frequency ** (2 * derivative)
     total = np.cumsum(power)
     if not total[-1] > 0.0:
         return 0.0
