@@ -14,6 +14,7 @@
 # make montecarlo      coverage of the stated intervals
 # make bench-verdicts   whether intervals and verdicts hold under imperfect conditions
 # make gauntlet       the blind procedure on four robots under all conditions (an hour)
+# make bench-mixtures the blind procedure on logs with random mixtures of imperfections
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
 # make bench-checks    what check says of logs with known faults
 # make bench-changed   how often validate calls a change between two logs by its name
@@ -34,7 +35,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -120,6 +121,9 @@ bench-verdicts: $(VENV)/tested
 
 gauntlet: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/gauntlet.py
+
+bench-mixtures: $(VENV)/tested
+	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/mixtures.py
 
 bench-mujoco: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/mujoco_arms.py --seeds 10

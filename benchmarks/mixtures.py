@@ -5,12 +5,14 @@
 Each log has one to four imperfections of random kind and size, and a random rate, duration and
 speed, as the logs of strangers have. Sizes are uniform in their logarithm. Nothing in the procedure
 was chosen with them. The columns are those of `gauntlet.py`; *worse* are the logs with a larger
-error than that of the former default [%], and *refused* those that `identify` refuses.
+error than that of the former default [%], and *refused* how many `identify` refuses. The seeds of
+the logs that are refused or confidently wrong are on stderr.
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -112,7 +114,7 @@ def line(name: str, found: Sequence[Run | str]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robots", default=",".join(ROBOTS[:2]))
-    parser.add_argument("--logs", type=int, default=200, help="number of logs of each robot")
+    parser.add_argument("--logs", type=int, default=300, help="number of logs of each robot")
     parser.add_argument("--seed", type=int, default=70_000, help="of the first log")
     given = parser.parse_args()
     head = ("robot", "logs", "blind", "/ hindsight", "/ default", "worse", "coverage", "wrong")
@@ -124,7 +126,8 @@ def main() -> None:
             print(line(name, found), flush=True)
             for seed, one in zip(seeds, found, strict=True):
                 if isinstance(one, str) or one.blind.wrong:
-                    print(f"  {mixture(seed)}: {one if isinstance(one, str) else 'wrong'}")
+                    what = one if isinstance(one, str) else "confidently wrong"
+                    print(f"{name}, --seed {seed} --logs 1: {what}", file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conditions import CONDITIONS, UNSEEN, Condition, log, robot_named, truth_of
 from gauntlet import ROBOTS, cells, run
+from mixtures import KINDS, line, mixture, tried
 from needed import needed
 
 SHORT = 8.0  # s
@@ -45,6 +46,30 @@ def test_the_needed_torques_are_those_of_the_model_and_of_what_it_lacks() -> Non
         torque = tau[away, 0] - W[away, 0, 2] * truth[2]
     assert np.median(np.abs(rest[0])) < 1e-6
     assert np.median(rest[1] / np.abs(torque)) == pytest.approx(0.02, rel=0.1)
+
+
+def test_mixtures_differ_and_stay_within_their_sizes() -> None:
+    """Of 200 logs, every imperfection is in some, and none beyond the sizes that are stated."""
+    found = [mixture(seed) for seed in range(200)]
+    assert found[7] == mixture(7)
+    sizes = [
+        {**{n: x[0] for n, x in c.given.items()}, **{n: x for n, (_, x) in c.relative.items()}}
+        for c in found
+    ]
+    for kind in KINDS:
+        having = [own for own in sizes if set(kind) <= set(own)]
+        assert 0 < len(having) < 100
+        for name, (least, largest) in kind.items():
+            assert all(least <= own[name] <= largest for own in having)
+
+
+def test_mixtures_are_judged_as_the_gauntlet_is() -> None:
+    found = [tried("scara2", seed) for seed in (4, 8)]
+    assert [mixture(seed).duration for seed in (4, 8)] == [SHORT, SHORT]
+    row = line("scara2", found).strip("| ").split(" | ")
+    assert row[:2] == ["scara2", "2"]
+    assert float(row[2]) > 0.0
+    assert row[-1] == "0"
 
 
 def test_every_robot_that_is_here_meets_every_condition() -> None:
