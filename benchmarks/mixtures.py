@@ -96,16 +96,14 @@ def line(name: str, found: Sequence[Run | str]) -> str:
     """The row of a robot."""
     runs = [one for one in found if not isinstance(one, str)]
     blind = np.array([one.blind.torque for one in runs])
-    best, default = (
-        np.array(x) for x in ([min(r.hindsight) for r in runs], [r.default for r in runs])
-    )
-    shares = [blind > default, *([getattr(r.blind, x) for r in runs] for x in ("inside", "wrong"))]
-    shares += [[one.blind.good for one in runs]]
+    best = np.array([min(one.hindsight) for one in runs])
+    default = np.array([one.default for one in runs])
+    judged = ([getattr(one.blind, x) for one in runs] for x in ("inside", "wrong", "good"))
     figures = [
         f"{len(found)}",
         f"{100.0 * np.median(blind):.2g}",
         *[f"{np.exp(np.mean(np.log(blind / other))):.2f}" for other in (best, default)],
-        *[f"{100.0 * np.mean(share):.0f}" for share in shares],
+        *[f"{100.0 * np.mean(share):.0f}" for share in (blind > default, *judged)],
         f"{len(found) - len(runs)}",
     ]
     return f"| {name} | {' | '.join(figures)} |"

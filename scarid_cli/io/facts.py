@@ -13,6 +13,7 @@ from typing import Any
 Check = Callable[[Any], bool]
 LARGEST = 1e100
 FREQUENCIES = (1e-6, 1e9)  # Hz
+ORDER = "two_sided_order"  # of the Butterworth filter that a motion has passed both ways
 
 
 def number(x: Any) -> bool:
@@ -74,7 +75,7 @@ def _rows_of_joints(x: Any) -> bool:
 
 CHECKS: dict[str, Check] = {
     "bandwidth": _or_none(_frequency),
-    "two_sided_order": _or_none(_count),
+    ORDER: _or_none(_count),
     "velocity_noise": _or_none(_list(_size)),
     "delay": _or_none(number),
     "delay_error": _or_none(_size),

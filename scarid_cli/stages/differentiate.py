@@ -14,8 +14,8 @@ from scarid_cli.algorithms.filters.kalman_method import KalmanMethod
 from scarid_cli.algorithms.processes.bandwidth import bandwidth_of, velocity_noise
 from scarid_cli.algorithms.processes.matching import settling_rows
 from scarid_cli.algorithms.processes.method import MatchedForm, Method
-from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import TooShort
+from scarid_cli.io.facts import ORDER
 from scarid_cli.io.table import SEGMENT, Table, matrix, number, without
 from scarid_cli.stages.columns import Edges, Plan, Task, processed
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from scarid_cli.algorithms.processes.process import Process
-from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import TooShort
+from scarid_cli.io.facts import ORDER
 from scarid_cli.io.table import Table
 from scarid_cli.stages.columns import Plan, Task, processed
 

@@ -18,9 +18,9 @@ from scarid_cli.algorithms.processes.resampling import (
     Resampler,
     ResamplerState,
 )
-from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import UsageFault, bad_data
+from scarid_cli.io.facts import ORDER
 from scarid_cli.io.table import (
     SEGMENT,
     Instant,

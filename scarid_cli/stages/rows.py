@@ -12,7 +12,6 @@ import pyarrow as pa
 from scarid_cli.algorithms.regression.counting import LeftOut, counted
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.rows import (
-    ORDER,
     Rows,
     joined,
     rows_of,
@@ -23,6 +22,7 @@ from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
+from scarid_cli.io.facts import ORDER
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, segments_of, settled_runs
 
@@ -87,6 +87,7 @@ def _parts(
     gaps = Gaps(table.period)
     signals = FOLLOWED if estimator and estimator.FOLLOWS else MEASURED
     known = set(of_joints(len(robot.joints), *REFERENCE)) <= set(table.columns)
+    bandwidth, order = _low_pass(table, treatment)
     start, end = treatment.skip
     for first, kept in _after(start, settled_runs(_without_last(end, table.batches))):
         at = seen + first + gaps.before(kept) + np.arange(kept.num_rows)
@@ -95,7 +96,6 @@ def _parts(
         if known and estimator and estimator.REFERENCE:
             reference = _signals(robot, kept, *REFERENCE)
         rows = rows_of(robot, motion, at, table.period, slow=slow, reference=reference)
-        bandwidth, order = _low_pass(table, treatment)
         yield kept, replace(rows, bandwidth=bandwidth, order=order)
 
 

@@ -9,9 +9,9 @@ from typing import Any
 import pyarrow as pa
 
 from scarid_cli.algorithms.processes.rates import rate_text
-from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.clock import DRIFT
+from scarid_cli.io.facts import ORDER
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import SEGMENT, Table, doubles, integers, matrix, segments_of, with_columns
 

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from stages.tables import PERIOD, SCARA, collected, motion, table
 
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
-from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import BadData
+from scarid_cli.io.facts import ORDER
 from scarid_cli.io.reader import checked
 from scarid_cli.io.selection import Lacking, Selection, within
 from scarid_cli.io.table import Table, number

@@ -15,8 +15,8 @@ from scarid_cli.algorithms.differentiators.zero_phase import Differentiator as Z
 from scarid_cli.algorithms.estimators.ls import Estimator as LeastSquares
 from scarid_cli.algorithms.filters.butterworth import Butterworth
 from scarid_cli.algorithms.processes.method import Method
-from scarid_cli.algorithms.regression.rows import ORDER
 from scarid_cli.errors import BadData
+from scarid_cli.io.facts import ORDER
 from scarid_cli.io.table import Table, doubles, number
 from scarid_cli.stages.differentiate import PASSED, differentiate, matched
 from scarid_cli.stages.filter import filtered

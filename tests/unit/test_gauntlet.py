@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conditions import CONDITIONS, UNSEEN, Condition, log, robot_named, truth_of
+from conditions import CONDITIONS, UNSEEN, Condition, log, mean_drift, robot_named, truth_of
 from gauntlet import ROBOTS, cells, run
 from mixtures import KINDS, line, mixture, tried
 from needed import needed
@@ -46,6 +46,14 @@ def test_the_needed_torques_are_those_of_the_model_and_of_what_it_lacks() -> Non
         torque = tau[away, 0] - W[away, 0, 2] * truth[2]
     assert np.median(np.abs(rest[0])) < 1e-6
     assert np.median(rest[1] / np.abs(torque)) == pytest.approx(0.02, rel=0.1)
+
+
+def test_the_mean_of_a_drift_is_that_over_the_motion() -> None:
+    """As a sum over small steps, of the time from where the standstill before it ends."""
+    given = {"friction-drift": (0.2,), "friction-drift-time": (9.0,), "standstill-before": (4.0,)}
+    t = 4.0 + 12.0 * (np.arange(10_000) + 0.5) / 10_000
+    expected = np.mean(0.2 * (1.0 - np.exp(-t / 9.0)))
+    assert mean_drift(Condition("drift", given, duration=12.0)) == pytest.approx(expected)
 
 
 def test_mixtures_differ_and_stay_within_their_sizes() -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.signal import butter, sosfiltfilt
 
 from scarid_cli.algorithms.estimators import ls
-from scarid_cli.algorithms.filters.butterworth import both_ways
+from scarid_cli.algorithms.filters.two_sided import two_sided_bandwidth
 from scarid_cli.algorithms.processes.bandwidth import bandwidth_of
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
 from scarid_cli.algorithms.robots.description import Robot
@@ -25,7 +25,7 @@ AXIS = load("emps")
 FRICTION = 2  # the index of its Coulomb friction
 H = 0.001  # s
 BANDWIDTH, ORDER = 8.0, 4  # Hz
-CUTOFF = BANDWIDTH / both_ways(ORDER)
+CUTOFF = BANDWIDTH / two_sided_bandwidth(ORDER)
 LATE = 0.004  # s
 
 

@@ -14,8 +14,9 @@ from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.processes.delays import reference
 from scarid_cli.algorithms.processes.matching import over
+from scarid_cli.algorithms.processes.resolution import resolution_of
 from scarid_cli.algorithms.tuning import judges, search
-from scarid_cli.algorithms.tuning.likelihood import best_model, resolution_of
+from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
 from scarid_cli.stages.record import Record

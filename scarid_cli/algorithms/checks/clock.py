@@ -11,6 +11,7 @@ from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.processes.filling import reading_interval
 from scarid_cli.algorithms.processes.holding import MAX_GAP, TOGETHER
 from scarid_cli.algorithms.processes.rates import lost_rows, mean_rate
+from scarid_cli.algorithms.processes.resolution import resolution_of
 from scarid_cli.arrays import Array, Marks, median
 
 # Hz. Friction and inertia are told apart where the velocity changes within tenths of a second, so
@@ -20,6 +21,7 @@ UNITS = ((1e3, "ms"), (1e6, "us"), (1e9, "ns"))  # of a time that is not in seco
 JITTER = 0.01  # of the period: the limit of `differentiate`, as io.clock has it
 ROUNDING = 1e-6  # of the period: the digits of the time
 GAP = MAX_GAP  # periods
+LEAP = 1.5  # steps of the resolution: more than one, in spite of rounding
 HELD = 0.001  # of the rows: from one in a thousand on, the velocity has visible steps
 
 
@@ -117,12 +119,11 @@ def held(log: Log) -> Finding:
     """Held samples, by the rule by which `resample` leaves them out."""
     rows, _ = log.held
     count = int(np.count_nonzero(rows))
-    share = 1.0 / max(log.rows, 1)
-    figure = f"{several(count, 'row')}, {100.0 * count * share:.2g} %"
-    figure += ", with all values of the row before"
     if not count:
         return ok("held samples", "none")
-    if _followed_by_leaps(log.sensed, rows) * share <= HELD:
+    share = f"{100.0 * count / log.rows:.2g} %"
+    figure = f"{several(count, 'row')}, {share}, with all values of the row before"
+    if _followed_by_leaps(log.sensed, rows) <= HELD * log.rows:
         return ok("held samples", figure)
     advice = f"a slower sensor behind a faster logger: {log.resampling()} keeps the first of each"
     return warning("held samples", figure, advice)
@@ -136,8 +137,8 @@ def _followed_by_leaps(values: Array, held: Marks) -> int:
     starts, ends = np.flatnonzero(np.diff(held, prepend=False, append=False)).reshape(-1, 2).T
     ends = np.minimum(ends, len(held) - 1)
     changes = np.abs(np.diff(values, axis=1))
-    steps = np.min(changes, axis=1, where=changes > 0.0, initial=np.inf)
-    leap = np.mean(changes[:, ends - 1] > 1.5 * steps[:, None], axis=0) >= TOGETHER
+    steps = np.array([resolution_of(x) for x in values])
+    leap = np.mean(changes[:, ends - 1] > LEAP * steps[:, None], axis=0) >= TOGETHER
     return int((ends - starts)[leap].sum())
 
 

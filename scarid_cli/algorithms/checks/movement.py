@@ -8,9 +8,9 @@ import numpy as np
 
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok, several, warning
 from scarid_cli.algorithms.checks.motion import Motion
+from scarid_cli.algorithms.processes.resolution import resolution_of
 from scarid_cli.algorithms.regression.counting import SLOW
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.tuning.likelihood import resolution_of
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed
 from scarid_cli.algorithms.tuning.scatter import HIGHEST
 from scarid_cli.arrays import Array

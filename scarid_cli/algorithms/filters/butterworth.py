@@ -23,11 +23,6 @@ from scarid_cli.errors import TooShort, UsageFault
 LOWEST = 1e-6  # cutoff, of the rate: below, rounding takes the place of the poles
 
 
-def both_ways(order: int) -> float:
-    """The -3 dB bandwidth of a pass forwards and one backwards, over the cut-off of one pass."""
-    return float((2.0**0.5 - 1.0) ** (0.5 / order))
-
-
 @dataclass(frozen=True)
 class Butterworth(Validated, SectionFilter):
     """The causal low-pass of an order, with -3 dB at the cutoff [Hz]."""

@@ -11,7 +11,6 @@ import numpy as np
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array, Numbers
 
-ORDER = "two_sided_order"  # in the metadata of a motion, that of Rows
 INTERVAL = 0.005  # s: rows are thinned to intervals of at most this length
 
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.butterworth import both_ways
+from scarid_cli.algorithms.filters.two_sided import two_sided_bandwidth, two_sided_gain
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array, Marks, Numbers
 
@@ -26,8 +26,8 @@ SHARE = 0.05  # of the record, up to which the autocovariance is estimated
 LONGEST = 2.0  # s, of its lags
 MOST = 64  # rows that predict the next one
 BEYOND = 3.0
-ORDER = 8  # of the low-pass that stands for any soft sensor: both passes of a Butterworth of four
-CUTOFF = 1.0 / both_ways(ORDER // 2)  # of one pass, over the bandwidth of both
+ORDER = 4  # of the Butterworth low-pass, forwards and backwards, that stands for any soft sensor
+CUTOFF = 1.0 / two_sided_bandwidth(ORDER)  # of one pass, over the bandwidth of both
 POINTS = 512  # frequencies at which it is integrated
 UNPREDICTABLE = 1e-3  # of the variance, that of noise that is white for certain
 CHUNK = 64  # rows that are whitened by one matrix product
@@ -99,7 +99,7 @@ class ColouredNoise:
         own = self.autocovariance[:, ::step][:, : MOST + 1]
         interval = step * self.h
         f = (np.arange(POINTS) + 0.5) / POINTS * 0.5 / interval
-        passed = 1.0 / (1.0 + (f / (CUTOFF * self.bandwidth)) ** ORDER) ** 2
+        passed = two_sided_gain(f / (CUTOFF * self.bandwidth), ORDER) ** 2
         lags = 2.0 * np.pi * interval * np.outer(np.arange(own.shape[1]), f)
         beyond = np.cos(lags) @ (1.0 - passed) / passed.sum()
         total = own + BEYOND * own[:, :1] * beyond

@@ -14,15 +14,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.butterworth import both_ways
+from scarid_cli.algorithms.filters.two_sided import two_sided_bandwidth, two_sided_gain
 from scarid_cli.algorithms.regression.rows import Rows, runs
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
 from scarid_cli.arrays import Array
 
 PADDING = 3.0  # periods of the cut-off, after which the ringing has decayed to 1e-4
-SHORTEST = 0.5  # periods of the cut-off, of a run with any ringing to speak of
-NOTHING = 1e-12  # of the power of the friction, below which that of the ringing is rounding
+SHORTEST = 0.5  # periods of the cut-off, of a run that may have rows away from its reversals
 BLOCKS = 5.0  # effective ones, below which the error of an estimate is not known
 
 
@@ -38,7 +37,7 @@ class LowPass:
         edge = int(PADDING / self.cutoff) + 1
         length = 1 << (len(x) + 2 * edge - 1).bit_length()
         padded = np.pad(x, (edge, length - len(x) - edge), mode="edge")
-        gain = 1.0 / (1.0 + (np.fft.rfftfreq(length) / self.cutoff) ** (2 * self.order))
+        gain = two_sided_gain(np.asarray(np.fft.rfftfreq(length)) / self.cutoff, self.order)
         passed = np.fft.irfft(gain * np.fft.rfft(padded), length)
         return np.asarray(passed[edge : edge + len(x)])
 
@@ -51,37 +50,35 @@ def with_ringing(rows: Rows, robot: Robot) -> Rows:
     """
     if not (rows.order and rows.bandwidth and rows.h > 0.0):
         return rows
-    cutoff = rows.bandwidth / both_ways(rows.order)
+    cutoff = rows.bandwidth / two_sided_bandwidth(rows.order)
     if cutoff * rows.h >= 0.5:  # it passes everything
         return rows
-    columns = list(_columns(rows, robot, LowPass(cutoff * rows.h, rows.order)))
+    low_pass = LowPass(cutoff * rows.h, rows.order)
+    columns = [c for c in _columns(rows, robot, low_pass) if _determined(rows, c)]
     if not columns:
         return rows
     return replace(rows, W=np.concatenate((rows.W, np.stack(columns, axis=2)), axis=2))
 
 
 def _columns(rows: Rows, robot: Robot, low_pass: LowPass) -> Iterator[Array]:
-    """The ringing (samples, joints) of the frictions of a joint, or of a motor of two joints.
-
-    Of those alone for which the rows determine it.
-    """
+    """The ringing (samples, joints) of the frictions of a joint, or of a motor of two joints."""
     long = [run for run in runs(rows.at) if (run.stop - run.start) * low_pass.cutoff > SHORTEST]
     frictions: dict[tuple[int, ...], list[int]] = {}
     for index, parameter in enumerate(robot.parameters):
         if parameter.term.JUMPS:
             frictions.setdefault(parameter.term.joints, []).append(index)
     for joints, indices in frictions.items():
-        friction, column = rows.W[:, :, indices].sum(axis=2), np.zeros(rows.y.shape)
+        column = np.zeros(rows.y.shape)
         for j in (joint - 1 for joint in joints):
+            friction = rows.W[:, j, indices].sum(axis=1)
             for run in long:
-                column[run, j] = low_pass.over(friction[run, j]) - friction[run, j]
-        if _determined(rows, friction, column):
-            yield column
+                if np.ptp(friction[run]) > 0.0:  # else rounding alone would be left
+                    column[run, j] = low_pass.over(friction[run]) - friction[run]
+        yield column
 
 
-def _determined(rows: Rows, friction: Array, ringing: Array) -> bool:
-    """Whether the power of a ringing (samples, joints) is that of enough blocks of time."""
-    power, whole = (np.sum((x * (rows.scales > 0.0)) ** 2, axis=1) for x in (ringing, friction))
+def _determined(rows: Rows, column: Array) -> bool:
+    """Whether the power of a column (samples, joints) is that of enough blocks of time."""
+    power = np.sum((column * (rows.scales > 0.0)) ** 2, axis=1)
     blocks = np.bincount(block_numbers(rows.at, rows.h)[0], weights=power)
-    enough = blocks.sum() ** 2 >= BLOCKS * (blocks**2).sum()
-    return bool(enough and blocks.sum() > NOTHING * whole.sum())
+    return bool(blocks.sum() ** 2 >= BLOCKS * (blocks**2).sum() > 0.0)

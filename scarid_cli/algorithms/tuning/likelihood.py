@@ -13,6 +13,7 @@ import numpy as np
 
 from scarid_cli.algorithms.filters.kalman import Model, filtered, recorded, smoothed
 from scarid_cli.algorithms.filters.kalman_method import STATES, KalmanMethod
+from scarid_cli.algorithms.processes.resolution import resolution_of
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
 
@@ -37,12 +38,6 @@ def noise_of(x: Array) -> float:
     if len(x) <= DIFFERENCES:
         return float(floor)
     return float(max(np.sqrt(np.mean(np.diff(x, DIFFERENCES) ** 2)) / gain, floor))
-
-
-def resolution_of(x: Array) -> float:
-    """The resolution of an encoder as its positions x show it: their smallest step; 0 at rest."""
-    steps = np.abs(np.diff(x))
-    return float(steps[steps > 0.0].min(initial=np.inf)) if np.any(steps) else 0.0
 
 
 def noise_floor(records: Sequence[Array]) -> float:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.butterworth import Butterworth, both_ways
+from scarid_cli.algorithms.filters.butterworth import Butterworth
+from scarid_cli.algorithms.filters.two_sided import two_sided_bandwidth
 from scarid_cli.algorithms.processes.bandwidth import velocity_noise
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.regression.counting import (
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.coupled import CoupledTerm
 
 ORDER = 4
-TWO_SIDED = both_ways(ORDER)  # the bandwidth of both passes, over the cut-off
+TWO_SIDED = two_sided_bandwidth(ORDER)  # the bandwidth of both passes, over the cut-off
 PADDING = 3.0  # periods of the cut-off by which a record is extended oddly at both ends
 RATE, LEAST_RATE = 10.0, 4.0  # rows kept per period of the cut-off, of a short record and of any
 MANY = 8192  # samples of a record, from which on fewer rows are kept

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from scarid_cli.algorithms.tuning.likelihood import resolution_of
+from scarid_cli.algorithms.processes.resolution import resolution_of
 from scarid_cli.algorithms.tuning.lowpassed import Segment
 from scarid_cli.arrays import Array
 
