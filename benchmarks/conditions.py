@@ -149,6 +149,12 @@ UNSEEN = [
     Condition("torques held at 50 Hz", {"torque-rate": (50.0,)}),
     _friction("coarse torques", "torque-resolution", 0.2),
     Condition("11 bit at 1000 Hz, slow", {"encoder-bits": (11,)}, rate=1000.0, speed=0.4),
+    Condition(
+        "11 bit at 1000 Hz, slow, lost rows",
+        {"encoder-bits": (11,), "lost-rows": (0.01,)},
+        rate=1000.0,
+        speed=0.4,
+    ),
     Condition("hidden jitter 1 ms", {"hidden-jitter": (0.001,)}),
     Condition("jittered stamps 1 ms", {"stamp-jitter": (0.001,)}),
     Condition(

@@ -76,7 +76,7 @@ def resolution(q: Array, motion: Motion, parts: list[Lowpassed], robot: Robot) -
     White noise of the deviation s passes a low-pass of the cut-off B [Hz] with the deviation
     s (2 pi B)^2 (2 h B / 5)^1/2 in the acceleration.
     """
-    steps = np.array([smallest_step(x[np.isfinite(x)]) for x in q])
+    steps = np.array([resolution_of(x[np.isfinite(x)]) for x in q])
     gain = (2.0 * pi * motion.cutoff) ** 2 * sqrt(2.0 * motion.h * motion.cutoff / 5.0)
     ddq = np.concatenate([part.motion[2] for part in parts], axis=1)
     scale = np.sqrt(np.mean(ddq**2, axis=1))
@@ -97,19 +97,6 @@ def resolution(q: Array, motion: Motion, parts: list[Lowpassed], robot: Robot) -
     )
     status = failed if shares[worst] > NOISE else warning
     return status("resolution", figure, advice)
-
-
-def smallest_step(q: Array) -> float:
-    """The resolution of positions (rows); 0 if they have that of their numbers only.
-
-    Positions on a grid have far fewer values than rows that move, or steps of one size.
-    """
-    step = resolution_of(q)
-    if not step:
-        return 0.0
-    steps = np.abs(np.diff(q)) / step
-    whole = np.abs(steps - np.round(steps)) < 0.05 * np.maximum(1.0, 1e-3 * steps)
-    return step if np.mean(whole) > 0.9 else 0.0
 
 
 def repetition(motion: Motion) -> Finding:
