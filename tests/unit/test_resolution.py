@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -42,3 +44,12 @@ def test_readings_without_a_grid_and_sensors_at_rest_have_none() -> None:
     assert resolution_of(np.repeat(rng.standard_normal(500), 2)) == 0.0
     assert resolution_of(np.ones(100)) == 0.0
     assert resolution_of(np.empty(0)) == 0.0
+
+
+@pytest.mark.parametrize("levels", [2, 40])
+def test_positions_at_which_a_robot_stops_are_no_steps_of_a_sensor(levels: int) -> None:
+    """Every 5 degrees, with smooth motions between them, of a simulator without noise."""
+    stops = np.radians(5.0) * np.resize(np.r_[: levels - 1, levels - 1 : 0 : -1], 90)
+    smooth = 0.5 - 0.5 * np.cos(np.pi * np.linspace(0.0, 1.0, 40))
+    motions = [np.r_[a + (b - a) * smooth, np.full(60, b)] for a, b in itertools.pairwise(stops)]
+    assert resolution_of(np.concatenate(motions)) == 0.0
