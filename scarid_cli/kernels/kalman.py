@@ -18,9 +18,10 @@ def filtered(g, estimates, x, P, gain, work, F, Q, noise):
     x (m), P (m, m): the predicted state and its covariance. gain (m): the last gain. F, Q (m, m):
     the model. noise: [0] the variance of g, [1] the square of the number of standard deviations
     beyond which an innovation is a glitch and left out. work: [0] the log-likelihood so far, [1] 1
-    once the gain is constant, [2] the number of glitches in a row, [3] the logarithm of the
-    variance of the innovation, [4] the usual mean square of the innovation, [5] and following: work
-    space for m (m + 1) numbers. x, P, gain and work are changed in place.
+    once the gain is constant, 2 if it is kept at glitches as well, [2] the number of glitches in a
+    row, [3] the logarithm of the variance of the innovation, [4] the usual mean square of the
+    innovation, [5] and following: work space for m (m + 1) numbers. x, P, gain and work are changed
+    in place.
     """
     m = len(x)
     check(m, P, gain, work, F, Q, noise)
@@ -105,6 +106,8 @@ def update(g, x, P, gain, work, r, gate, m):
         work[1] = settle(P, gain, s, m)
         work[3] = log(s)
     if glitch(e, s, work, gate):
+        if float(work[1]) == 1.0:  # without a measurement the covariance grows, and the gain too
+            work[1] = 0.0
         return False
     work[0] -= 0.5 * (float(work[3]) + e * e / s)
     for i in range(m):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -36,8 +37,8 @@ def filtered(q: Array, settings: dict[str, float], r: float) -> Array:
     return np.array(rows)
 
 
-def alike(found: Array, expected: Array) -> None:
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=2e-6 * np.abs(expected).max())
+def alike(found: Array, expected: Array, within: float = 2e-6) -> None:
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=within * np.abs(expected).max())
 
 
 @every_model
@@ -58,19 +59,19 @@ def test_kalman_is_the_textbooks_filter(settings: dict[str, float]) -> None:
     alike(a, expected[:, 2])
 
 
-SHORT = 120
+SHORT, LONG = 120, 200
 
 
-def smoothed(q: Array, settings: dict[str, float], last: Any) -> Array:
-    """Each state given the measurements up to the row `last` of it, by conditioning."""
+def smoothed(q: Array, settings: dict[str, float], known: Any) -> Array:
+    """Each state given the measurements of the rows that are known for it, by conditioning."""
     m, r = int(settings["states"]), 4e-8
     states, seen = joint(len(q), settings, r)
     moved = q - q[0]  # the prior is about the first position
     rows = []
     for k in range(len(q)):
-        n = last(k) + 1
-        cross = states[k * m : (k + 1) * m, ::m][:, :n]
-        rows.append(cross @ np.linalg.solve(seen[:n, :n], moved[:n]))
+        among = known(k)
+        cross = states[k * m : (k + 1) * m, ::m][:, among]
+        rows.append(cross @ np.linalg.solve(seen[np.ix_(among, among)], moved[among]))
     return np.array(rows)
 
 
@@ -80,7 +81,7 @@ def test_rts_is_the_state_given_the_whole_record(
 ) -> None:
     narrow(monkeypatch)
     q = encoder_readings(SHORT)
-    expected = smoothed(q, MODELS[model], lambda _: SHORT - 1)
+    expected = smoothed(q, MODELS[model], lambda _: np.arange(SHORT))
     v, a = over(method("rts", MODELS[model]), q, H)
     alike(v, expected[:, 1])
     alike(a, expected[:, 2])
@@ -93,7 +94,7 @@ def test_kalman_lag_is_the_state_given_the_rows_up_to_the_lag(
 ) -> None:
     narrow(monkeypatch)
     q = encoder_readings(SHORT)
-    expected = smoothed(q, MODELS[model], lambda k: min(k + lag, SHORT - 1))
+    expected = smoothed(q, MODELS[model], lambda k: np.arange(min(k + lag + 1, SHORT)))
     v, a = over(method("kalman-lag", MODELS[model], delay=lag * H), q, H)
     alike(v, expected[:, 1])
     alike(a, expected[:, 2])
@@ -128,6 +129,23 @@ def test_a_glitch_is_left_out(name: str) -> None:
         peaks[gate] = np.abs(a - b).max()
     assert peaks[20.0] < 0.2
     assert peaks[np.inf] > 20.0 * peaks[20.0]
+
+
+@pytest.mark.parametrize("rows", [1, 3])
+@pytest.mark.parametrize("model", ["white jerk", "white snap", "oscillator"])
+def test_rts_at_a_glitch_is_the_state_given_all_other_rows(
+    model: str, rows: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Long after the gain has settled, which grows again without a measurement."""
+    narrow(monkeypatch)
+    q = encoder_readings(LONG)
+    glitch = np.arange(160, 160 + rows)
+    q[glitch] += 0.1
+    others = np.delete(np.arange(LONG), glitch)
+    expected = smoothed(q, MODELS[model], lambda _: others)
+    v, a = over(replace(method("rts", MODELS[model]), gate=20.0), q, H)
+    alike(v, expected[:, 1], within=2e-5)
+    alike(a, expected[:, 2], within=2e-5)
 
 
 def test_a_step_that_stays_is_taken_in() -> None:

@@ -16,6 +16,7 @@ from scarid_cli.kernels import kalman
 # What the numbers in the kernel's `work` are (see kernels/kalman.py); from ROOM on it is work space
 # for m (m + 1) numbers.
 LIKELIHOOD, SETTLED, GLITCHES, LOG_VARIANCE, USUAL, ROOM = range(6)
+KEPT = 2.0  # under SETTLED: a gain that is constant at glitches as well
 
 
 @dataclass(frozen=True)
@@ -42,9 +43,9 @@ class KalmanState:
         return self.x, self.P, self.gain, self.work
 
     def with_constant_gain(self, gain: Array) -> KalmanState:
-        """The state of a filter that keeps this gain (m)."""
+        """The state of a filter that keeps this gain (m), also where it leaves out a glitch."""
         work = self.work.copy()
-        work[SETTLED] = 1.0
+        work[SETTLED] = KEPT
         return replace(self, gain=gain, work=work)
 
     @property

@@ -58,9 +58,9 @@ class KalmanMethod(Method):
         return replace(self, gate=inf)
 
     def observer(self, x: float, h: float) -> KalmanState:
-        """The filter at rest at the position x, its gain settled; h [s]."""
-        first = np.eye(self.states)[0] * x
-        return replace(settled(self, h), x=first)
+        """The filter at rest at the position x, which keeps its settled gain; h [s]."""
+        steady = settled(self, h)
+        return replace(steady.with_constant_gain(steady.gain), x=np.eye(self.states)[0] * x)
 
     def model(self, h: float) -> Model:
         """The model of positions sampled every h [s]."""
