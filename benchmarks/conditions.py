@@ -136,6 +136,7 @@ MIXED = Condition(
     },
 )
 
+NOISELESS: Given = {"encoder-bits": (0,), "position-noise": (0.0,), "torque-noise": (0.0,)}
 UNSEEN = [
     Condition("asymmetric friction", {"friction-asymmetry": (0.3,)}),
     Condition("friction drifts", {"friction-drift": (0.2,), "friction-drift-time": (60.0,)}),
@@ -155,6 +156,8 @@ UNSEEN = [
         rate=1000.0,
         speed=0.4,
     ),
+    Condition("without noise", NOISELESS, rate=500.0),
+    Condition("without noise, one joint at a time", NOISELESS, rate=500.0, excitation="sequential"),
     Condition("hidden jitter 1 ms", {"hidden-jitter": (0.001,)}),
     Condition("jittered stamps 1 ms", {"stamp-jitter": (0.001,)}),
     Condition(
