@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from scarid_cli.cli.command_line import inputs
 from scarid_cli.cli.options import InputFile
 from scarid_cli.errors import OK
 
@@ -39,11 +40,15 @@ class StageFailed(Exception):
 
 @dataclass(frozen=True)
 class Place:
-    """What a stage has for neighbours: `source` before it, if any, and the one `following`."""
+    """What a stage has for neighbours: `source` before it, if any, and the one `following`.
+
+    `read` are the files that the stages before it read.
+    """
 
     say: Callable[[str], None]
     source: ByteSource | None = None
     following: Callable[[Table], None] | None = None
+    read: tuple[str, ...] = ()
 
 
 def split(words: Sequence[str]) -> list[list[str]]:
@@ -139,6 +144,7 @@ class Chain:
             lambda text: self._say(index, f"{context.command_path}: {text}"),
             source,
             None if last else lambda table: self._hand(index, table),
+            tuple(word for before in self._contexts[:index] for word in inputs(before)),
         )
         try:
             with _named(context.command_path), context:

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from scarid_cli.cli.options import Unrecorded
+from scarid_cli.cli.options import InputFile, Unrecorded
 
 
 def command_line(*, without: Collection[str] = ()) -> str:
@@ -28,6 +28,17 @@ def given_words(names: Collection[str]) -> list[str]:
     return [word for p in given for word in _words(p, context.params[p.name or ""])]
 
 
+def inputs(context: click.Context) -> list[str]:
+    """The files that a command reads, without those of its options."""
+    read = [p for p in context.command.params if _is_argument(p) and isinstance(p.type, InputFile)]
+    values = [context.params[p.name or ""] for p in read]
+    return [str(v) for value in values for v in (value if isinstance(value, tuple) else (value,))]
+
+
+def _is_argument(parameter: click.Parameter) -> bool:
+    return isinstance(parameter, click.Argument)
+
+
 def was_given(name: str) -> bool:
     """Whether a parameter of the command is on its command line."""
     source = click.get_current_context().get_parameter_source(name)
@@ -37,7 +48,7 @@ def was_given(name: str) -> bool:
 def _words(parameter: click.Parameter, value: Any) -> list[str]:
     import shlex
 
-    if isinstance(parameter, click.Argument):
+    if _is_argument(parameter):
         values = value if isinstance(value, tuple) else (value,)
         return [shlex.quote(str(v)) for v in values]
     option = max(parameter.opts, key=len)

@@ -14,7 +14,7 @@ import click
 
 from scarid_cli import __version__
 from scarid_cli.cli.chain import Place
-from scarid_cli.cli.command_line import command_line
+from scarid_cli.cli.command_line import command_line, inputs
 from scarid_cli.cli.remarks import Remarks
 from scarid_cli.cli.remedies import remedies
 from scarid_cli.cli.robots import another, misfit
@@ -47,8 +47,10 @@ class Job:
     out: Output
 
     def __init__(self, options: dict[str, Any]) -> None:
-        place = click.get_current_context().obj
+        context = click.get_current_context()
+        place = context.obj
         self.place: Place = place
+        self._inputs = [*place.read, *inputs(context)]
         self.quiet: bool = options["quiet"]
         self._verbose = options["verbose"] and not self.quiet
         self._history = not options.get("no_history")
@@ -95,6 +97,8 @@ class Job:
         if any(same_place(path, output.path) for output in self.outputs):
             place = "standard output" if path == "-" else path
             raise UsageFault(f"{place}: two outputs cannot share it; give one of them another FILE")
+        if path != "-" and any(same_place(path, x) for x in self._inputs if x != "-"):
+            raise UsageFault(f"{path}: this is the input; give the output another FILE")
         self.outputs.append(output := opened())
         return output
 

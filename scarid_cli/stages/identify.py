@@ -20,10 +20,10 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import SEGMENT, Table, number, segment_field, with_columns
 from scarid_cli.stages import Sink
-from scarid_cli.stages.axes import of_axes
 from scarid_cli.stages.parameters import parameters
 from scarid_cli.stages.reach import Reach
 from scarid_cli.stages.rows import treated
+from scarid_cli.stages.suspicions import of_model
 from scarid_cli.stages.times import Times
 
 
@@ -66,7 +66,9 @@ def identify(
         keep(checkpoint)
     findings += reach.findings(robot, table.period)
     if not estimator.FOLLOWS:
-        findings += of_axes(checkpoint.subsample.rows(), robot)
+        told = {finding.name for finding in findings}
+        of_rows = of_model(checkpoint.subsample.rows(), robot)
+        findings += [finding for finding in of_rows if finding.name not in told]
     result = parameters(
         found,
         robot,

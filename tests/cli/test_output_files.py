@@ -41,6 +41,28 @@ def test_two_outputs_under_two_spellings_of_one_path_are_refused(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["folder", "link.csv"]
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "identify log.csv -o log.csv",
+        "identify log.csv -o other.csv --trace ./log.csv",
+        "filter log.csv -o link.csv",
+        "filter log.csv then differentiate -o log.csv",
+    ],
+)
+def test_a_log_is_not_replaced_by_what_is_made_of_it(
+    line: str, shell: Run, tmp_path: Path, samples: Path
+) -> None:
+    log = tmp_path / "log.csv"
+    log.write_bytes((samples / "scara2.csv").read_bytes())
+    (tmp_path / "link.csv").symlink_to("log.csv")
+    result = shell(f"scarid {line}")
+    assert (result.status, result.out) == (2, "")
+    assert "this is the input; give the output another FILE" in result.err
+    assert log.read_bytes() == (samples / "scara2.csv").read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.csv", "log.csv"]
+
+
 def test_an_output_that_replaces_a_file_keeps_its_mode_and_follows_a_link(
     shell: Run, tmp_path: Path
 ) -> None:

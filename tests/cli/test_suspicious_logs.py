@@ -78,6 +78,18 @@ def test_a_tilted_base_is_named(degrees: float, tmp_path: Path, scarid: Run) -> 
     assert ("gravity acts in another direction" in found) == (degrees > 0.0)
 
 
+@pytest.mark.parametrize(("factor", "unit"), [(1000.0, "mN m"), (0.001, "kN m"), (1.0, None)])
+def test_torques_in_another_unit_are_told_from_the_a_priori_parameters(
+    factor: float, unit: str | None, samples: Path, tmp_path: Path, scarid: Run
+) -> None:
+    """The description of this robot has no limits of the torques."""
+    factors = dict.fromkeys(("tau1", "tau2"), factor)
+    log = spoiled(samples / "scara2.csv", tmp_path / "log.csv", factors)
+    result = scarid("identify", "--robot", "scara2", log)
+    told = re.findall(r"warning: torques: .* `scarid convert --unit 'tau\*=(.*)'`", result.err)
+    assert told == ([unit] if unit else [])
+
+
 def test_joints_without_limits_may_turn_many_times() -> None:
     """The pendulum of the gauntlet whirls: positions in degrees are only suspected."""
     turns = np.array([[-1.0, 53.0], [-50.0, 2.0]])

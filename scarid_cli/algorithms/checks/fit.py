@@ -90,16 +90,17 @@ def delay(seconds: float, error: float, motion: Motion) -> Finding:
 def model(robot: Robot, samples: Samples) -> tuple[list[Finding], Array]:
     """How much of the torques the model explains, and whether the motion determines it.
 
-    Also the torques over those of the a priori parameters (joints), nan where these are 0.
+    Also the `ratios` of the torques.
     """
     q, dq, ddq, tau, _ = samples.motion
     W = robot.regressor(q, dq, ddq)
     found = solved(W, tau, samples.counts)
     r2 = 1.0 - found.residuals
-    return [_fit(robot, r2), _identifiable(robot, found)], _ratios(robot, W, samples)
+    return [_fit(robot, r2), _identifiable(robot, found)], ratios(robot, W, samples)
 
 
-def _ratios(robot: Robot, W: Array, samples: Samples) -> Array:
+def ratios(robot: Robot, W: Array, samples: Samples) -> Array:
+    """The torques over those of the a priori parameters (joints), nan where these are 0."""
     expected = robot.torques(W, robot.apriori)
     counts = samples.counts
     sizes = (np.sqrt(np.sum(counts * x**2, axis=1)) for x in (samples.motion[3], expected))

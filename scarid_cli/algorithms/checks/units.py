@@ -94,7 +94,7 @@ def torques(log: Log, robot: Robot, ratios: Array) -> Finding:
     figure = f"up to {', '.join(f'{x:.3g}' for x in reach)} {_torque_units(robot)}"
     if excess > THOUSAND or THOUSAND < least < np.inf:
         figure += f", {max(excess, min(least, most)):.2g} times what {robot.short_name} has"
-        advice = "torques seem to be in mN m: `scarid convert --unit 'tau*=mN m'`"
+        advice = _prefixed("m", robot)
         large = np.flatnonzero(reach / limits > THOUSAND).tolist()
         if 0 < len(large) < log.joints:
             single = " ".join(f"--unit 'tau{i + 1}=mN m'" for i in large)
@@ -102,15 +102,20 @@ def torques(log: Log, robot: Robot, ratios: Array) -> Finding:
         return failed("torques", figure, advice)
     if 0.0 < most < 1.0 / THOUSAND:
         figure += f", {most:.2g} of what {robot.short_name} needs"
-        return failed("torques", figure, "torques seem to be in kN m: convert them to N m")
+        return failed("torques", figure, _prefixed("k", robot))
     used = float(np.max(reach / limits))
     if np.isfinite(limits).all() and 0.0 < used < IDLE:
         figure += f", at most {used:.2g} of the limits of {robot.short_name}"
-        return failed("torques", figure, "torques seem to be in kN m: convert them to N m")
+        return failed("torques", figure, _prefixed("k", robot))
     if excess > SPARE:
         advice = "are these torques of the joints, in N m, of this robot?"
         return warning("torques", f"{figure}, {excess:.3g} times the limit", advice)
     return ok("torques", figure)
+
+
+def _prefixed(prefix: str, robot: Robot) -> str:
+    unit = prefix + robot.joints[0].torque_unit
+    return f"torques seem to be in {unit}: `scarid convert --unit 'tau*={unit}'`"
 
 
 def _torque_units(robot: Robot) -> str:
