@@ -26,8 +26,8 @@ def command() -> None:
     The log has time, positions and torques, as for `scarid identify`, but its clock may jitter and
     values may be missing. Each line is a check: ok, warning or failed, what was found, and below it
     what to do. Units, reversed torques and exchanged joints are found with the limits of the
-    robot's description and with a first fit of its model, which needs no parameters. What one check
-    explains is put right for those that follow. The log is held in memory.
+    robot's description and with a first fit of its model, which needs no parameters. A fault
+    that one check finds is corrected before the next ones run. The log is held in memory.
 
     Exit status: 0, also with warnings; 1 if there are warnings only and --strict is given; 65 if a
     check failed.

@@ -46,14 +46,15 @@ from scarid_cli.cli.described import describing
 @click.option(
     "--essential",
     is_flag=True,
-    help="Keep only essential parameters: drop the least certain one as long as its relative "
-    "standard deviation is 30 times that of the most certain one and noise can explain the loss.",
+    help="Keep only essential parameters: drop one after another, the least certain first, while "
+    "its relative standard deviation is more than 30 times the smallest one and the fit gets no "
+    "worse than noise explains.",
 )
 @click.option(
     "--torque-gain-error",
     metavar="PART",
-    help="Standard error of the torque constants, such as 1% or 0.01. No log shows it, but it "
-    "enters the errors.  [default: 0]",
+    help="Standard error of the torque constants, such as 1% or 0.01, which no log can show. It is "
+    "added to the errors of the parameters.  [default: 0]",
 )
 @click.option(
     "--variance",
@@ -110,6 +111,6 @@ def command() -> None:
     and a robust one, which also holds for autocorrelated residuals and allows for what the model
     may lack: it grows where the estimates would change with an offset or Stribeck friction, without
     the rows near reversals, or behind another low-pass. The columns low and high are the 95 %
-    confidence interval from the robust error. The last line on standard error is the verdict (good,
-    doubtful or not identifiable) with its reasons.
+    confidence interval from the robust error. The verdict (good, doubtful or not identifiable) and
+    its reasons are on standard error, and in the metadata of the table.
     """

@@ -94,7 +94,7 @@ from scarid_cli.cli.options import NUMBERS
 )
 @click.option(
     "--budget", type=options.DURATION, metavar="SECONDS",
-    help="Time for the random starts of --optimise, which it needs.  [default: 10]",
+    help="Time for the random starts of --optimise.  Needs --optimise.  [default: 10]",
 )  # fmt: skip
 @click.option(
     "--starts",

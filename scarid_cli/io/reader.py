@@ -101,7 +101,7 @@ def _faults_of_columns(table: Table, schema: schemas.TableSchema) -> Iterator[Fa
             yield column, f"{count} columns of this name", "one", "rename or drop one of them"
     missing = schema.missing_from(table.columns)
     if missing:
-        require(table, [missing], f"a {schema.title.lower()}, which has this column")
+        require(table, [missing], f"{missing}, which {_with_article(schema.title.lower())} has")
     for column in table.columns:
         known, unit = schema.field_of(column), table.unit(column)
         if known and unit and known.units and unit not in known.units:
@@ -129,17 +129,39 @@ def require(table: Table, columns: list[str], expected: str) -> None:
                 table.name,
                 f"the columns {', '.join(table.columns)}",
                 expected=expected,
-                remedy=_remedy(column),
+                remedy=_another_kind(table) or _remedy(column),
                 column=column,
             )
 
 
+def _with_article(title: str) -> str:
+    """`a motion`, `an excitation trajectory`, `a table of parameters`."""
+    if title.endswith("s"):
+        return f"a table of {title}"
+    return f"{'an' if title[0] in 'aeiou' else 'a'} {title}"
+
+
+def _another_kind(table: Table) -> str:
+    """What to do with a table that is no log at all."""
+    if "estimate" in table.columns:
+        return "this is a table of parameters: give the log itself"
+    if "q1_ref" in table.columns and not schemas.numbered(table.columns, "q"):
+        return "this is a trajectory: follow it with `scarid simulate`, or with the robot"
+    return ""
+
+
 def _remedy(column: str) -> str:
+    if column == "parameter":
+        return "give the table that `scarid identify` writes"
     if column.startswith(("dq", "ddq")) and not column.endswith("_ref"):
         return "estimate it with `scarid differentiate`"
     if column.endswith("_ref"):
         return "make a trajectory with `scarid trajgen`"
-    return f"rename yours with `scarid convert --map {column}=NAME` (docs/tables.md has all names)"
+    more = {"t": "; --rate HZ where there is no clock", "tau": "; docs/robots.md for currents"}
+    return (
+        f"rename yours with `scarid convert --map {column}=NAME` (docs/tables.md has all names"
+        f"{more.get(column.rstrip('0123456789'), '')})"
+    )
 
 
 def _same_type(given: pa.DataType, known: pa.DataType) -> bool:

@@ -61,3 +61,24 @@ def test_a_column_that_is_missing_is_to_be_made_by_the_command_that_makes_it(
     assert result.status == 65
     assert f"column {missing}: " in result.err
     assert remedy in result.err
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("identify SAMPLES/scara2.parameters.csv", "this is a table of parameters"),
+        ("trajgen --duration 3 then identify", "this is a trajectory: follow it with"),
+        ("compare SAMPLES/scara2.csv SAMPLES/scara2.csv", "give the table that `scarid identify`"),
+        (
+            "report --published SAMPLES/scara2.csv SAMPLES/scara2.parameters.csv",
+            "which a table of published values has",
+        ),
+        ("simulate SAMPLES/scara2.parameters.csv", "which an excitation trajectory has"),
+    ],
+)
+def test_another_kind_of_table_is_called_what_it_is(
+    line: str, told: str, scarid: Run, samples: Path
+) -> None:
+    result = scarid(*line.replace("SAMPLES", str(samples)).split())
+    assert result.status == 65
+    assert told in result.err
