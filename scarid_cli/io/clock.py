@@ -105,7 +105,9 @@ def _regular(table: Table, period: float, remedy: Remedy) -> Iterator[pa.RecordB
         after_gap = (jumps > 0) & (steps > 0.0)
         inner = np.where(after_gap, period, steps)[first:]
         if (at := _unlike(inner, period)) is not None:
-            what = remedy(read_on(batch, table.batches))
+            ahead = read_on(batch, table.batches)
+            _check_order(ahead, table, row + 1)
+            what = remedy(ahead)
             place = row + 1 + first + at
             raise _wrong_step(float(inner[at]), float(t[first + at]), table, period, place, what)
         missing += float(steps[after_gap].sum())
@@ -119,6 +121,15 @@ def _regular(table: Table, period: float, remedy: Remedy) -> Iterator[pa.RecordB
             f"{table.name}, column t: found a mean interval of {mean:.9g} s over {row} rows, "
             f"expected {period:.9g} s like the first; {remedy(most)}"
         )
+
+
+def _check_order(rows: pa.RecordBatch, table: Table, row: int) -> None:
+    """Rows that are out of order also make intervals that are too long, which come first."""
+    t = rows.column("t").to_numpy()
+    back = np.flatnonzero(np.diff(t) < 0.0)
+    if len(back):
+        at = int(back[0])
+        raise _not_increasing(table.name, float(t[at + 1]), float(t[at]), table.row(row + at + 1))
 
 
 def _check_segments(jumps: Numbers, table: Table, row: int) -> None:

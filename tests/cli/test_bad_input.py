@@ -36,6 +36,10 @@ CASES = {
         "row 2, column t: found 0.0 after 0, expected time to increase",
     ),
     "time running back": (with_line(5, "0.01,4,2"), "row 5, column t: found 0.01 after 0.03"),
+    "rows in reverse order": (
+        [*GOOD[:5], GOOD[7], GOOD[6], GOOD[5], *GOOD[8:]],
+        "row 6, column t: found 0.05 after 0.06, expected time to increase",
+    ),
     "jitter": (
         with_line(5, "0.042,4,2"),
         "row 5, column t: found an interval of 0.012 s, expected",

@@ -124,7 +124,9 @@ def _amounts(e: Explanation, values: dict[str, float]) -> str:
     if hypothesis.kind == MOTOR:
         return f"torques {100.0 * e.amounts[0]:+.3g} +- {100.0 * e.errors[0]:.2g} %"
     if hypothesis.kind == DELAY:
-        return f"torques lead by {1e3 * e.amounts[0]:.3g} +- {1e3 * e.errors[0]:.2g} ms more"
+        when = "earlier" if e.amounts[0] > 0.0 else "later"
+        amount = f"{1e3 * abs(e.amounts[0]):.3g} +- {1e3 * e.errors[0]:.2g} ms"
+        return f"torques {amount} {when} than at the identification"
     clarity = np.abs(e.amounts) / np.maximum(e.errors, 1e-300)
     order = np.argsort(-clarity)
     clear = [int(i) for i in order if clarity[i] > CLEAR] or [int(order[0])]
