@@ -11,17 +11,24 @@ from collections.abc import Iterator
 import numpy as np
 
 from scarid_cli.algorithms.checks import clock, fit, movement, units, values, wiring
-from scarid_cli.algorithms.checks.finding import OK, Finding, failed
+from scarid_cli.algorithms.checks.finding import OK, Finding, failed, several
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.motion import Motion
 from scarid_cli.algorithms.robots.description import Robot
 
+FEWEST = 2  # rows: one has no rate
+
 
 def check(log: Log, robot: Robot) -> Iterator[Finding]:
     """The findings on a log of this robot."""
-    time = clock.Clock.of(log.t)
-    finding, factor = clock.unit(time)
+    if log.rows < FEWEST:
+        yield failed("length", several(log.rows, "row"), "give a longer log")
+        return
+    order = clock.order(log)
+    log = log.in_order()
+    finding, factor = clock.unit(clock.Clock.of(log.t))
     yield finding
+    yield order
     log = log.scaled(t=factor)
     time = clock.Clock.of(log.t)
     yield from clock.clock(time, log.resampling())

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -93,7 +95,22 @@ def test_a_log_without_rows_fails(rows: int, scarid: Run, log: Path, tmp_path: P
     short = changed(log, tmp_path / "log.csv", lambda row, cells: cells if row <= rows else None)
     result = scarid("check", "--robot", "scara2", short)
     assert result.status == 65
-    assert "the time never increases" in result.out
+    found = f"{rows} row{'' if rows == 1 else 's'}"
+    assert result.out.splitlines() == [
+        f"failed   length  {found}",
+        "                 -> give a longer log",
+        "0 ok, 0 warning, 1 failed",
+    ]
+
+
+def test_rows_in_no_order_are_one_fault(scarid: Run, log: Path, tmp_path: Path) -> None:
+    names, *rows = log.read_text("utf-8").splitlines()
+    shuffled = tmp_path / "log.csv"
+    order = np.random.default_rng(1).permutation(len(rows))
+    shuffled.write_text("\n".join([names, *(rows[k] for k in order), ""]))
+    result = scarid("check", "--robot", "scara2", shuffled)
+    assert re.findall(r"^failed +(.*?)  ", result.out, re.M) == ["time order"]
+    assert "0 warning, 1 failed" in result.out
 
 
 def test_an_assumed_robot_is_told_once_and_a_stated_one_is_not(

@@ -61,7 +61,7 @@ def unit(clock: Clock) -> tuple[Finding, float]:
 
 
 def clock(found: Clock, resampling: str) -> list[Finding]:
-    """Findings on time that goes back, repeated times, gaps and jitter.
+    """Findings on gaps and jitter.
 
     `resampling` is the command that mends what can be mended.
     """
@@ -69,13 +69,14 @@ def clock(found: Clock, resampling: str) -> list[Finding]:
     if not period:
         return []
     return [
-        _order(steps, resampling),
         _gaps(steps, period, resampling),
         _jitter(steps[(steps > 0.0) & (steps <= GAP * period)], period, resampling),
     ]
 
 
-def _order(steps: Array, resampling: str) -> Finding:
+def order(log: Log) -> Finding:
+    """Time that goes back, and repeated times."""
+    steps = np.diff(log.t[np.isfinite(log.t)])
     back, repeated = np.count_nonzero(steps < 0.0), np.count_nonzero(steps == 0.0)
     if back:
         return failed(
@@ -85,7 +86,7 @@ def _order(steps: Array, resampling: str) -> Finding:
         return warning(
             "time order",
             several(int(repeated), "repeated time"),
-            f"{resampling} drops the rows that repeat a time",
+            f"{log.resampling()} drops the rows that repeat a time",
         )
     return ok("time order", "time increases from row to row")
 

@@ -11,6 +11,8 @@ from scarid_cli.algorithms.processes.holding import held_in
 from scarid_cli.algorithms.processes.rates import resampling_rate
 from scarid_cli.arrays import Array, Marks, Numbers
 
+SELDOM = 0.1  # of the intervals: between rows in any order, half go back
+
 
 @dataclass(frozen=True)
 class Log:
@@ -66,6 +68,16 @@ class Log:
         """These rows only (indices, or whether each row is kept)."""
         others = None if self.others is None else self.others[:, rows]
         return Log(self.t[rows], self.q[:, rows], self.tau[:, rows], others)
+
+    def in_order(self) -> Log:
+        """The log with its rows sorted by time, those without one last, if they are in no order.
+
+        Where time seldom goes back, as between logs that follow each other, the order is kept.
+        """
+        steps = np.diff(self.t[np.isfinite(self.t)])
+        if np.count_nonzero(steps < 0.0) <= SELDOM * len(steps):
+            return self
+        return self.part(np.argsort(self.t, kind="stable"))
 
     def scaled(self, *, t: float = 1.0, q: Array | float = 1.0) -> Log:
         """The log with time and positions multiplied by factors (positions by one per joint)."""
