@@ -18,6 +18,7 @@ from scarid_cli.io.table import SEGMENT, Instant, Table, concatenated, segments_
 # derivative would be wrong by as much.
 JITTER = 0.01
 DRIFT = 0.001
+EPOCH = 1e8  # s: three years, as of a clock that counts from 1970
 SHORTEST = 1e-12  # s; squares of the rate of such a clock leave the range of doubles
 
 
@@ -168,11 +169,14 @@ def _wrong_step(
 
 
 def _not_increasing(name: str, time: float, before: float, row: int) -> BadData:
+    remedy = "sort the log and remove repeated rows"
+    if time == before > EPOCH:
+        remedy = "write it with at least 14 digits, or as seconds since the start of the log"
     return bad_data(
         name,
-        f"{time} after {before:.9g}",
+        f"{time} after {before:.12g}",
         expected="time to increase from row to row",
-        remedy="sort the log and remove repeated rows",
+        remedy=remedy,
         row=row,
         column="t",
     )

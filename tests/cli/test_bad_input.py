@@ -35,6 +35,11 @@ CASES = {
         [GOOD[0], "0,1,2", *GOOD[1:]],
         "row 2, column t: found 0.0 after 0, expected time to increase",
     ),
+    "time since 1970 with too few digits": (
+        [GOOD[0], *(f"1.76389e+09,{k},2" for k in range(4))],
+        "row 2, column t: found 1763890000.0 after 1763890000, expected time to increase from row "
+        "to row; write it with at least 14 digits",
+    ),
     "time running back": (with_line(5, "0.01,4,2"), "row 5, column t: found 0.01 after 0.03"),
     "rows in reverse order": (
         [*GOOD[:5], GOOD[7], GOOD[6], GOOD[5], *GOOD[8:]],
