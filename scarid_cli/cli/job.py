@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from scarid_cli import __version__
+from scarid_cli.algorithms.choices.settings import LONGEST
 from scarid_cli.cli.chain import Place
 from scarid_cli.cli.command_line import command_line, inputs
 from scarid_cli.cli.remarks import Remarks
@@ -138,6 +139,14 @@ class Job:
         lacking = Lacking(columns, self._selection.missing == SPLIT)
         self._lacking.append((name, lacking))
         return lacking
+
+    def doubt_rate(self, period: float) -> None:
+        """Warn of rows so far apart [s] that their time is hardly in seconds."""
+        if period > LONGEST:
+            from scarid_cli.stages.glance import of_rate
+
+            if finding := of_rate(period):
+                self.say(f"warning: {finding.text}")
 
     def read_for(
         self,

@@ -14,12 +14,12 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.checks.finding import Finding
+from scarid_cli.algorithms.choices.settings import LONGEST
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, settled
 
-LONGEST = 0.05  # s, of the period of a usual log
 FARTHEST = 4.0 * pi  # rad, of a usual joint without limits
 LEAST = 0.003  # of the torque limit, which a usual log exceeds at some joint (units.IDLE)
 

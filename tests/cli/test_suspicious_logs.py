@@ -111,3 +111,19 @@ def test_torques_in_kilonewton_metres_are_told(torque: float, status: str | None
     found = reach.findings(robot, 0.005)
     assert [finding.status for finding in found] == [status] * (status is not None)
     assert all("torques seem to be in kN m" in finding.advice for finding in found)
+
+
+@pytest.mark.parametrize(
+    ("command", "told"),
+    [
+        ("resample --rate 100", "the time seems to be in ms: `scarid convert --unit t=ms`"),
+        ("differentiate", "the time seems to be in ms: `scarid convert --unit t=ms`"),
+        ("filter --cutoff 0.01", "the time seems to be in ms: `scarid convert --unit t=ms`"),
+        ("filter", "cutoff 20 Hz is not below half the rate, 0.05 Hz; is the time in seconds?"),
+    ],
+)
+def test_a_time_in_milliseconds_is_told(
+    command: str, told: str, samples: Path, tmp_path: Path, scarid: Run
+) -> None:
+    log = spoiled(samples / "scara2.csv", tmp_path / "log.csv", {"t": 1e3})
+    assert told in scarid(*command.split(), log, "-o", tmp_path / "out.csv").err

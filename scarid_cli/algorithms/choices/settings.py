@@ -14,6 +14,7 @@ from scarid_cli.errors import UsageFault
 
 # Metadata of a field that is not a setting: the stage fills it in.
 GIVEN = {"given": True}
+LONGEST = 0.05  # s, of the period of a usual log: longer ones are likely in another unit
 
 
 class Validated:
@@ -82,4 +83,5 @@ def _require(settings: Any, names: Sequence[str], fits: Callable[[float], bool],
 def require_below_nyquist(cutoff: float, h: float) -> None:
     """The cutoff [Hz] must be below half the rate of a signal sampled every h [s]."""
     if cutoff * h >= 0.5:
-        raise UsageFault(f"cutoff {cutoff:g} Hz is not below half the rate, {0.5 / h:g} Hz")
+        doubt = "; is the time in seconds?" if h > LONGEST else ""
+        raise UsageFault(f"cutoff {cutoff:g} Hz is not below half the rate, {0.5 / h:g} Hz{doubt}")

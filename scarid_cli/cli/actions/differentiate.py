@@ -26,6 +26,7 @@ def run(
         return numbered(names, *signals) + (velocities.measured(names) if own else [])
 
     table = job.read(file, "measurement", reads=reads)
+    job.doubt_rate(table.period)
     methods = configured(joints_of(table.columns, "q"), **choice)
     table = _with_velocities(table, methods) if own else _with_estimates(job, table)
     if match is None:

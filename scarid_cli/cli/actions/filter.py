@@ -25,6 +25,7 @@ def run(job: Job, *, file: str, columns: str | None, **design: Any) -> None:
         return select(columns, names) if columns else numbered(names, "q", "tau")
 
     table = job.read(file, "measurement", reads=chosen)
+    job.doubt_rate(table.period)
     filters: dict[str, Process] = dict.fromkeys(chosen(table.columns), lowpass)
     job.write(stage.filtered(job.recorded(table), filters, job.left_out))
 

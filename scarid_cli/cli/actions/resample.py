@@ -14,7 +14,12 @@ def run(job: Job, *, file: str, rate: float, max_gap: float | None) -> None:
         if value is not None and not 0.0 < value < float("inf"):
             raise UsageFault(f"{name} must be positive, not {value:g}")
     table = job.recorded(job.read(file, "measurement", regular=False))
-    job.write(stage.resample(table, rate, max_gap, lambda clock: job.say(summary_line(clock))))
+
+    def report(clock: Clock) -> None:
+        job.say(summary_line(clock))
+        job.doubt_rate(clock.mean)
+
+    job.write(stage.resample(table, rate, max_gap, report))
 
 
 def summary_line(clock: Clock) -> str:
