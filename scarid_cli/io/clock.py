@@ -34,7 +34,7 @@ def clocked(table: Table, *, regular: bool, remedy: Remedy) -> Table:
     if first is None or at is None:
         raise bad_data(
             table.name,
-            f"{first.num_rows if first else 0} rows",
+            "1 row" if first else "no rows",
             expected="at least 2 samples",
             remedy="give a longer log",
         )

@@ -57,6 +57,11 @@ class Target:
     def _open(self, path: Path, flags: int = 0) -> int:
         try:
             return os.open(path, os.O_WRONLY | os.O_CLOEXEC | flags, 0o666)
+        except FileNotFoundError:
+            folder = Path(self.name).parent
+            raise OutputFailure(
+                f"{self.name}: there is no folder {folder}; make it first"
+            ) from None
         except OSError as error:
             raise OutputFailure(f"{self.name}: {error.strerror}") from None
 

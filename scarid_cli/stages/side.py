@@ -119,7 +119,9 @@ class _Queue:
             more = next(self._table.batches, None)
             if more is None:
                 rows = self._taken + self._held.num_rows
-                raise _unequal(self._table.name, f"{rows} rows, fewer than in {other}")
+                raise _unequal(
+                    self._table.name, f"{rows} row{'' if rows == 1 else 's'}, fewer than in {other}"
+                )
             self._held = pa.concat_tables([self._held, pa.Table.from_batches([more])])
         taken = self._held.slice(0, count).combine_chunks().to_batches()
         self._held = self._held.slice(count)

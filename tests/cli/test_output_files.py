@@ -197,3 +197,12 @@ def test_an_output_to_closed_standard_output_by_its_path_is_a_failure(users_shel
 def test_standard_output_can_be_given_by_its_path(users_shell: Run) -> None:
     expected = users_shell("scarid trajgen --duration 3 -q")
     assert users_shell("scarid trajgen --duration 3 -q -o /dev/stdout | cat").out == expected.out
+
+
+def test_a_folder_that_is_missing_is_named(shell: Run, tmp_path: Path) -> None:
+    result = shell("scarid trajgen --duration 3 -o results/reference.csv")
+    assert (result.status, result.out) == (74, "")
+    assert result.err == (
+        "scarid trajgen: results/reference.csv: there is no folder results; make it first\n"
+    )
+    assert list(tmp_path.iterdir()) == []

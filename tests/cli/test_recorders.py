@@ -184,7 +184,7 @@ def test_quantities_in_files_of_their_own_come_side_by_side(scarid: Run, tmp_pat
     (tmp_path / "clock.csv").write_text("t,tau1\n0,1\n2,1\n")
     (tmp_path / "q.csv").write_text("t,q1\n0,1\n1,2\n")
     for name, words in (
-        ("short.csv", "found 1 rows, fewer than in"),
+        ("short.csv", "found 1 row, fewer than in"),
         ("clock.csv", "row 2, column t: found 2.0, expected 1.0"),
     ):
         failed = scarid("convert", tmp_path / "q.csv", "--beside", tmp_path / name, "-q",

@@ -41,7 +41,9 @@ def read(path: str) -> Tree:
     try:
         import pinocchio
     except ImportError:
-        raise UsageFault(f"{path}: a URDF needs Pinocchio: pip install 'scarid[urdf]'") from None
+        raise UsageFault(
+            f"{path}: a URDF needs Pinocchio: pip install 'scarid[urdf]', or '.[urdf]' in a clone"
+        ) from None
     if not Path(path).exists():
         raise UsageFault(f"{path}: no such file")
     try:
