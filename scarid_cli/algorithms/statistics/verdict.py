@@ -36,6 +36,7 @@ HELD_OUT = 1.5  # times the residual of the fit that the one of held-out parts m
 VAGUE = 0.1  # of the torque: half the interval from noise above which it counts as not known
 UNKNOWN = 0.3  # of the torque: the same, of the interval that allows for all alternatives
 UNMATCHED = " (if the motion was not matched, use scarid differentiate --match)"
+CAUSE = "`scarid check LOG` looks for the cause (units, signs, order of joints)"
 FEW = 3  # unknown parameters that are named
 
 
@@ -205,7 +206,8 @@ def _vague(evidence: Evidence) -> list[str]:
         for i, ratio in enumerate(found.held_out, start=1)
         if not ratio <= HELD_OUT
     ]
-    if not reasons or evidence.treatment.essential or evidence.unexplained:
+    explained = not _poor(evidence.diagnostics.joints) and not evidence.unexplained
+    if not reasons or evidence.treatment.essential or not explained:
         return reasons
     return [*reasons, "try --essential, which leaves out the parameters that are not known"]
 
@@ -228,13 +230,15 @@ def _width(evidence: Evidence) -> float:
 
 
 def _poor(joints: Sequence[JointResidual]) -> list[str]:
-    return [
+    """Joints whose torque is not explained; the last one is followed by what to do."""
+    reasons = [
         f"joint {i} has no R2, because its torque is constant or fewer than two of its rows count"
         if np.isnan(joint.r2)
         else f"the model does not explain the torque of joint {i} (R2 {joint.r2:.3g})"
         for i, joint in enumerate(joints, start=1)
         if not joint.r2 >= POOR
     ]
+    return [*reasons[:-1], f"{reasons[-1]}: {CAUSE}"] if reasons else []
 
 
 def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
