@@ -12,7 +12,7 @@ from stages.tables import collected, table
 
 from scarid_cli.algorithms.checks import clock, values
 from scarid_cli.algorithms.checks.clock import GAP
-from scarid_cli.algorithms.checks.finding import FAILED, STATUSES, worst
+from scarid_cli.algorithms.checks.finding import FAILED, OK, STATUSES, WARNING, worst
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.motion import Motion
 from scarid_cli.algorithms.checks.movement import repeated_after
@@ -61,6 +61,25 @@ def test_any_log_has_findings_with_advice_where_something_is_wrong(
     assert kind == "sines" or worst(found) == FAILED
     assert all(f.status in STATUSES and bool(f.advice) == (f.status != "ok") for f in found)
     assert all("nan" not in f.figure for f in found)
+
+
+@pytest.mark.parametrize(
+    ("rate", "status", "advice"),
+    [
+        (0.2, FAILED, "the time seems to be in ms: `scarid convert --unit t=ms`"),
+        (4.0, FAILED, "the time seems to be in ms: `scarid convert --unit t=ms`"),
+        (10.0, WARNING, "record at 100 Hz or more"),
+        (20.0, OK, ""),
+        (1e6, FAILED, "the time is not in seconds: convert the unit of t"),
+    ],
+)
+def test_a_low_rate_is_that_of_a_slow_log_or_of_a_time_in_milliseconds(
+    rate: float, status: str, advice: str
+) -> None:
+    """A robot's log of 1 to 10 Hz with the time in ms would have 1 to 10 kHz."""
+    finding, factor = clock.unit(clock.Clock.of(np.arange(100) / rate))
+    assert (finding.status, finding.advice) == (status, advice)
+    assert factor == (1e-3 if "ms" in advice else 1.0)
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from scipy.signal import butter, sosfiltfilt
 from unit.regressions import estimated
 
 from scarid_cli.algorithms.estimators import ls
@@ -274,6 +275,41 @@ def test_a_low_pass_is_told_from_a_delay(kind: str) -> None:
     predicted = led(rows, rows.W[:, :, 0], found.delay, low_pass=found.lead.low_pass)
     inside = slice(200, -200)
     assert np.std((predicted[:, 0] - logged)[inside]) < 2e-3
+
+
+def strokes(late: int, seed: int, samples: int = 4000) -> Rows:
+    """Strokes of constant acceleration and velocity, with torques so many samples late.
+
+    All signals have passed one low-pass of 20 Hz, forwards and backwards.
+    """
+    rng = np.random.default_rng(seed)
+    ddq, at, side = np.zeros(samples), 0, 1.0
+    while at < samples:
+        ramp, constant, rest = rng.integers((10, 0, 20), 60)
+        acceleration = side * rng.uniform(1.0, 4.0)
+        for count, value in ((ramp, 1.0), (constant, 0.0), (ramp, -1.0), (rest, 0.0)):
+            ddq[at : at + count] = value * acceleration
+            at += count
+        side = -side
+    dq = np.cumsum(ddq) * H
+    true = np.stack((np.cumsum(dq) * H, dq, ddq))[:, None]
+    exact = AXIS.torques(AXIS.regressor(*true), AXIS.apriori)
+    torque = np.roll(exact, late, axis=1) + NOISE * rng.standard_normal(exact.shape)
+    low_pass = butter(2, 20.0, fs=1.0 / H, output="sos")
+    seen = sosfiltfilt(low_pass, np.concatenate((true, torque[None])), axis=2)
+    return rows_of(AXIS, seen, np.arange(samples), H)
+
+
+@pytest.mark.parametrize("late", [-3, 2])
+def test_accelerations_that_jump_do_not_hide_a_delay(late: int) -> None:
+    """A low-pass in its place has residuals many times as large, and a mass 5 % off."""
+    for seed in range(20):
+        rows = strokes(late, seed)
+        estimates = estimated(ls.Estimator(), rows).fit.estimates
+        found = aligned(ls.Estimator(), np.zeros(5), rows, estimates, 4)
+        assert not found.lead.low_pass
+        assert found.delay == pytest.approx(-late * H, abs=0.1 * H)
+        assert found.found.fit.estimates[0] == pytest.approx(AXIS.apriori[0], rel=2e-3)
 
 
 def test_estimates_are_uncertain_where_a_low_pass_and_a_delay_cannot_be_told_apart() -> None:

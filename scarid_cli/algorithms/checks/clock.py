@@ -14,10 +14,12 @@ from scarid_cli.algorithms.processes.rates import lost_rows, mean_rate
 from scarid_cli.algorithms.processes.resolution import resolution_of
 from scarid_cli.arrays import Array, Marks, median
 
-# Hz. Friction and inertia are told apart where the velocity changes within tenths of a second, so
-# that a log of fewer rows per second is of no use, and one of more is no log of joints.
-LOWEST, HIGHEST = 20.0, 200_000.0
+# Hz. Friction and inertia are told apart where the velocity changes within tenths of a second. Logs
+# of a few rows in each give the right parameters, but far less exactly; one of fewer rows is of no
+# use, and one of more than the highest rate is no log of joints.
+LOWEST, SLOW, HIGHEST = 5.0, 20.0, 200_000.0
 UNITS = ((1e3, "ms"), (1e6, "us"), (1e9, "ns"))  # of a time that is not in seconds
+FASTER = "record at 100 Hz or more"
 JITTER = 0.01  # of the period: the limit of `differentiate`, as io.clock has it
 ROUNDING = 1e-6  # of the period: the digits of the time
 GAP = MAX_GAP  # periods
@@ -51,13 +53,15 @@ def unit(clock: Clock) -> tuple[Finding, float]:
         return failed("rate", "the time never increases", "give a log with a clock"), 1.0
     if clock.rate > HIGHEST:
         return failed("rate", figure, "the time is not in seconds: convert the unit of t"), 1.0
-    if clock.rate >= LOWEST:
+    if clock.rate >= SLOW:
         return ok("rate", figure), 1.0
+    if clock.rate >= LOWEST:
+        return warning("rate", figure, FASTER), 1.0
     for factor, name in UNITS:
-        if LOWEST <= factor * clock.rate <= HIGHEST:
+        if SLOW <= factor * clock.rate <= HIGHEST:
             advice = f"the time seems to be in {name}: `scarid convert --unit t={name}`"
             return failed("rate", f"{figure} if t is in seconds", advice), 1.0 / factor
-    return failed("rate", figure, "record at 100 Hz or more"), 1.0
+    return failed("rate", figure, FASTER), 1.0
 
 
 def clock(found: Clock, resampling: str) -> list[Finding]:

@@ -116,9 +116,9 @@ def diagonal(values: Array) -> Array:
     return columns
 
 
-def away_from_reversals(rows: Rows) -> Array:
-    """The scales of the rows, 0 within half a window of a reversal or of a row left out."""
-    half = max(1, round(0.5 * WINDOW / rows.h)) if rows.h > 0.0 else 1
+def away_from_reversals(rows: Rows, within: float = 0.5 * WINDOW) -> Array:
+    """The scales of the rows, 0 `within` this time [s] of a reversal or of a row left out."""
+    half = max(1, round(within / rows.h)) if rows.h > 0.0 else 1
     scales = np.zeros_like(rows.scales)
     for run in runs(rows.at):
         direction = np.sign(rows.motion[1][:, run].T) * (rows.scales[run] > 0.0)

@@ -10,36 +10,50 @@ from collections.abc import Sequence
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows, runs
-from scarid_cli.algorithms.statistics.alternatives import hann
+from scarid_cli.algorithms.statistics.alternatives import away_from_reversals
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
-from scarid_cli.arrays import Array
+from scarid_cli.algorithms.statistics.parallel import Window
+from scarid_cli.arrays import Array, Numbers
+
+MARGIN = 0.25  # periods of the bandwidth, beyond those that are left out near a reversal
 
 
 def log_likelihood_ratio(rows: Rows, bent: Array, residuals: Sequence[Array]) -> float:
     """Of a low-pass over a delay, from the residuals behind the delay and behind the low-pass.
 
-    `bent` (samples, joints) is in proportion to the curvature of the predicted torques, with which
-    the residual of the true form is uncorrelated. The sum of their products has the variance of its
-    blocks of half a second. The mean squares of the residuals would not tell, because the torques
-    that are predicted from noisy accelerations have a curvature even where the true ones have none.
+    `bent` (samples, joints) is in proportion to the curvature of the predicted torques. What the
+    columns of W leave of it is an instrument: no change of the estimates changes its product with
+    the residual, whose mean is 0 for the true form. The variance of the sum is that of its blocks
+    of half a second.
+
+    All signals pass one window of 0.2 s first, because torques predicted from noisy accelerations
+    have a curvature even where the true ones have none; for the same reason the mean squares of the
+    residuals would not tell. Rows near those that are left out do not count either: what the
+    low-pass of the soft sensor makes of Coulomb friction looks like a curvature.
     """
-    counted = rows.scales > 0.0
+    counted = away_from_reversals(rows, MARGIN / rows.bandwidth if rows.bandwidth else 0.0) > 0.0
     squares = np.sum(residuals[0] ** 2 * counted, axis=0)
     with np.errstate(divide="ignore"):
-        weights = counted * np.where(squares > 0.0, counted.sum(axis=0) / squares, 0.0)
-    instrument = weights * _smooth(rows, bent)
-    number, count = block_numbers(rows.at, rows.h)
-    products = [np.bincount(number, np.sum(e * instrument, axis=1), count) for e in residuals]
+        weights = np.where(squares > 0.0, counted.sum(axis=0) / squares, 0.0)
+    signals = np.concatenate((rows.W, np.stack((bent, *residuals), axis=2)), axis=2)
+    signals *= (counted * np.sqrt(weights))[:, :, None]
+    smooth, at = _smooth(rows, signals)
+    if not len(at):
+        return 0.0
+    W, others = np.split(smooth.reshape(-1, signals.shape[2]), [rows.W.shape[2]], axis=1)
+    instrument = others[:, 0] - W @ np.linalg.lstsq(W, others[:, 0], rcond=None)[0]
+    number, count = block_numbers(at, rows.h)
+    of_joints = np.repeat(number, rows.W.shape[1])
+    products = [np.bincount(of_joints, e * instrument, count) for e in others[:, 1:].T]
     variance = min(float(x @ x) for x in products)
     delay, low_pass = (float(np.sum(x)) ** 2 for x in products)
     return 0.5 * (delay - low_pass) / variance if variance > 0.0 else 0.0
 
 
-def _smooth(rows: Rows, x: Array) -> Array:
-    """The signals x (samples, joints) behind a Hann window, 0 in runs that are shorter."""
-    taps = hann(rows.h)
-    found = np.zeros_like(x)
-    for run in runs(rows.at):
-        if run.stop - run.start >= len(taps):
-            found[run] = np.stack([np.convolve(y, taps, "same") for y in x[run].T], 1)
-    return found
+def _smooth(rows: Rows, x: Array) -> tuple[Array, Numbers]:
+    """The signals x (samples, joints, columns) behind the window, and the samples of the rows."""
+    window = Window.of(rows.h)
+    found = [(run, window.centres(run.stop - run.start)) for run in runs(rows.at)]
+    smooth = [window.passed(x[run]) for run, centres in found if len(centres)]
+    kept = [run.start + centres for run, centres in found]
+    return np.concatenate([x[:0], *smooth]), rows.at[np.concatenate(kept)]

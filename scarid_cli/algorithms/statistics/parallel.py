@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from scarid_cli.algorithms.regression.rows import Rows, delay_column, runs
 from scarid_cli.algorithms.statistics.alternatives import Model, diagonal, hann
@@ -49,7 +50,7 @@ def smoothed(rows: Rows, model: Model | None, estimates: Array, own: int) -> Smo
     positions.py. Without a model the columns of W are only smoothed, and there are no further
     columns. None if every run between gaps is shorter than the window.
     """
-    window = Window(hann(rows.h), max(1, int(STEP / rows.h + 1e-9)) if rows.h > 0.0 else 1)
+    window = Window.of(rows.h)
     found: list[tuple[dict[str, Array], Numbers]] = []
     for run in runs(rows.at):
         centres = window.centres(run.stop - run.start)
@@ -80,6 +81,11 @@ class Window:
     taps: Array
     step: int
 
+    @classmethod
+    def of(cls, h: float) -> Window:
+        """The Hann window for rows that are h [s] apart."""
+        return cls(hann(h), max(1, int(STEP / h + 1e-9)) if h > 0.0 else 1)
+
     def centres(self, samples: int) -> Numbers:
         """The samples of a run at which the window is inside, away from its edges."""
         edge = len(self.taps) // 2 + EDGE
@@ -87,10 +93,9 @@ class Window:
 
     def passed(self, x: Array) -> Array:
         """x (samples, ...) of a run behind the window, at its centres."""
-        last = len(x) - len(self.taps) + 1 - EDGE
-        return np.asarray(
-            sum(tap * x[k + EDGE : k + last : self.step] for k, tap in enumerate(self.taps))
-        )
+        inside = np.ascontiguousarray(x[EDGE : len(x) - EDGE])
+        around = sliding_window_view(inside, len(self.taps), axis=0)[:: self.step]
+        return np.asarray(np.einsum("...t,t->...", around, self.taps))
 
 
 def _columns(
