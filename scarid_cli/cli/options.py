@@ -214,7 +214,13 @@ def as_json(function: F) -> F:
 def common(function: F) -> F:
     """What every command takes."""
     return all_of(
-        click.option("-q", "--quiet", cls=Unrecorded, is_flag=True, help="Report only errors."),
+        click.option(
+            "-q",
+            "--quiet",
+            cls=Unrecorded,
+            is_flag=True,
+            help="Report errors only: no warnings, no verdict.",
+        ),
         click.option("-v", "--verbose", cls=Unrecorded, is_flag=True, help="Report what was read."),
         click.option(
             "--debug", cls=Unrecorded, is_flag=True, help="Show the traceback of an error."

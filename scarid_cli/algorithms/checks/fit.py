@@ -116,6 +116,7 @@ def _fit(robot: Robot, r2: Array) -> Finding:
         return ok("model", figure)
     names = f"the torque of {joints_text(poor + 1)}"
     advice = f"is this {robot.short_name}, with the tool that it has? It does not explain {names}"
+    advice += ", unless this hardly varies beside its noise"
     return (failed if r2.min() < UNEXPLAINED else warning)("model", figure, advice)
 
 

@@ -29,6 +29,7 @@ from scarid_cli.stages.changes import Known, known
 from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.parameters import Identified, identified
 from scarid_cli.stages.pooling import Entry, pooled_identifications
+from scarid_cli.stages.reach import Reach
 
 
 def run(
@@ -54,8 +55,9 @@ def run(
         table = motion(job, table, arm, [], resampled.rates, hertz=_bandwidth(tables))
     treatment = for_motion(table.meta, treatment, given)
     model, before = pooled_identifications([_stored(table, arm) for table in tables])
+    reach = Reach(len(arm.joints))
     result = stage.validate(
-        job.recorded(table),
+        job.recorded(reach.watched(table)),
         model,
         treatment=treatment,
         predictions=side,
@@ -65,6 +67,8 @@ def run(
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
     if len(tables) > 1:
         job.say(f"pooled the parameters of {len(tables)} identifications, by their information")
+    for finding in reach.findings(arm, table.period):
+        job.say(f"warning: {finding.text}")
     _tell(job, model, before, result.meta.extra)
 
 
