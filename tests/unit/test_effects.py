@@ -246,13 +246,15 @@ WAVES = ((1.0, 1.3), (0.5, 4.0), (0.3, 7.0), (0.2, 12.0), (0.1, 17.0))  # N, rad
 def behind(kind: str, lag: float) -> tuple[Rows, Array]:
     """Rows whose W is a sum of waves, in closed form, and the noise-free torques behind a lag [s].
 
-    A "drive" makes the torque a low-passed command, which is what the log has.
+    A "drive" makes the torque a low-passed command, which is what the log has. "both" are a delay
+    and a low-pass of half the lag each.
     """
     true, t = moved(4000), np.arange(4000) * H
     shown = {
         "delay": lambda w: np.exp(-1j * w * lag),
         "low-pass": lambda w: 1.0 / (1.0 + 1j * w * lag),
         "drive": lambda w: 1.0 + 1j * w * lag,
+        "both": lambda w: np.exp(-0.5j * w * lag) / (1.0 + 0.5j * w * lag),
     }[kind]
     torque = sum(a * np.exp(1j * w * t) for a, w in WAVES).imag
     logged = sum(a * shown(w) * np.exp(1j * w * t) for a, w in WAVES).imag
@@ -275,6 +277,19 @@ def test_a_low_pass_is_told_from_a_delay(kind: str) -> None:
     predicted = led(rows, rows.W[:, :, 0], found.delay, low_pass=found.lead.low_pass)
     inside = slice(200, -200)
     assert np.std((predicted[:, 0] - logged)[inside]) < 2e-3
+
+
+def test_estimates_are_uncertain_by_the_part_of_a_lag_that_has_the_other_form() -> None:
+    """A delay is found, and the curvature of a quarter of that of a low-pass is missed."""
+    rows, logged = behind("both", 0.012)
+    noise = 0.01 * np.random.default_rng(7).standard_normal(len(logged))
+    found = aligned_by_least_squares(replace(rows, y=rows.y + noise[:, None]))
+    assert not found.lead.low_pass
+    assert found.lead.doubt is not None
+    mean_square = sum((a * w) ** 2 for a, w in WAVES) / sum(a**2 for a, _ in WAVES)
+    missed = 0.25 * 0.5 * 0.012**2 * mean_square
+    assert abs(found.lead.doubt[0]) == pytest.approx(missed, rel=0.1)
+    assert 0.5 * missed < abs(found.found.fit.estimates[0] - 1.0) < missed
 
 
 def strokes(late: int, seed: int, samples: int = 4000) -> Rows:

@@ -9,7 +9,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.rows import Rows, predicted, thinned, with_delay
 from scarid_cli.algorithms.regression.shifting import bend, in_step
-from scarid_cli.algorithms.statistics.curvature import log_likelihood_ratio
+from scarid_cli.algorithms.statistics.curvature import form
 from scarid_cli.arrays import Array
 
 FITS = 10  # at most, each from the estimates of the one before
@@ -25,7 +25,8 @@ class Lead:
 
     `theta` (columns) are the estimates with which it was found, the last of them what remains of
     the delay. `doubt` (columns) is how far they may be off because the other form may be the true
-    one: as a root mean square over both, which are as likely as the log says.
+    one, or a part of the lead may have it: as a root mean square over both, as likely as the log
+    says, and over the part.
     """
 
     seconds: float
@@ -105,9 +106,11 @@ class _Search:
         straight = replace(rows, y=rows.y + bent)
         other = self.quick.of_rows(straight, self.start)
         residuals = [x.y - x.W @ y.fit.estimates for x, y in ((rows, found), (straight, other))]
-        ratio = log_likelihood_ratio(rows, bent, residuals)
-        probability = np.exp(-np.logaddexp(0.0, abs(ratio)))
-        doubt = np.sqrt(probability) * (other.fit.estimates - delay.theta)
-        if ratio > CLEAR:
-            return Lead(delay.seconds, other.fit.estimates, low_pass=True, doubt=doubt)
-        return replace(delay, doubt=doubt)
+        seen = form(rows, bent, residuals)
+        low_pass = seen.ratio > CLEAR
+        probability = np.exp(-np.logaddexp(0.0, abs(seen.ratio)))
+        # Of a lead that is partly a delay, the other part is missed.
+        missed = probability + (seen.share - low_pass) ** 2
+        doubt = np.sqrt(missed) * (other.fit.estimates - delay.theta)
+        theta = other.fit.estimates if low_pass else delay.theta
+        return Lead(delay.seconds, theta, low_pass=low_pass, doubt=doubt)

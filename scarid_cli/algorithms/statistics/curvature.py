@@ -6,6 +6,7 @@ The two differ by a multiple of the second derivative of the torques (shifting.p
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,8 +19,20 @@ from scarid_cli.arrays import Array, Numbers
 MARGIN = 0.25  # periods of the bandwidth, beyond those that are left out near a reversal
 
 
-def log_likelihood_ratio(rows: Rows, bent: Array, residuals: Sequence[Array]) -> float:
-    """Of a low-pass over a delay, from the residuals behind the delay and behind the low-pass.
+@dataclass(frozen=True)
+class Form:
+    """How torques lead the motion: by the log-likelihood `ratio` of a low-pass over a delay.
+
+    `share` is the curvature that they have, of that behind a low-pass: 0 behind a delay, 1 behind a
+    low-pass, between them behind both.
+    """
+
+    ratio: float
+    share: float
+
+
+def form(rows: Rows, bent: Array, residuals: Sequence[Array]) -> Form:
+    """The form of the lead, from the residuals behind the delay and behind the low-pass.
 
     `bent` (samples, joints) is in proportion to the curvature of the predicted torques. What the
     columns of W leave of it is an instrument: no change of the estimates changes its product with
@@ -39,15 +52,18 @@ def log_likelihood_ratio(rows: Rows, bent: Array, residuals: Sequence[Array]) ->
     signals *= (counted * np.sqrt(weights))[:, :, None]
     smooth, at = _smooth(rows, signals)
     if not len(at):
-        return 0.0
+        return Form(0.0, 0.0)
     W, others = np.split(smooth.reshape(-1, signals.shape[2]), [rows.W.shape[2]], axis=1)
     instrument = others[:, 0] - W @ np.linalg.lstsq(W, others[:, 0], rcond=None)[0]
     number, count = block_numbers(at, rows.h)
     of_joints = np.repeat(number, rows.W.shape[1])
     products = [np.bincount(of_joints, e * instrument, count) for e in others[:, 1:].T]
     variance = min(float(x @ x) for x in products)
-    delay, low_pass = (float(np.sum(x)) ** 2 for x in products)
-    return 0.5 * (delay - low_pass) / variance if variance > 0.0 else 0.0
+    delay, low_pass = (float(np.sum(x)) for x in products)
+    if not variance or delay == low_pass:
+        return Form(0.0, 0.0)
+    share = float(np.clip(delay / (delay - low_pass), 0.0, 1.0))
+    return Form(0.5 * (delay**2 - low_pass**2) / variance, share)
 
 
 def _smooth(rows: Rows, x: Array) -> tuple[Array, Numbers]:
