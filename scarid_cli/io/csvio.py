@@ -24,6 +24,8 @@ CUT = b"# scarid: the table ends here because the stage that wrote it failed\n"
 BOM = "\N{ZERO WIDTH NO-BREAK SPACE}"  # at the start of a text of Windows
 
 # Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
+# How programs write a missing number; in a column of text they are texts.
+MARKS = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
 
 
@@ -210,7 +212,7 @@ def _parsed(block: bytes, schema: pa.Schema) -> pa.Table:
         parse_options=pacsv.ParseOptions(newlines_in_values=b'"' in block),
         convert_options=pacsv.ConvertOptions(
             column_types=schema,
-            null_values=[""],
+            null_values=["", *([] if _has_text(schema) else MARKS)],
             strings_can_be_null=True,
             quoted_strings_can_be_null=_one_of_numbers(schema),
         ),
@@ -224,7 +226,7 @@ class CsvWriter:
         _require_writable(schema)
         self._write = write
         self._schema = schema
-        self._numeric = not any(pa.types.is_string(field.type) for field in schema)
+        self._numeric = not _has_text(schema)
         self._write(_csv_text([schema.names]))
 
     def write(self, batch: pa.RecordBatch) -> None:
@@ -294,6 +296,10 @@ def _numbers(batch: pa.RecordBatch) -> bytes:
             line if line.strip() else b'""\n' for line in text.splitlines(keepends=True)
         )
     return text
+
+
+def _has_text(schema: pa.Schema) -> bool:
+    return any(pa.types.is_string(field.type) for field in schema)
 
 
 def _one_of_numbers(schema: pa.Schema) -> bool:

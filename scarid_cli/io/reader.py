@@ -194,7 +194,7 @@ def _fault_of(column: pa.Array) -> tuple[int, str, str] | None:
     expected = "a finite number" if floating else "a value"
     if column.null_count:
         empty = column.is_null().to_numpy(zero_copy_only=False)
-        return int(np.argmax(empty)), "an empty cell", expected
+        return int(np.argmax(empty)), "no value", expected
     finite = np.isfinite(column.to_numpy()) if floating else np.ones(1, dtype=np.bool_)
     if finite.all():
         return None

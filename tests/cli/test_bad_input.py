@@ -26,7 +26,11 @@ def with_line(number: int, line: str) -> list[str]:
 CASES = {
     "NaN": (with_line(5, "0.04,nan,2"), "row 5, column q1: found nan, expected a finite number"),
     "infinity": (with_line(5, "0.04,1,-inf"), "row 5, column tau1: found -inf, expected a finite"),
-    "empty cell": (with_line(5, "0.04,,2"), "row 5, column q1: found an empty cell, expected a"),
+    "empty cell": (with_line(5, "0.04,,2"), "row 5, column q1: found no value, expected a"),
+    "mark for a missing value": (
+        with_line(5, "0.04,n/a,2"),
+        "row 5, column q1: found no value, expected a",
+    ),
     "text": (with_line(5, "0.04,1.2.3,2"), "row 5, column q1: found '1.2.3', expected a number"),
     "short row": (with_line(5, "0.04,1"), "row 5: found 2 values, expected 3"),
     "long row": (with_line(5, "0.04,1,2,3"), "row 5: found 4 values, expected 3"),
