@@ -241,7 +241,7 @@ def test_a_robot_without_bounds_needs_them_as_options(scarid: Run, tmp_path: Pat
     path.write_text((ROBOTS / "emps.toml").read_text("utf-8").replace("velocity_limit", "# v"))
     result = scarid("trajgen", "--robot", path)
     assert result.status == 2
-    assert "--dq-max: the bounds must be positive and finite (the description of" in result.err
+    assert "--dq-max: the bounds must be positive and finite; the description of" in result.err
     assert scarid("trajgen", "--robot", path, "--dq-max", 0.1, "-q").status == 0
 
 

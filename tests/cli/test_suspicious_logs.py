@@ -60,6 +60,30 @@ def test_a_check_that_fails_makes_the_verdict_doubtful(
     assert verdict(scarid("identify", "--robot", "scara2", log)).startswith(told)
 
 
+LIFT = """<robot name="lift"><link name="base"/>
+<joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+<limit lower="-2" upper="2" effort="50" velocity="5"/></joint>
+<link name="arm"><inertial><origin xyz="0.2 0 0"/><mass value="5"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="lift" type="prismatic"><parent link="arm"/><child link="fork"/><axis xyz="0 0 1"/>
+<origin xyz="0.4 0 0"/><limit lower="-0.2" upper="0.2" effort="99" velocity="1"/></joint>
+<link name="fork"><inertial><mass value="3"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"""
+
+
+def test_a_log_without_noise_or_friction_gives_no_doubt(tmp_path: Path, scarid: Run) -> None:
+    """A mass below 0 and a large motor would move the lift as well if its axis were reversed.
+
+    Friction and motors are 0, so that the errors of their parameters are those of rounding.
+    """
+    pytest.importorskip("pinocchio")
+    robot, reference, log = (tmp_path / name for name in ("l.urdf", "r.parquet", "l.parquet"))
+    robot.write_text(LIFT)
+    scarid("trajgen", "--robot", robot, "--ddq-max", "10,5", "--seed", "1", "-o", reference)
+    scarid("simulate", "--robot", robot, reference, "-o", log)
+    assert verdict(scarid("identify", "--robot", robot, log)).startswith("good: ")
+
+
 @pytest.mark.parametrize("degrees", [0.0, 5.0])
 def test_a_tilted_base_is_named(degrees: float, tmp_path: Path, scarid: Run) -> None:
     pytest.importorskip("pinocchio")

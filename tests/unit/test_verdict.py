@@ -24,7 +24,11 @@ P = 3
 SCARA = load("scara2")
 GOOD = JointResidual(1000, 0.999, 0.1, 0.1, 2.0, 0.0, 5.0)
 KNOWN = Consequences(
-    np.ones(2), np.array([0.001, 0.002]), np.full(2, 0.001), np.array([0.003, 0.004])
+    np.ones(2),
+    np.array([0.001, 0.002]),
+    np.full(2, 0.001),
+    np.array([0.003, 0.004]),
+    np.full(8, 0.5),
 )
 BLOCKS = 40
 
@@ -98,6 +102,14 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         ),
         ({"effects": (effect(PARALLEL, moved=-4.0, largest=2.0),)}, "good", "8 of 8 parameters"),
         ({"effects": (effect(PARALLEL, moved=-2.0, largest=9.0),)}, "good", "8 of 8 parameters"),
+        (
+            {
+                "effects": (effect(PARALLEL, moved=-4.0, largest=9.0),),
+                **consequence(parts=np.full(8, 1e-3)),
+            },
+            "good",  # no torque changes by a ten-thousandth
+            "8 of 8 parameters",
+        ),
         ({"effects": ()}, "doubtful", "the estimates were not tested for bias"),
         (
             {"effects": (effect(PARALLEL), effect(STRIBECK, **FAR))},

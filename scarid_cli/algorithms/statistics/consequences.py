@@ -17,24 +17,34 @@ from scarid_cli.algorithms.statistics.jackknife import regular
 from scarid_cli.arrays import Array, median
 
 PARTS = 10  # of the record, each left out once
+NOTHING = 1e-4  # of a torque: no sensor shows as little
 POSES = 50  # of the record, at which the inertia is computed
 
 
 @dataclass(frozen=True)
 class Consequences:
-    """How well torques and inertias are known; one value for each joint.
+    """How well torques and inertias are known; one value for each joint, but for `parts`.
 
     `held_out` is the root-mean-square residual of parts of the record that were left out of the
     fit, divided by that of the fit itself. `torque` is the standard error of the predicted torque,
     divided by the root-mean-square torque, and `noise` the part of it that is due to noise alone,
     which a longer log would reduce. `inertia` is the standard error of the diagonal of the
-    inertia matrix, divided by its value, as a median over poses of the record.
+    inertia matrix, divided by its value, as a median over poses of the record. `parts` (own
+    parameters) is the part of the torque that each parameter has per unit, at the joint where it is
+    greatest.
     """
 
     held_out: Array
     torque: Array
     noise: Array
     inertia: Array
+    parts: Array
+
+    @property
+    def negligible(self) -> Array:
+        """By how much each parameter may change without a torque that any sensor shows."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(NOTHING / self.parts)
 
 
 @dataclass(frozen=True)
@@ -68,7 +78,9 @@ def consequences(
     inertia = np.full(len(weights), np.nan)
     if model is not None and poses.size:
         inertia = _inertia(model, estimates[: len(uncertainty.torque)], uncertainty, poses)
-    return Consequences(_held_out(record, fitted, weights, estimates), torque, noise, inertia)
+    held_out = _held_out(record, fitted, weights, estimates)
+    parts = _parts(record.total, len(uncertainty.torque))
+    return Consequences(held_out, torque, noise, inertia, parts)
 
 
 def _held_out(record: Blocks, fitted: Blocks, weights: Array, estimates: Array) -> Array:
@@ -98,6 +110,14 @@ def _torque(products: Array, covariance: Array) -> Array:
     errors = np.einsum("ik,jki->j", covariance, products[:, :own, :own])
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.sqrt(np.maximum(errors, 0.0) / products[:, -2, -2]))
+
+
+def _parts(products: Array, own: int) -> Array:
+    """The root mean square of each column over that of the torque, the largest of all joints."""
+    squares = np.diagonal(products, axis1=1, axis2=2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        parts = np.sqrt(squares[:, :own] / squares[:, -2:-1])
+    return np.asarray(np.max(np.nan_to_num(parts, nan=0.0), axis=0))
 
 
 def _inertia(model: Model, estimates: Array, uncertainty: Uncertainty, poses: Array) -> Array:

@@ -75,23 +75,24 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics) -> list[str]:
     """
     level = CERTAIN / max(1, len(diagnostics.effects))
     scatter = diagnostics.scatter[: len(names)]
+    least = np.maximum(scatter, diagnostics.consequences.negligible)
     found = [
         effect
         for effect in diagnostics.effects
-        if effect.name in ADVICE and effect.significant(level) and np.any(_wide(effect, scatter))
+        if effect.name in ADVICE and effect.significant(level) and np.any(_wide(effect, least))
     ]
     if not found:
         return []
     best = max(found, key=lambda effect: float(np.max(np.abs(effect.apart) / scatter)))
-    wide = [name for name, x in zip(names, _wide(best, scatter), strict=True) if x]
+    wide = [name for name, x in zip(names, _wide(best, least), strict=True) if x]
     allow = "interval" if len(wide) == 1 else "intervals"
     verb = "allows" if len(wide) == 1 else "allow"
     return [f"{ADVICE[best.name]}; the {allow} of {listed(wide)} {verb} for it"]
 
 
-def _wide(effect: Effect, scatter: Array) -> Marks:
-    """Which parameters have a bias that exceeds their errors, because of this alternative alone."""
-    return np.asarray(np.minimum(np.abs(effect.bias), np.abs(effect.apart)) > scatter)
+def _wide(effect: Effect, least: Array) -> Marks:
+    """Which parameters have at `least` such a bias because of this alternative alone."""
+    return np.asarray(np.minimum(np.abs(effect.bias), np.abs(effect.apart)) > least)
 
 
 def percents(parts: Iterable[float]) -> str:

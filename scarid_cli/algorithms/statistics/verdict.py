@@ -164,10 +164,19 @@ def _biased(evidence: Evidence) -> list[str]:
 def _moved(evidence: Evidence, effect: Effect) -> str:
     """Which estimates an effect moves too far; empty if there are none."""
     scatter = evidence.diagnostics.scatter[: len(evidence.estimates)]
-    far = np.abs(effect.apart) > np.maximum(DEVIATIONS * scatter, PART * np.abs(evidence.estimates))
+    far = np.abs(effect.apart) > np.maximum(DEVIATIONS * scatter, _allowed(evidence))
     if not effect.significant() or not far.any():
         return ""
     return changed(evidence.names, evidence.estimates, effect.apart, scatter, far)
+
+
+def _allowed(evidence: Evidence) -> Array:
+    """By how much estimates may move however small their errors are (parameters).
+
+    Of a log without noise, the errors of parameters that are 0 are as small as rounding.
+    """
+    negligible = evidence.diagnostics.consequences.negligible
+    return np.maximum(PART * np.abs(evidence.estimates), negligible)
 
 
 def _changed(evidence: Evidence, robot: Robot) -> list[str]:
@@ -178,7 +187,7 @@ def _changed(evidence: Evidence, robot: Robot) -> list[str]:
     friction = {p.name for p in robot.parameters if not transmitted(p.term)}
     links = np.array([name not in friction for name in evidence.names])
     moved = 0.5 * (halves.second - halves.first)
-    far = halves.differ(links) & (np.abs(moved) > PART * np.abs(evidence.estimates))
+    far = halves.differ(links) & (np.abs(moved) > _allowed(evidence))
     if not far.any():
         return []
     worst = int(np.argmax(np.where(far, np.abs(moved) / halves.errors, 0.0)))

@@ -146,9 +146,9 @@ def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
         numbers = given[option.strip("-").replace("-", "_")]
         values = np.array(per_joint(numbers, len(arm.joints), option)) if numbers else otherwise
         if not (np.abs(values) < LARGEST_LIMIT).all() or (positive and not (values > 0.0).all()):
-            lack = "" if numbers else f" (the description of {arm.name} gives none)"
             what = "positive and finite" if positive else "finite"
-            raise UsageFault(f"{option}: the bounds must be {what}{lack}")
+            lack = f"; the description of {arm.name} gives none: type `{option} NUMBERS`"
+            raise UsageFault(f"{option}: the bounds must be {what}{'' if numbers else lack}")
         return values
 
     symmetric = bool(given["q_max"]) and not given["q_min"]
