@@ -8,6 +8,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from scarid_cli.algorithms.checks.finding import FAILED
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
@@ -68,7 +69,8 @@ def run(
     if len(tables) > 1:
         job.say(f"pooled the parameters of {len(tables)} identifications, by their information")
     for finding in reach.findings(arm, table.period):
-        job.say(f"warning: {finding.text}")
+        if finding.status == FAILED:
+            job.say(f"warning: {finding.text}")
     _tell(job, model, before, result.meta.extra)
 
 
