@@ -62,6 +62,7 @@ def _contents(log: LogFormat) -> str:
     parts += [f"{new} is {old}" for new, old in log.columns.items()]
     parts += [f"{pattern} in {unit}" for pattern, unit in log.units]
     parts += [f"{log.rate:g} Hz"] if log.rate else []
+    parts += [f"joint {i} at {x:g} where they have 0" for i, x in enumerate(log.zero, 1) if x]
     return ", ".join(parts)
 
 

@@ -44,6 +44,8 @@ def as_described(
 def at_joints(table: Table, robot: Robot, log: LogFormat) -> Table:
     """Convert angles, torques or currents of motors to positions [rad or m] and torques of joints.
 
+    Positions of joints are moved by the zeros of the description.
+
     Signals that the log already gives for the joints stay as they are.
     """
     transforms: dict[tuple[str, ...], Transform] = {}
@@ -70,8 +72,9 @@ def at_joints(table: Table, robot: Robot, log: LogFormat) -> Table:
 
 
 def _groups(log: LogFormat) -> Iterator[tuple[tuple[str, ...], Transform]]:
-    if log.positions != JOINT:
+    if log.positions != JOINT or any(log.zero):
         yield ("q{i}", "q{i}_ref"), log.positions_of_joints
+    if log.positions != JOINT:
         yield ("dq{i}", "ddq{i}", "dq{i}_ref", "ddq{i}_ref"), log.velocities_of_joints
     if log.torques != JOINT:
         yield ("tau{i}",), log.torques_of_joints

@@ -141,6 +141,20 @@ def test_a_log_of_motors_becomes_one_of_joints(shell: Shell, tmp_path: Path) -> 
     np.testing.assert_allclose(found, [[0.0, 0.01, 0.02], *q, *tau], rtol=1e-12, atol=1e-12)
 
 
+def test_the_zero_of_a_joint_is_added_to_its_positions(shell: Shell, tmp_path: Path) -> None:
+    motors = """[log]
+rate = 100.0
+positions = "motor"
+torques = "current"
+columns = { q1 = "enc1", q2 = "enc2", tau1 = "amp1", tau2 = "amp2" }
+units = { "q?" = "0.001 rad", "tau?" = "mA" }
+"""
+    (tmp_path / "robot.toml").write_text(ROBOT.replace(motors, ""))
+    (tmp_path / "log.csv").write_text("t,q1,q2,dq1,tau1,tau2\n0,1,2,3,4,5\n")
+    result = shell("scarid convert --robot robot.toml log.csv")
+    assert result.out.splitlines()[1] == "0,1.3,2,3,4,5", result.err
+
+
 def test_a_robot_whose_logs_are_not_described_is_stated(shell: Shell) -> None:
     result = shell(
         "scarid convert --robot scara2 $SAMPLES/scara2.csv -o log.parquet &&"

@@ -1,4 +1,4 @@
-"""Positions that are not those of the joints: eccentric encoders and elastic transmissions."""
+"""Positions that are not those of the joints: zeros, eccentric encoders, elastic transmissions."""
 
 from __future__ import annotations
 
@@ -15,12 +15,15 @@ from scarid_cli.algorithms.regression.rows import rows_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
-from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS
+from scarid_cli.algorithms.statistics.effects import Effect
+from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, ZEROS
 from scarid_cli.algorithms.statistics.positions import (
     Sensitivities,
+    eccentric_columns,
     elastic_columns,
-    encoder_columns,
+    zero_columns,
 )
+from scarid_cli.algorithms.statistics.sentences import notes_of
 from scarid_cli.arrays import Array
 
 ARM = load("planar2-gravity")
@@ -53,18 +56,35 @@ def with_derivatives(q: Array) -> Array:
     return np.stack((q, dq, np.gradient(dq, H, axis=1)))
 
 
-def test_columns_of_encoders_are_the_change_that_their_errors_make() -> None:
-    """Both sides, with the error and its derivatives in closed form, of joint 2."""
+def cosine(q: Array, dq: Array, ddq: Array) -> Array:
+    """The cosine of a position, with its first two derivatives in closed form (3, samples)."""
+    return np.stack((np.cos(q), -np.sin(q) * dq, -np.sin(q) * ddq - np.cos(q) * dq**2))
+
+
+def constant(q: Array, dq: Array, ddq: Array) -> Array:
+    return np.stack((np.ones_like(q), 0.0 * dq, 0.0 * ddq))
+
+
+@pytest.mark.parametrize(
+    ("error", "columns", "of_joint_2"),
+    [
+        (constant, lambda s, _: zero_columns(s), 1),
+        (cosine, lambda s, true: eccentric_columns(MODEL, s, true), 3),
+    ],
+)
+def test_columns_of_encoders_are_the_change_that_their_errors_make(
+    error: Callable[..., Array], columns: Callable[[Sensitivities, Array], Array], of_joint_2: int
+) -> None:
+    """Differences of the torques to both sides."""
     true, size = motion(400), 1e-6
-    q, dq, ddq = true[:, 1]
-    cosine = np.stack((np.cos(q), -np.sin(q) * dq, -np.sin(q) * ddq - np.cos(q) * dq**2))
     up, down = true.copy(), true.copy()
-    up[:, 1] += size * cosine
-    down[:, 1] -= size * cosine
+    up[:, 1] += size * error(*true[:, 1])
+    down[:, 1] -= size * error(*true[:, 1])
     expected = (torques(up) - torques(down)) / (2.0 * size)
-    found = encoder_columns(MODEL, Sensitivities.of(MODEL, ARM.apriori, true), true)
-    assert found.shape == (400, 2, 6)  # an offset, a sine and a cosine of each joint
-    np.testing.assert_allclose(found[:, :, 5], expected, atol=1e-3 * np.abs(expected).max())
+    found = columns(Sensitivities.of(MODEL, ARM.apriori, true), true)
+    np.testing.assert_allclose(
+        found[:, :, of_joint_2], expected, atol=1e-3 * np.abs(expected).max()
+    )
 
 
 def test_columns_of_elastic_transmissions_are_the_change_that_yielding_makes() -> None:
@@ -100,7 +120,24 @@ def test_errors_of_encoders_that_other_parameters_express_are_not_tested(tmp_pat
     rows = rows_of(arm, np.stack((*true, tau + noise)), np.arange(tau.shape[1]), H)
     model = Model(arm, list(range(len(arm.names))))
     found = diagnose(rows, estimated(ls.Estimator(), rows), len(arm.names), model=model)
-    assert [effect.tests for effect in found.effects if effect.name == ENCODERS] == [5]
+    assert (named(found, ZEROS).tests, named(found, ENCODERS).tests) == (1, 5)
+
+
+def named(found: Diagnostics, name: str) -> Effect:
+    return next(effect for effect in found.effects if effect.name == name)
+
+
+def test_another_zero_is_found_with_its_joint_and_its_size() -> None:
+    """Joint 1 is at -0.02 rad where the log says 0."""
+    true = motion()
+    logged = true.copy()
+    logged[0, 0] += 0.02
+    found, _ = diagnosed(logged, true)
+    effect = named(found, ZEROS)
+    assert effect.significant()
+    assert abs(effect.amounts[0] + 0.02) < 3.0 * effect.noise[0] < 0.002
+    (note,) = notes_of(ARM.names, found, ARM)
+    assert note.startswith("where the log has a position of 0, joint 1 is at -0.0")
 
 
 def eccentric(true: Array) -> Array:
@@ -119,6 +156,6 @@ def test_intervals_allow_for_positions_that_are_off(
 ) -> None:
     true = motion()
     found, off = diagnosed(seen(true), true)
-    assert next(effect for effect in found.effects if effect.name == name).significant()
+    assert named(found, name).significant()
     assert np.any(off > 3.0 * found.scatter)
     assert np.all(off < 3.0 * found.errors)

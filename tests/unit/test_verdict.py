@@ -36,7 +36,7 @@ BLOCKS = 40
 def effect(name: str, *, moved: float = 0.0, largest: float = 0.0) -> Effect:
     """One that moves the second parameter by so many standard errors of 0.01."""
     row = 0.01 * moved * np.eye(8)[1]
-    return Effect(name, row, np.full(8, 0.001), row, largest, 8, BLOCKS)
+    return Effect(name, row, np.full(8, 0.001), row, np.full(8, largest), np.ones(8), BLOCKS)
 
 
 def halves(error: float = 0.01, **changes: float) -> Halves:
@@ -114,8 +114,8 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         (
             {"effects": (effect(PARALLEL), effect(STRIBECK, **FAR))},
             "good",
-            "friction decreases with speed (add Stribeck friction with --estimator separable); the "
-            "interval of Fv1 allows for it",
+            "friction of joints 1 and 2 decreases with speed (add Stribeck friction with "
+            "--estimator separable); the interval of Fv1 allows for it",
         ),
         (
             consequence(inertia=np.array([0.45, 0.55])),

@@ -12,7 +12,7 @@ A description says in [log] what its robot's logs hold:
     [[joint]]
     gear_ratio = -48.0        # turns of the motor per turn of the joint; negative: reversed
     torque_constant = 0.05    # N m/A
-    zero = 1.5708             # rad or m: position of the joint when its motor is at 0
+    zero = 1.5708             # rad or m: position of the joint where the log has 0
 
     [[coupling]]
     joints = [5, 6]           # the motor of joint 6 also turns with joint 5, by
@@ -53,9 +53,9 @@ class LogFormat:
     zero: tuple[float, ...] = ()
 
     def positions_of_joints(self, q: Array) -> Array:
-        """Positions (joints, samples) [rad or m] from angles of the motors [rad]."""
-        positions: Array = self.velocities_of_joints(q) + np.array(self.zero)[:, None]
-        return positions
+        """Positions (joints, samples) [rad or m] from those of the log, of joints or motors."""
+        turned = self.velocities_of_joints(q) if self.positions == MOTOR else q
+        return np.asarray(turned + np.array(self.zero)[:, None])
 
     def velocities_of_joints(self, dq: Array) -> Array:
         """Velocities or accelerations (joints, samples) from those of the motors."""
@@ -76,12 +76,12 @@ def _mixed(matrix: Array, x: Array) -> Array:
 
 
 def log_of(document: dict[str, Any], joints: int) -> LogFormat | None:
-    """The [log] of a description, for a robot with so many joints; None if it has none."""
-    if "log" not in document:
-        return None
+    """What a description says of logs of so many joints; None if it has no [log] and no zeros."""
     axes = values.tables("joint", document.get("joint", [])) or [{}] * joints
+    if "log" not in document and not any("zero" in axis for axis in axes):
+        return None
     couplings = values.tables("coupling", document.get("coupling", []))
-    entry = values.table("log", document["log"])
+    entry = values.table("log", document.get("log", {}))
     values.only("[log]", entry, ("rate", "positions", "torques", "columns", "units"))
     columns = values.table("columns", entry.get("columns", {}))
     units = values.table("units", entry.get("units", {}))

@@ -67,13 +67,24 @@ class Model:
         if not body or not any(body.gravity):
             return None
         still = np.stack((q, np.zeros_like(q), np.zeros_like(q)))
-        sideways = np.linalg.svd(np.array([body.gravity]))[2][1:] * np.linalg.norm(body.gravity)
+        sideways = _sideways(np.array(body.gravity))
         robots = [replace(self.robot, body=replace(body, gravity=tuple(g))) for g in sideways]
         torques = [replace(self, robot=r).link_torques(still, theta) for r in robots]
         return np.stack(torques, axis=2)
 
     def _marks(self, chosen: Callable[[Term], bool]) -> Marks:
         return np.array([chosen(self.robot.parameters[i].term) for i in self.kept], dtype=bool)
+
+
+def tilted(gravity: Array, amounts: Array) -> Array:
+    """The gravity [m/s2] of a base that is tilted by these amounts (2), as large as before."""
+    turned = gravity + amounts @ _sideways(gravity)
+    return np.asarray(turned * np.linalg.norm(gravity) / np.linalg.norm(turned))
+
+
+def _sideways(gravity: Array) -> Array:
+    """Two vectors (2, 3) as long as that of gravity, at right angles to it and to each other."""
+    return np.asarray(np.linalg.svd(gravity[None])[2][1:] * np.linalg.norm(gravity))
 
 
 def transmitted(term: Term) -> bool:

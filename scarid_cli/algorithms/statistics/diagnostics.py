@@ -30,6 +30,7 @@ from scarid_cli.algorithms.statistics.jackknife import (
     jackknife,
     jackknife_of_blocks,
 )
+from scarid_cli.algorithms.statistics.parallel import ENCODERS, ZEROS
 from scarid_cli.algorithms.statistics.residuals import JointResidual, residuals
 from scarid_cli.arrays import Array, median
 
@@ -138,11 +139,13 @@ def _stated(fit: Fit, scatter: Array, effects: tuple[Effect, ...], gains: Array)
     """From the errors of the noise, the effects of alternatives, and the moves by wrong gains."""
     shifts = np.array([effect.bias for effect in effects]).reshape(-1, len(scatter))
     widest = np.max(shifts**2, axis=0, initial=0.0) + np.sum(gains**2, axis=0)
-    moves = [(effect.name, effect.direction(scatter)) for effect in effects]
+    moves = {effect.name: effect.direction(scatter) for effect in effects}
+    if any(effect.name == ENCODERS and effect.counts for effect in effects):
+        moves.pop(ZEROS, None)  # whose columns are among those of the encoders
     # What other columns gain the parameters lose: the torque on this motion remains what it was.
-    lasting = [move for name, move in moves if name not in TORQUES]
+    lasting = [move for name, move in moves.items() if name not in TORQUES]
     # Without its column this one would change the torque most, where `scarid urdf` must keep it.
-    most = [move for name, move in moves if name != CURVATURE]
+    most = [move for name, move in moves.items() if name != CURVATURE]
     return _Stated(
         errors=np.sqrt(scatter**2 + np.nan_to_num(widest)),
         matrix=_matrix(fit, scatter, [*most, *gains]),

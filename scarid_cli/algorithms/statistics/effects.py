@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -35,22 +36,42 @@ class Effect:
     """How far the estimates move under an alternative, and the errors of that (parameters).
 
     `apart` is how far they move because of the alternative alone, on rows that are otherwise
-    treated alike. `largest` is the largest of the statistics that show whether there is an effect,
-    in their errors, and `tests` the number of these statistics, from so many `blocks`.
+    treated alike. `amounts` are the statistics that show whether there is an effect, with their
+    `noise`, from so many `blocks`: the estimates of the further columns of an alternative (nan for
+    those that are not in it), or else how far the parameters move.
     """
 
     name: str
     moved: Array
     errors: Array
     apart: Array
-    largest: float
-    tests: int
+    amounts: Array
+    noise: Array
     blocks: int
+
+    @cached_property
+    def ratios(self) -> Array:
+        """The amounts in units of their noise; 0 where there is none."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(np.nan_to_num(np.abs(self.amounts) / self.noise, posinf=0.0))
+
+    @property
+    def largest(self) -> float:
+        """The largest of the ratios."""
+        return float(np.max(self.ratios, initial=0.0))
+
+    @property
+    def tests(self) -> int:
+        """The number of amounts that were tested."""
+        return int(np.count_nonzero(~np.isnan(self.amounts)))
+
+    def threshold(self, level: float = CERTAIN) -> float:
+        """The ratio that noise alone exceeds with this probability in any of the tests."""
+        return quantile(1.0 - 0.5 * level / max(self.tests, 1), self.blocks - 1)
 
     def significant(self, level: float = CERTAIN) -> bool:
         """Whether noise would have such an effect with less than this probability."""
-        point = quantile(1.0 - 0.5 * level / max(self.tests, 1), self.blocks - 1)
-        return bool(self.largest > point)
+        return self.largest > self.threshold(level)
 
     @property
     def counts(self) -> bool:
@@ -83,7 +104,7 @@ class Effect:
 def of_low_pass(moved: Array) -> Effect:
     """The effect (parameters) of a low-pass for a delay, or the reverse, whose size is known."""
     none = np.zeros_like(moved)
-    return Effect(LOW_PASS, moved, none, moved, largest=0.0, tests=1, blocks=2)
+    return Effect(LOW_PASS, moved, none, moved, amounts=none, noise=none, blocks=2)
 
 
 @dataclass(frozen=True)
@@ -160,7 +181,7 @@ class Trial:
         same = [(self.rows.scales, self.plain)]
         found = self.beside(*self.beyond, self.plain, self.plain)
         if solved:
-            found.append(self.effect(REVERSALS, self.plain, self.plain, solved, columns=False))
+            found.append(self.effect(REVERSALS, self.plain, self.plain, solved))
             same.insert(0, (away, solved))
         return (*found, *self.signals(self.plain, same))
 
@@ -196,7 +217,8 @@ class Trial:
             new = products.independent(columns)
             solved = products.solved(new) if new else None
             if solved:
-                found.append(self.effect(name, plain, same, solved, columns=True))
+                tested = [new.index(c) if c in new else None for c in columns]
+                found.append(self.effect(name, plain, same, solved, tested))
         return found
 
     def signals(self, plain: Solved, same: list[tuple[Array, Solved]]) -> list[Effect]:
@@ -211,27 +233,32 @@ class Trial:
         for scales, without in same:
             products = self._of(smooth.A, scales, smooth.centres)
             if parallel := products.solved([]):
-                found = self.effect(PARALLEL, plain, without, parallel, columns=False)
+                found = self.effect(PARALLEL, plain, without, parallel)
                 return [found, *self.beside(products, smooth.places, plain, parallel)]
         return []
 
     def effect(
-        self, name: str, plain: Solved, same: Solved, other: Solved, *, columns: bool
+        self,
+        name: str,
+        plain: Solved,
+        same: Solved,
+        other: Solved,
+        tested: Sequence[int | None] | None = None,
     ) -> Effect:
         """The effect of `other`, compared with the plain fit and with one on the same rows.
 
-        `columns`: what is tested are the parameters of the further columns.
+        What is `tested` are these of its further columns (None for one that it has not), or else
+        how far the parameters move.
         """
         own, given = self.own, len(plain.whole)
         moved = other.whole[:own] - plain.whole[:own]
         errors = jackknifed(other.deviations[:, :own] - plain.deviations[:, :own])
         apart = other.whole[:own] - same.whole[:own]
-        if columns:
-            tested, noise = other.whole[given:], jackknifed(other.deviations[:, given:])
+        if tested is None:
+            amounts, noise = apart, jackknifed(other.deviations[:, :own] - same.deviations[:, :own])
         else:
-            tested = apart
-            noise = jackknifed(other.deviations[:, :own] - same.deviations[:, :own])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratios = np.abs(tested) / noise
-        largest = float(np.max(np.nan_to_num(ratios, nan=0.0, posinf=0.0), initial=0.0))
-        return Effect(name, moved, errors, apart, largest, len(tested), self.count)
+            amounts, noise = np.full((2, len(tested)), np.nan)
+            there = [k for k, column in enumerate(tested) if column is not None]
+            at = [given + column for column in tested if column is not None]
+            amounts[there], noise[there] = other.whole[at], jackknifed(other.deviations[:, at])
+        return Effect(name, moved, errors, apart, amounts, noise, self.count)

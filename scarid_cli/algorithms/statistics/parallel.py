@@ -17,12 +17,13 @@ from scarid_cli.algorithms.regression.rows import Rows, delay_column, runs
 from scarid_cli.algorithms.statistics.alternatives import Model, diagonal, hann
 from scarid_cli.algorithms.statistics.positions import (
     Sensitivities,
+    eccentric_columns,
     elastic_columns,
-    encoder_columns,
+    zero_columns,
 )
 from scarid_cli.arrays import Array, Numbers
 
-SIGNALS, ENCODERS, ELASTICITY = "signals", "encoders", "elasticity"
+SIGNALS, ZEROS, ENCODERS, ELASTICITY = "signals", "zeros", "encoders", "elasticity"
 STEP = 0.025  # s between the rows that are kept: the window passes hardly anything above 10 Hz
 EDGE = 4  # samples at both ends of a run where the differences are not central
 
@@ -69,8 +70,11 @@ def _places(sizes: dict[str, int]) -> Iterator[tuple[str, list[int]]]:
     """The places of the columns of each alternative, whose names and sizes are in this order."""
     start = 0
     for name, size in sizes.items():
-        if name in (SIGNALS, ENCODERS, ELASTICITY):
-            yield name, list(range(start, start + size))
+        own = list(range(start, start + size))
+        if name in (SIGNALS, ZEROS, ELASTICITY):
+            yield name, own
+        elif name == ENCODERS:  # which may have another zero as well
+            yield name, [*range(start - size // 2, start), *own]
         start += size
 
 
@@ -127,7 +131,8 @@ def _columns(
     return {
         "W": window.passed(W),
         SIGNALS: window.passed(np.concatenate(signals, axis=2)),
-        ENCODERS: window.passed(encoder_columns(model, sensitivities, motion)),
+        ZEROS: window.passed(zero_columns(sensitivities)),
+        ENCODERS: window.passed(eccentric_columns(model, sensitivities, motion)),
         ELASTICITY: window.passed(elastic_columns(sensitivities, torque)),
         "y": y,
     }

@@ -4,15 +4,14 @@ A position that is off by a small e(t) changes the torques of all joints by
 
     (dtau/dq) e + (dtau/d(dq)) de/dt + (dtau/d(ddq)) d2e/dt2
 
-which is linear in the size of the error: a column for the regression. Errors of an encoder are an
-offset of its zero and an eccentricity, with the sine and the cosine of the position of a revolute
-joint. A transmission behind an encoder on the motor yields by the torque that it carries, divided
-by its stiffness.
+which is linear in the size of the error: a column for the regression. Errors of an encoder are
+another zero and, of a revolute joint, an eccentricity, with the sine and the cosine of the
+position. A transmission behind an encoder on the motor yields by the torque that it carries,
+divided by its stiffness.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +20,7 @@ from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.arrays import Array
 
 SMALL = 1e-4  # of the motion, or rad and m: by which it is moved for the derivatives
+ROUNDING = 1e-12  # of the largest torque: a smaller change is none
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,14 @@ class Sensitivities:
     def of(cls, model: Model, theta: Array, motion: Array) -> Sensitivities:
         """At a motion (3, joints, samples): positions, velocities and accelerations."""
         before, found = model.link_torques(motion, theta), []
+        least = ROUNDING * np.max(np.abs(before), initial=0.0)
         for joint in range(motion.shape[1]):
             for order in range(3):
                 size = SMALL * max(1.0, float(np.max(np.abs(motion[order, joint]), initial=0.0)))
                 moved = motion.copy()
                 moved[order, joint] += size
-                found.append((model.link_torques(moved, theta) - before) / size)
+                change = model.link_torques(moved, theta) - before
+                found.append(change / size if np.max(np.abs(change)) > least else 0.0 * change)
         return cls(np.array(found).reshape(-1, 3, *before.shape))
 
     def column(self, joint: int, error: Array) -> Array:
@@ -49,27 +51,28 @@ class Sensitivities:
         return np.asarray(np.einsum("osj,os->sj", self.values[joint], error))
 
 
-def encoder_columns(model: Model, sensitivities: Sensitivities, motion: Array) -> Array:
-    """The columns (samples, joints, columns) of offsets and eccentricities of all encoders.
+def zero_columns(sensitivities: Sensitivities) -> Array:
+    """The columns (samples, joints, joints) of another zero of each joint."""
+    return np.moveaxis(sensitivities.values[:, 0], 0, 2)
 
-    motion: as that of the sensitivities.
+
+def eccentric_columns(model: Model, sensitivities: Sensitivities, motion: Array) -> Array:
+    """The columns (samples, joints, 2 joints) of the sine, then the cosine, of each position.
+
+    They are 0 for prismatic joints. motion: as that of the sensitivities.
     """
-    columns = [
-        sensitivities.column(k, error)
-        for k, joint in enumerate(model.robot.joints)
-        if joint.unit == "rad"
-        for error in _errors(*motion[:, k])
-    ]
-    samples, joints = motion.shape[2], motion.shape[1]
-    return np.stack(columns, axis=2) if columns else np.zeros((samples, joints, 0))
-
-
-def _errors(q: Array, dq: Array, ddq: Array) -> Iterator[Array]:
-    """An offset, the sine and the cosine of q, with their derivatives (3, samples)."""
+    turns = [joint.unit == "rad" for joint in model.robot.joints]
+    q, dq, ddq = motion
     sine, cosine = np.sin(q), np.cos(q)
-    yield np.stack((np.ones_like(q), np.zeros_like(q), np.zeros_like(q)))
-    yield np.stack((sine, cosine * dq, cosine * ddq - sine * dq**2))
-    yield np.stack((cosine, -sine * dq, -sine * ddq - cosine * dq**2))
+    columns = [
+        sensitivities.column(k, turning * error[:, k])
+        for error in (
+            np.stack((sine, cosine * dq, cosine * ddq - sine * dq**2)),
+            np.stack((cosine, -sine * dq, -sine * ddq - cosine * dq**2)),
+        )
+        for k, turning in enumerate(turns)
+    ]
+    return np.stack(columns, axis=2)
 
 
 def elastic_columns(sensitivities: Sensitivities, torque: Array) -> Array:

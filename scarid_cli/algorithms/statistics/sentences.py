@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
     CURVATURE,
@@ -16,29 +17,36 @@ from scarid_cli.algorithms.statistics.alternatives import (
     SPRING,
     STRIBECK,
     TILT,
+    tilted,
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import CERTAIN, REVERSALS, Effect
-from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS
+from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, ZEROS
 from scarid_cli.arrays import Array, Marks
 
 NAMED = 2  # estimates whose change is written out
 ADVICE = {
-    OFFSET: "the torque has an offset that the model lacks (add the term offset to the robot)",
-    ASYMMETRY: "friction differs between the two directions (add the terms viscous-forward and "
-    "viscous-backward to the robot)",
-    STRIBECK: "friction decreases with speed (add Stribeck friction with --estimator separable)",
-    CURVATURE: "friction is not the sum of Coulomb and viscous friction (try Stribeck friction "
-    "with --estimator separable)",
-    LOAD: "friction grows with the torque that a joint transmits, for which there is no term",
-    SPRING: "something pulls on a joint as a spring or a cable does, for which there is no term",
-    SATURATION: "the logged torque is not proportional to the real one, as when a motor saturates",
-    DRIFT: "the torque drifts during the log",
+    OFFSET: "the torque of {joints} has an offset that the model lacks (add the term offset to the "
+    "robot)",
+    ASYMMETRY: "friction of {joints} differs between the two directions (add the terms "
+    "viscous-forward and viscous-backward to the robot)",
+    STRIBECK: "friction of {joints} decreases with speed (add Stribeck friction with --estimator "
+    "separable)",
+    CURVATURE: "friction of {joints} is not the sum of Coulomb and viscous friction (try Stribeck "
+    "friction with --estimator separable)",
+    LOAD: "friction of {joints} grows with the transmitted torque, for which there is no term",
+    SPRING: "something pulls on {joints} as a spring or a cable does, for which there is no term",
+    SATURATION: "the logged torque of {joints} is not proportional to the real one, as when a "
+    "motor saturates",
+    DRIFT: "the torque of {joints} drifts during the log",
     TILT: "gravity acts in another direction than described, as on a tilted base (state gravity = "
-    "[x, y, z] in the TOML file of the robot)",
-    ENCODERS: "a position has an error that depends on the angle (an offset of the zero, or an "
-    "eccentric encoder)",
-    ELASTICITY: "a transmission is elastic (a gear or a belt between encoder and link)",
+    "{gravity} in the TOML file of the robot)",
+    ZEROS: "where the log has a position of 0, {zeros} (state it as `zero` in the TOML file of the "
+    "robot)",
+    ENCODERS: "the position of {joints} has an error that depends on the angle, as of an eccentric "
+    "encoder",
+    ELASTICITY: "the transmission of {joints} is elastic (a gear or a belt between encoder and "
+    "link)",
     REVERSALS: "friction near reversals differs from the model (--drop-slow leaves more of the "
     "slow rows out)",
 }
@@ -68,10 +76,12 @@ def errors_in(size: float) -> str:
     return f"{size:.2g} standard errors" if size < 1000.0 else "over 1000 standard errors"
 
 
-def notes_of(names: Sequence[str], diagnostics: Diagnostics) -> list[str]:
+def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> list[str]:
     """What the model lacks most clearly, and the parameters whose intervals are wider for it.
 
-    With so many alternatives, one is significant by chance more often than a single one would be.
+    It is the alternative that noise explains least, not the one that moves the estimates most: many
+    move them where one of them is true. With so many alternatives, one is significant by chance
+    more often than a single one would be.
     """
     level = CERTAIN / max(1, len(diagnostics.effects))
     scatter = diagnostics.scatter[: len(names)]
@@ -83,11 +93,37 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics) -> list[str]:
     ]
     if not found:
         return []
-    best = max(found, key=lambda effect: float(np.max(np.abs(effect.apart) / scatter)))
+    best = max(found, key=lambda effect: effect.largest / effect.threshold(level))
     wide = [name for name, x in zip(names, _wide(best, least), strict=True) if x]
     allow = "interval" if len(wide) == 1 else "intervals"
     verb = "allows" if len(wide) == 1 else "allow"
-    return [f"{ADVICE[best.name]}; the {allow} of {listed(wide)} {verb} for it"]
+    advice = ADVICE[best.name].format_map(_amounts(best, robot, best.threshold(level)))
+    return [f"{advice}; the {allow} of {listed(wide)} {verb} for it"]
+
+
+def _amounts(effect: Effect, robot: Robot, threshold: float) -> dict[str, str]:
+    """What the advice on an alternative names: the joints of it, its zeros or its gravity."""
+    if effect.name == TILT and robot.body:
+        return {"gravity": _vector(tilted(np.array(robot.body.gravity), effect.amounts))}
+    count = len(robot.joints)
+    found = sorted({k % count for k in np.flatnonzero(effect.ratios > threshold).tolist()})
+    joint = "joint" if len(found) == 1 else "joints"
+    texts = {"joints": f"{joint} {listed([str(j + 1) for j in found])}" if found else ""}
+    if effect.name == ZEROS:
+        texts["zeros"] = listed([f"joint {j + 1} is at {_zero(effect, robot, j)}" for j in found])
+    return texts
+
+
+def _zero(effect: Effect, robot: Robot, joint: int) -> str:
+    """`-0.102 +- 0.0018 rad`."""
+    error = f"{effect.noise[joint]:.2g}"
+    return f"{effect.amounts[joint]:.3g} +- {error} {robot.joints[joint].unit}"
+
+
+def _vector(values: Array) -> str:
+    """`[0.49, 0, -9.8]`, with what is less than a thousandth of the largest as 0."""
+    least = 1e-3 * float(np.max(np.abs(values)))
+    return f"[{', '.join(f'{x:.3g}' if abs(x) > least else '0' for x in values.tolist())}]"
 
 
 def _wide(effect: Effect, least: Array) -> Marks:

@@ -104,7 +104,8 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     ]
     if wrong and evidence.unexplained:
         wrong = [evidence.unexplained, *wrong]
-    notes = [*_inertia_unknown(evidence), *notes_of(evidence.names, evidence.diagnostics)]
+    notes = notes_of(evidence.names, evidence.diagnostics, robot)
+    notes = [*_inertia_unknown(evidence), *notes]
     return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes), bool(bias))
 
 
