@@ -40,6 +40,17 @@ def positions_times(*factors: float) -> Callable[[Log], Log]:
     return lambda log: replace(log, q=np.array(factors)[:, None] * log.q)
 
 
+def turned(joint: int, angle: float) -> Callable[[Log], Log]:
+    """The zero of a joint is so far [rad] from that of the description."""
+
+    def spoil(log: Log) -> Log:
+        q = log.q.copy()
+        q[joint - 1] += angle
+        return replace(log, q=q)
+
+    return spoil
+
+
 def torques_swapped(one: int, two: int) -> Callable[[Log], Log]:
     return lambda log: replace(log, tau=log.tau[_order(log, one, two)])
 
@@ -188,6 +199,12 @@ SPOILED = {
     ),
     "torques 2 and 3 of 6 exchanged": Spoiled(
         "ur10", torques_swapped(2, 3), "order of joints", "torques of joints 2, 3 exchanged"
+    ),
+    "zero of joint 1 a quarter turn away": Spoiled(
+        "pendulum", turned(1, 0.5 * np.pi), "zeros", "joint 1 at -90 degrees"
+    ),
+    "zero of joint 2 of 6 a half turn away": Spoiled(
+        "ur10", turned(2, np.pi), "zeros", "joint 2 at 180 degrees"
     ),
     "torque clipped": Spoiled("scara", clipped(0.6), "saturation", "torque of joint 1 stays"),
     "every fourth row read": Spoiled("scara", held(4), "held samples", "with all values"),

@@ -10,10 +10,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from scarid_cli.algorithms.checks import clock, fit, movement, units, values, wiring
+from scarid_cli.algorithms.changes.wiring import Wiring
+from scarid_cli.algorithms.checks import clock, fit, mounting, movement, units, values, wiring
 from scarid_cli.algorithms.checks.finding import OK, Finding, failed, several
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.motion import Motion
+from scarid_cli.algorithms.checks.search import Explained
 from scarid_cli.algorithms.robots.description import Robot
 
 FEWEST = 2  # rows: one has no rate
@@ -75,9 +77,14 @@ def _explained(log: Log, robot: Robot, motion: Motion) -> Iterator[Finding]:
         figure = "no row of some joint is away from reversals and standstill"
         yield failed("model", figure, "give a longer log in which every joint moves")
         return
-    found = wiring.wired(robot, samples)
+    found, mounted = wiring.wired(robot, samples), mounting.mounted(robot, samples)
+    if mounting.findings(mounted.case) and mounted.fit.misfit < found.fit.misfit:
+        yield from mounting.findings(mounted.case)
+        robot = mounted.case.of(robot)
+        motion = motion.mounted(np.array(mounted.case.signs), np.array(mounted.case.turns))
+        found = Explained(Wiring.same(len(robot.joints)), mounted.fit)
     yield from wiring.findings(found)
-    seconds, error, samples = fit.aligned(robot, motion, found.wiring)
+    seconds, error, samples = fit.aligned(robot, motion, found.case)
     yield fit.delay(seconds, error, motion)
     findings, ratios = fit.model(robot, samples)
     yield units.torques(log, robot, ratios)

@@ -62,6 +62,14 @@ class Motion:
         scaled = (Segment(factors[:, None] * s.q, s.tau, factors * s.noise) for s in self.segments)
         return replace(self, segments=tuple(scaled))
 
+    def mounted(self, signs: Array, turns: Array) -> Motion:
+        """The motion of axes (joints) with other signs and other zeros [rad]."""
+        moved = (
+            replace(s, q=signs[:, None] * s.q + turns[:, None], tau=signs[:, None] * s.tau)
+            for s in self.segments
+        )
+        return replace(self, segments=tuple(moved))
+
     def delayed(self, rows: int) -> Motion:
         """The motion with the torques of so many rows later."""
         return replace(self, segments=tuple(_delayed(s, rows) for s in self.segments))

@@ -9,89 +9,35 @@ friction tells it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-
-import numpy as np
 
 from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok, warning
 from scarid_cli.algorithms.checks.model import Fit, Samples, fitted
+from scarid_cli.algorithms.checks.search import Explained, searched
 from scarid_cli.algorithms.robots.description import Robot
 
-FALL = 0.5  # of the mean square residual: what a wiring must leave at most to be preferred
 EXPLAINED = 0.02  # of the mean square torque of each joint: exchanged joints leave far more
-UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
-EXACT = 1e-6  # of the mean square torque of each joint: 0.1 % of it, which no sensor shows
-STEPS = 3  # reversals or exchanges that are looked for, one after the other
 
 
-@dataclass(frozen=True)
-class Wired:
-    """A wiring, and the fit of the log with it."""
-
-    wiring: Wiring
-    fit: Fit
-
-
-def wired(robot: Robot, samples: Samples) -> Wired:
+def wired(robot: Robot, samples: Samples) -> Explained[Wiring]:
     """The wiring that explains the log, which is the log's own unless another is far better."""
-    found = _searched(robot, samples, _neighbours, FALL)
-    return _braking(found, lambda wiring: _tried(robot, samples, wiring))
+
+    def fit_of(wiring: Wiring) -> Fit:
+        return fitted(robot, samples.wired(wiring))
+
+    found = searched(Wiring.same(len(robot.joints)), fit_of, _neighbours)
+    return _braking(found, fit_of)
 
 
-def reversed_axes(robot: Robot, samples: Samples) -> list[int]:
-    """The joints (from 1) whose axes point the other way than in the description.
-
-    The position and the torque of each are reversed; all else is taken to be as described. The
-    product of the residuals of all joints has to fall to a half, as the last joints of an arm
-    matter for few of them. There are none if the model then leaves a joint unexplained, nor if
-    nothing is left as described: of a log without noise, rounding could differ by as much.
-    """
-    if _tried(robot, samples, Wiring.same(len(robot.joints))).fit.residuals.max() < EXACT:
-        return []
-    found = _searched(robot, samples, _with_reversed_axes, FALL ** (1.0 / len(robot.joints)))
-    if found.fit.residuals.max() > UNEXPLAINED:
-        return []
-    return [j for j, sign in enumerate(found.wiring.signs[0], start=1) if sign < 0]
-
-
-def _tried(robot: Robot, samples: Samples, wiring: Wiring) -> Wired:
-    return Wired(wiring, fitted(robot, samples.wired(wiring)))
-
-
-def _searched(
-    robot: Robot, samples: Samples, neighbours: Callable[[Wired], list[Wiring]], fall: float
-) -> Wired:
-    """The wiring that leaves far less of the torques than all that come before it, if there is one.
-
-    `neighbours` are the wirings that are tried from one to the next, and `fall` is what one must
-    leave at most of the mean square residual.
-    """
-    found = _tried(robot, samples, Wiring.same(len(robot.joints)))
-    for _ in range(STEPS):
-        others = [_tried(robot, samples, wiring) for wiring in neighbours(found)]
-        least = min(other.fit.misfit for other in others)
-        if least > found.fit.misfit + np.log(fall):
-            break
-        alike = [other for other in others if other.fit.misfit < least - np.log(fall)]
-        found = min(alike, key=lambda other: (len(other.fit.driving), other.fit.misfit))
-    return found
-
-
-def _with_reversed_axes(found: Wired) -> list[Wiring]:
-    joints = range(len(found.fit.powers))
-    return [found.wiring.reversed(0, j).reversed(1, j) for j in joints]
-
-
-def _neighbours(found: Wired) -> list[Wiring]:
+def _neighbours(found: Explained[Wiring]) -> list[Wiring]:
     """The wirings that are tried next: only reversals if the model explains the torques."""
-    others = list(found.wiring.neighbours())
+    others = list(found.case.neighbours())
     if found.fit.residuals.max() >= EXPLAINED:
         return others
-    return [other for other in others if other.places == found.wiring.places]
+    return [other for other in others if other.places == found.case.places]
 
 
-def _braking(found: Wired, tried: Callable[[Wiring], Wired]) -> Wired:
+def _braking(found: Explained[Wiring], fit_of: Callable[[Wiring], Fit]) -> Explained[Wiring]:
     """The wiring with all torques reversed, if friction brakes more joints then.
 
     Single joints are not reversed for their friction alone: the friction of a joint that hardly has
@@ -99,20 +45,20 @@ def _braking(found: Wired, tried: Callable[[Wiring], Wired]) -> Wired:
     """
     if not found.fit.driving:
         return found
-    wiring = found.wiring
+    wiring = found.case
     for joint in range(len(found.fit.powers)):
         wiring = wiring.reversed(1, joint)
-    other = tried(wiring)
+    other = Explained(wiring, fit_of(wiring))
     return other if len(other.fit.driving) < len(found.fit.driving) else found
 
 
-def findings(found: Wired) -> list[Finding]:
+def findings(found: Explained[Wiring]) -> list[Finding]:
     """Findings on the signs of torques and positions, and on the order of the joints."""
-    return [_signs(found), _order(found.wiring)]
+    return [_signs(found), _order(found.case)]
 
 
-def _signs(found: Wired) -> Finding:
-    positions, torques = ([j for j, s in enumerate(k) if s < 0] for k in found.wiring.signs)
+def _signs(found: Explained[Wiring]) -> Finding:
+    positions, torques = ([j for j, s in enumerate(k) if s < 0] for k in found.case.signs)
     if len(torques) == len(found.fit.powers) and not positions:
         figure = "the friction of every joint would drive it"
         return failed("signs", figure, "the torques' sign seems reversed: multiply all by -1")

@@ -1,0 +1,127 @@
+"""Axes, zeros and gravity that differ from the description, without knowing the parameters.
+
+The zeros of a controller are often a quarter or half turn away from those of a URDF, an axis may
+point the other way, and a robot may hang from the ceiling. Each of these is fitted to the log, and
+one that leaves far less of the torques unexplained is preferred.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import degrees, pi
+
+import numpy as np
+
+from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text
+from scarid_cli.algorithms.checks.model import Fit, Samples, fitted
+from scarid_cli.algorithms.checks.search import FALL, Explained, searched
+from scarid_cli.algorithms.robots.description import Robot
+
+UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
+EXACT = 1e-6  # of the mean square torque of each joint: 0.1 % of it, which no sensor shows
+TURNED = 0.003  # of the mean square torque of a joint: what a wrong zero or gravity leaves of one
+TURNS = (0.5 * pi, -0.5 * pi, pi)  # rad
+
+
+@dataclass(frozen=True)
+class Mounting:
+    """How a robot differs from its description.
+
+    `signs` (joints) are -1 for an axis that points the other way. `turns` (joints) [rad] are the
+    positions of the joints where the log has 0. `gravity` [m/s2] is None if it is as described.
+    """
+
+    signs: tuple[float, ...]
+    turns: tuple[float, ...]
+    gravity: tuple[float, ...] | None = None
+
+    @classmethod
+    def described(cls, joints: int) -> Mounting:
+        return cls((1.0,) * joints, (0.0,) * joints)
+
+    def of(self, robot: Robot) -> Robot:
+        """The robot in this gravity."""
+        if not (self.gravity and robot.body):
+            return robot
+        return replace(robot, body=replace(robot.body, gravity=self.gravity))
+
+    def fitted(self, robot: Robot, samples: Samples) -> Fit:
+        """The fit of a log of a robot that is mounted so."""
+        motion = samples.motion * np.array(self.signs)[:, None]
+        motion[0] += np.array(self.turns)[:, None]
+        return fitted(self.of(robot), replace(samples, motion=motion))
+
+    def reversed(self) -> Iterator[Mounting]:
+        """One axis more, or less, points the other way."""
+        for joint, sign in enumerate(self.signs):
+            yield replace(self, signs=_with(self.signs, joint, -sign))
+
+    def turned(self, robot: Robot) -> Iterator[Mounting]:
+        """One joint has another zero, or gravity acts along another axis of the base."""
+        for joint, described in enumerate(robot.joints):
+            if described.unit == "rad":
+                for turn in TURNS:
+                    yield replace(self, turns=_with(self.turns, joint, turn))
+        if robot.body and any(robot.body.gravity):
+            size = float(np.linalg.norm(robot.body.gravity))
+            for axis in range(3):
+                for one in (size, -size):
+                    yield replace(self, gravity=_with((0.0, 0.0, 0.0), axis, one))
+
+
+def _with(values: tuple[float, ...], place: int, value: float) -> tuple[float, ...]:
+    return (*values[:place], value, *values[place + 1 :])
+
+
+def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
+    """How the robot is mounted: as described, unless the model fits far better otherwise.
+
+    For an axis, the product of the residuals of all joints has to fall to a half, as the last
+    joints of an arm matter for few of them. Another zero or gravity changes the torques of many
+    joints, and must halve each residual on average. It is tried where the model leaves what a wrong
+    one would leave. The robot is as described if all else leaves a joint unexplained, too, and if
+    nothing is left as described: of a log without noise, rounding could differ by as much.
+    """
+    joints = len(robot.joints)
+    start = Mounting.described(joints)
+
+    def fit_of(case: Mounting) -> Fit:
+        return case.fitted(robot, samples)
+
+    def reversed_axes(found: Explained[Mounting]) -> list[Mounting]:
+        return list(found.case.reversed())
+
+    def all_else(found: Explained[Mounting]) -> list[Mounting]:
+        return [*found.case.reversed(), *found.case.turned(robot)]
+
+    as_described = Explained(start, fit_of(start))
+    left = as_described.fit.residuals.max()
+    if left < EXACT:
+        return as_described
+    found = searched(start, fit_of, reversed_axes, FALL ** (1.0 / joints))
+    if left > TURNED:
+        other = searched(start, fit_of, all_else)
+        found = min(found, other, key=lambda one: one.fit.misfit)
+    return as_described if found.fit.residuals.max() > UNEXPLAINED else found
+
+
+def findings(mounting: Mounting) -> list[Finding]:
+    """What differs from the description; none if nothing does."""
+    better, found = "the model fits far better with", []
+    if axes := [j for j, sign in enumerate(mounting.signs, start=1) if sign < 0]:
+        figure = f"{better} the position and the torque of {joints_text(axes)} reversed"
+        advice = "does the axis point the other way than in the description?"
+        found.append(failed("axes", figure, advice))
+    turned = [(j, degrees(turn)) for j, turn in enumerate(mounting.turns, start=1) if turn]
+    if turned:
+        zeros = " and ".join(f"joint {j} at {turn:.0f} degrees" for j, turn in turned)
+        figure = f"{better} {zeros} where the log has a position of 0"
+        advice = "is this its zero? state it as `zero` [rad] in the TOML file of the robot"
+        found.append(failed("zeros", figure, advice))
+    if mounting.gravity:
+        vector = ", ".join(f"{x:.3g}" for x in mounting.gravity)
+        figure = f"{better} gravity = [{vector}] in the frame of the base"
+        advice = "is the base on a wall or a ceiling? state gravity in the TOML file of the robot"
+        found.append(failed("gravity", figure, advice))
+    return found
