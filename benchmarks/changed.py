@@ -49,6 +49,8 @@ def second(kind: str, made: Arm, seed: int, joint: int, rng: np.random.Generator
         return log(made, rubbed(made, 4.0 / 3.0, joint), at)
     if kind == "friction of all":
         return log(made, rubbed(made, 4.0 / 3.0), at)
+    if kind == "zero":
+        return log(made, made.theta, at, zeros=0.1 * (np.arange(1, JOINTS + 1) == joint))
     if kind == "delay":
         return log(made, made.theta, at, delay=3)
     if kind == "reversed":
@@ -63,6 +65,7 @@ KINDS = {
     "friction": "friction of one joint risen by a third",
     "friction of all": "friction of all joints risen by a third",
     "delay": "torques 15 ms later",
+    "zero": "zero of one of joints 2 to 5 off by 0.1 rad",
     "reversed": "torque of one joint reversed",
 }
 
@@ -89,11 +92,12 @@ def verdicts(arms: range, seed: int) -> list[tuple[str, str]]:
     model = identified(before, made.robot)
     found: list[tuple[str, str]] = []
     for kind in KINDS:
-        motion = differentiated(second(kind, made, seed, joint, rng))
+        one = 2 + joint % (JOINTS - 2) if kind == "zero" else joint
+        motion = differentiated(second(kind, made, seed, one, rng))
         result = validate(
             motion, model, treatment=TREATMENT, before=known(before, made.robot, zeros)
         )
-        found.append((kind, called(kind, joint, result.meta.extra["change"])))
+        found.append((kind, called(kind, one, result.meta.extra["change"])))
     after = estimated(log(made, made.theta, (seed, 1)))
     facts = compare([before, after])[0].meta.extra["comparisons"][0]
     return [*found, ("compare", "differ" if facts["differ"] else "nothing")]
@@ -104,6 +108,7 @@ def called(kind: str, joint: int, change: dict[str, Any]) -> str:
     joints = {
         "motor constant": (joint,),
         "friction": (joint,),
+        "zero": (joint,),
         "friction of all": range(1, JOINTS + 1),
     }
     expected = [("friction" if kind == "friction of all" else kind, [*joints.get(kind, ())])]

@@ -124,15 +124,25 @@ def noise(rng: np.random.Generator, samples: int) -> Array:
 
 
 def log(
-    made: Arm, theta: Array, seed: tuple[int, ...], gains: Array | None = None, delay: int = 0
+    made: Arm,
+    theta: Array,
+    seed: tuple[int, ...],
+    gains: Array | None = None,
+    delay: int = 0,
+    zeros: Array | None = None,
 ) -> Table:
-    """A measurement: the torques are those of theta times the gains, and late by some samples."""
+    """A measurement: the torques are those of theta times the gains, and late by some samples.
+
+    The positions are too large by the zeros [rad].
+    """
     rng = np.random.default_rng(list(seed))
     q, dq, ddq = motion(rng)
     tau = made.robot.torques(made.robot.regressor(q, dq, ddq), theta)
     tau = tau + made.noise[:, None] * noise(rng, q.shape[1])
     if gains is not None:
         tau = tau * gains[:, None]
+    if zeros is not None:
+        q = q + zeros[:, None]
     q = np.round(q / ENCODER) * ENCODER
     if delay:
         q, tau = q[:, delay:], tau[:, :-delay]

@@ -61,8 +61,11 @@ def _evidence(x: Any) -> bool:
     parts = {"columns": _list(text), "score": _list(number), "deviations": _list(_size)}
     if not _of({**parts, "information": _list(number), "blocks": _count})(x):
         return False
-    q = len(x["columns"]) + 1 + 2 * len(x["deviations"])
-    return len(x["score"]) == q and len(x["information"]) == q * (q + 1) // 2
+    q, alone = len(x["score"]), len(x["columns"]) + 1
+    joints = len(x["deviations"])
+    # Older tables have nothing about the zeros of the joints.
+    known = q in (alone + 2 * joints, alone + 3 * joints)
+    return known and len(x["information"]) == q * (q + 1) // 2
 
 
 def _rows_of_joints(x: Any) -> bool:

@@ -13,13 +13,13 @@ import numpy as np
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence, inverse, torque_shares
 from scarid_cli.algorithms.changes.explanation import change
-from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, hypotheses
-from scarid_cli.algorithms.changes.likelihood import Difference
+from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, ZERO, hypotheses
 from scarid_cli.algorithms.changes.wiring import rewired
 from scarid_cli.algorithms.changes.wording import Verdict, of_change, of_wiring
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.verdict import VAGUE
 from scarid_cli.arrays import Array, median
@@ -52,7 +52,7 @@ class Known:
             )
         return (
             "CSV does not keep the residuals of the identification, so the verdict tests neither "
-            "the delay nor the offsets and assumes a similar log: `identify -o FILE.parquet`"
+            "the delay nor offsets and zeros, and assumes a similar log: `identify -o FILE.parquet`"
         )
 
     @property
@@ -69,14 +69,14 @@ def known(table: Table, robot: Robot, errors: Array) -> Known:
     p = len(stored["columns"])
     if stored["columns"][: len(names)] != names or len(stored["deviations"]) != joints:
         return Known(None, errors)
-    q = p + 1 + 2 * joints
-    lower = np.zeros((q, q))
-    lower[np.tril_indices(q)] = stored["information"]
+    q, there = p + 1 + 3 * joints, len(stored["score"])  # older tables have nothing about the zeros
+    lower, score = np.zeros((q, q)), np.zeros(q)
+    lower[np.tril_indices(there)], score[:there] = stored["information"], stored["score"]
     kept = np.array([*range(len(names)), *range(p, q)])
     information = (lower + np.tril(lower, -1).T)[np.ix_(kept, kept)]
     found = LogEvidence(
         information,
-        np.array(stored["score"])[kept],
+        score[kept],
         np.array(stored["deviations"]),
         np.zeros((stored["blocks"], len(kept))),
     )
@@ -97,7 +97,8 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
     if steps:
         return of_wiring(steps)
     rows = in_step(rows, theta, model.delay, low_pass=model.low_pass)
-    now = evidence(rows, theta)
+    links = Model(robot, list(range(len(theta))))
+    now = evidence(rows, theta, model=links)
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)
     ratios = None
@@ -105,12 +106,12 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = np.nan_to_num(now.deviations / before.evidence.deviations, posinf=1.0)
     else:
-        possible = [h for h in possible if h.kind not in (DELAY, OFFSET)]
+        possible = [h for h in possible if h.kind not in (DELAY, OFFSET, ZERO)]
     values = dict(zip(robot.names, theta.tolist(), strict=True))
-    found = change(Difference.between(first, now), possible)
+    found = change(first, now, evidence(rows, theta, model=links, zeros=True), possible)
     slight = None
     if found.changed:
-        shares = torque_shares(rows, theta, found.amounts)
+        shares = torque_shares(rows, theta, found.amounts, links)
         within = np.all(shares <= np.minimum(before.torques, VAGUE))
         slight = float(shares.max()) if within else None
     return of_change(found, values, ratios, slight)
@@ -119,7 +120,7 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
 def _alike(now: LogEvidence, errors: Array, robot: Robot) -> LogEvidence:
     """LogEvidence of the shape of this log's and of the size that the errors imply.
 
-    It says nothing about the delay and about offsets that are not parameters.
+    It says nothing about the delay, the zeros, and offsets that are not parameters.
     """
     p, joints = len(errors), len(robot.joints)
     own = np.diag(inverse(now.information[:p, :p]))
@@ -127,6 +128,6 @@ def _alike(now: LogEvidence, errors: Array, robot: Robot) -> LogEvidence:
         ratios = own / errors**2
     size = median(ratios[np.isfinite(ratios) & (ratios > 0.0)])
     information = size * now.information
-    unknown = [p, *range(p + 1 + joints, p + 1 + 2 * joints)]
+    unknown = [p, *range(p + 1 + joints, p + 1 + 3 * joints)]
     information[unknown] = information[:, unknown] = 0.0
     return replace(now, information=information, score=np.zeros_like(now.score))

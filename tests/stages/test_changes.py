@@ -26,7 +26,7 @@ from scarid_cli.stages.changes import known
 from scarid_cli.stages.differentiate import matched
 from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.identify import identify
-from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.parameters import EVIDENCE, identified
 from scarid_cli.stages.validate import validate
 
 PERIOD = 0.005
@@ -102,14 +102,41 @@ def test_a_motor_constant_that_is_off(joint: int) -> None:
     assert amount == pytest.approx(0.05, abs=4.0 * error)
 
 
+def test_another_zero_of_a_joint() -> None:
+    """The positions of joint 2 are 0.03 rad too large."""
+    q, tau = LOGS[12]
+    found = change(parameters(), q + 0.03 * np.array([[0.0], [1.0]]), tau)
+    assert (found["verdict"], kinds(found)) == ("changed", [("zero", [2])])
+    (amount,), (error,) = (found["explanations"][0][key].values() for key in ("amounts", "errors"))
+    assert amount == pytest.approx(-0.03, abs=4.0 * error)
+    assert "zero of joint 2 (its positions are 0.03" in found["reason"]
+    assert "rad too large)" in found["reason"]
+
+
+def test_a_table_of_an_earlier_version_says_nothing_about_zeros() -> None:
+    """Its evidence ends with the offsets."""
+    before, gain = parameters(), scaled(1, 1.05)(*LOGS[12])
+    stored = before.meta.extra[EVIDENCE]
+    count = len(stored["score"]) - 2
+    older = {
+        **stored,
+        "score": stored["score"][:count],
+        "information": stored["information"][: count * (count + 1) // 2],
+    }
+    before = replace(
+        before, meta=replace(before.meta, extra={**before.meta.extra, EVIDENCE: older})
+    )
+    assert kinds(change(before, *gain)) == [("motor constant", [1])]
+
+
 def test_the_torque_that_a_change_makes_is_relative_to_that_of_each_joint() -> None:
     rows = rows_of(SCARA, np.random.default_rng(1).standard_normal((4, 2, 50)), np.arange(50), 0.01)
-    theta, changed = SCARA.apriori, np.zeros(8 + 1 + 2 * 2)
+    theta, changed = SCARA.apriori, np.zeros(8 + 1 + 3 * 2)
     changed[3] = 0.2
     torques, moved = rows.W @ theta, rows.W[:, :, 3] * 0.2
     expected = np.sqrt((moved**2).sum(axis=0) / (torques**2).sum(axis=0))
     np.testing.assert_allclose(torque_shares(rows, theta, changed), expected, rtol=1e-9)
-    changed = np.zeros(8 + 1 + 2 * 2)
+    changed = np.zeros(8 + 1 + 3 * 2)
     changed[8 + 1 + 1] = 0.05  # the motor constant of joint 2
     np.testing.assert_allclose(torque_shares(rows, theta, changed), [0.0, 0.05], atol=1e-12)
 

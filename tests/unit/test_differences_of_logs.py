@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence
-from scarid_cli.algorithms.changes.explanation import Change, Explanation, change
+from scarid_cli.algorithms.changes.explanation import Change, Explanation, found_in
 from scarid_cli.algorithms.changes.hypotheses import MOTOR, OFFSET, Hypothesis, hypotheses
 from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
 from scarid_cli.algorithms.robots.reading import load
@@ -56,7 +56,7 @@ def test_what_an_explanation_leaves_is_tested_in_the_other_directions() -> None:
     nothing = np.zeros((6, 6))
     difference = Difference(np.eye(6), gradient, nothing, nothing, freedom=11)
     possible = [Hypothesis(MOTOR, np.eye(6)[:, [i]], ("k",), ("1",), (i + 1,)) for i in range(2)]
-    found = change(difference, possible)
+    found = found_in(difference, possible)
     assert [e.hypothesis.joints for e in found.explanations] == [(1,)]
     assert found.left == pytest.approx(stats.f.sf(np.sum(gradient[1:] ** 2) / 5.0, 5, 11))
 
@@ -85,7 +85,8 @@ def test_another_offset_is_a_constant_torque_of_its_joint_alone(name: str) -> No
     W = robot.regressor(*RNG.standard_normal((3, joints, 20)))
     others = np.zeros((20, joints, 1 + joints))  # the delay and the motor constants
     offsets = np.broadcast_to(np.eye(joints), (20, joints, joints))
-    columns = np.concatenate((W, others, offsets), axis=2)
+    zeros = np.zeros((20, joints, joints))
+    columns = np.concatenate((W, others, offsets, zeros), axis=2)
     found = [h for h in hypotheses(robot) if h.kind == OFFSET]
     torques = np.concatenate([columns @ h.directions for h in found], axis=2)
     assert np.array_equal(torques, offsets)

@@ -1,19 +1,21 @@
 """What a log says about the parameters of a robot, and about all else that may have changed.
 
 Beside the columns of W there are columns for what the parameters cannot express: a delay of all
-torques, the motor constant of each joint, and the offset of each joint. Two logs are compared
+torques, and of each joint the motor constant, the offset and the zero. Two logs are compared
 through their information matrices and scores over all of these columns.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows, delay_column
+from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
+from scarid_cli.algorithms.statistics.positions import Sensitivities, zero_columns
 from scarid_cli.arrays import Array
 
 REFITS = 3  # times that the joints are weighted by their residuals
@@ -30,9 +32,10 @@ class LogEvidence:
     `information` (columns, columns) is W'W with joints weighted by the inverse variances of their
     residuals, which account for autocorrelation; `score` (columns) is W' times the residual,
     weighted alike. The columns are those of W, then the delay [s], then the relative error of the
-    motor constant of each joint, then the offset of each joint [N m or N]. `deviations` (joints)
-    are the standard deviations of the residual after all columns have been fitted, and `scores`
-    (blocks, columns) those of blocks of half a second with this residual.
+    motor constant of each joint, then the offset of each joint [N m or N], then the position of
+    each joint where the log has 0 [rad or m]. `deviations` (joints) are the standard deviations of
+    the residual after all columns, with or without those of the zeros, have been fitted, and
+    `scores` (blocks, columns) those of blocks of half a second with this residual.
     """
 
     information: Array
@@ -45,11 +48,33 @@ class LogEvidence:
         """The number of blocks with samples."""
         return len(self.scores)
 
+    def without_zeros(self) -> LogEvidence:
+        """The evidence about all else, if the zeros of the joints are known."""
+        last = slice(len(self.score) - len(self.deviations), None)
+        information, score, scores = (x.copy() for x in (self.information, self.score, self.scores))
+        information[last] = information[:, last] = score[last] = scores[:, last] = 0.0
+        return replace(self, information=information, score=score, scores=scores)
 
-def evidence(rows: Rows, theta: Array, delay: float = 0.0) -> LogEvidence:
-    """The evidence of the rows of a log, at parameters and a delay [s] of the torques."""
-    products = _products(rows, theta, delay)  # (joints, blocks, columns + 1, columns + 1)
-    whole = products.sum(axis=1)
+
+def evidence(
+    rows: Rows,
+    theta: Array,
+    delay: float = 0.0,
+    *,
+    model: Model | None = None,
+    zeros: bool = False,
+) -> LogEvidence:
+    """The evidence of the rows of a log, at parameters and a delay [s] of the torques.
+
+    Without the `model` of the rows it has nothing about the zeros of the joints. Unless the `zeros`
+    are in question, the residual is that without another zero.
+    """
+    # (joints, blocks, columns + 1, columns + 1)
+    products = _products(rows, theta, delay, _zeros(rows, theta, model))
+    joints, columns = rows.y.shape[1], products.shape[2] - 1
+    first = np.arange(columns if zeros else columns - joints)
+    alone = products[:, :, [*first, columns]][:, :, :, [*first, columns]]
+    whole = alone.sum(axis=1)
     counts = np.maximum(np.count_nonzero(rows.scales, axis=0), 1)
     torque = np.sum((rows.y * (rows.scales > 0.0)) ** 2, axis=0) / counts
     variances = whole[:, -1, -1] / counts
@@ -59,10 +84,11 @@ def evidence(rows: Rows, theta: Array, delay: float = 0.0) -> LogEvidence:
         along = np.append(-solved(weighted[:-1, :-1], weighted[:-1, -1]), 1.0)
         variances = np.einsum("i,jik,k->j", along, whole, along).clip(min=0.0) / counts
     variances = np.maximum(variances, LEAST**2 * torque + TINY)
-    scores = np.einsum("jbik,k->jbi", products[:, :, :-1], along)
-    scores = _without_leverage(scores, np.tensordot(1.0 / variances, products[:, :, :-1, :-1], 1))
-    weights = 1.0 / (variances * _inflations(scores, whole, variances))
-    total = np.tensordot(weights, whole, 1)
+    scores = np.einsum("jbik,k->jbi", products[:, :, :-1, [*first, columns]], along)
+    grams = np.tensordot(1.0 / variances, alone[:, :, :-1, :-1], 1)
+    scores[:, :, first] = _without_leverage(scores[:, :, first], grams)
+    weights = 1.0 / (variances * _inflations(scores[:, :, first], whole, variances))
+    total = np.tensordot(weights, products.sum(axis=1), 1)
     return LogEvidence(
         information=total[:-1, :-1],
         score=total[:-1, -1],
@@ -71,12 +97,12 @@ def evidence(rows: Rows, theta: Array, delay: float = 0.0) -> LogEvidence:
     )
 
 
-def torque_shares(rows: Rows, theta: Array, change: Array) -> Array:
+def torque_shares(rows: Rows, theta: Array, change: Array, model: Model | None = None) -> Array:
     """The rms of what a change of all columns (columns) does to the torque of each joint (joints).
 
     It is relative to the rms of the torque that the parameters predict.
     """
-    products = _products(rows, theta, 0.0).sum(axis=1)[:, :-1, :-1]
+    products = _products(rows, theta, 0.0, _zeros(rows, theta, model)).sum(axis=1)[:, :-1, :-1]
     changes = np.einsum("i,jik,k->j", change, products, change).clip(min=0.0)
     joints = np.arange(len(products))
     torques = products[joints, len(theta) + 1 + joints, len(theta) + 1 + joints]
@@ -139,20 +165,31 @@ def _inflations(scores: Array, whole: Array, variances: Array) -> Array:
     return np.maximum(ratios, 1.0)
 
 
-def _products(rows: Rows, theta: Array, delay: float) -> Array:
+def _zeros(rows: Rows, theta: Array, model: Model | None) -> Array:
+    """The change of the torques (samples, joints, joints) by another zero of each joint."""
+    joints = rows.y.shape[1]
+    if model is None:
+        return np.zeros((rows.samples, joints, joints))
+    return zero_columns(Sensitivities.of(model, theta, rows.motion[:3], orders=1))
+
+
+def _products(rows: Rows, theta: Array, delay: float, zeros: Array) -> Array:
     """A'A of each joint and block, where A = [all columns, residual]."""
     predicted = rows.W @ theta
     column = delay_column(rows, predicted)
     residual = rows.y - predicted - delay * column
     joints, p = rows.y.shape[1], len(theta)
     starts = _blocks(rows)
-    found = np.zeros((joints, len(starts), p + 2 + 2 * joints, p + 2 + 2 * joints))
+    columns = p + 1 + 3 * joints
+    found = np.zeros((joints, len(starts), columns + 1, columns + 1))
+    ones = np.ones(rows.samples)
     for j in range(joints):
         counted = (rows.scales[:, j : j + 1] > 0.0).astype(np.float64)
         narrow = np.column_stack(
-            (rows.W[:, j], column[:, j], predicted[:, j], np.ones(rows.samples), residual[:, j])
+            (rows.W[:, j], column[:, j], predicted[:, j], ones, zeros[:, j], residual[:, j])
         )
-        at = np.array([*range(p + 1), p + 1 + j, p + 1 + joints + j, p + 1 + 2 * joints])
+        own = [p + 1 + j, p + 1 + joints + j]
+        at = np.array([*range(p + 1), *own, *range(columns - joints, columns + 1)])
         narrow *= counted
         for b, (start, stop) in enumerate(starts):
             part = narrow[start:stop]

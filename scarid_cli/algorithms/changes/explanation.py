@@ -7,7 +7,8 @@ from math import exp, log
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.hypotheses import Hypothesis
+from scarid_cli.algorithms.changes.evidence import LogEvidence
+from scarid_cli.algorithms.changes.hypotheses import ZERO, Hypothesis
 from scarid_cli.algorithms.changes.likelihood import (
     Difference,
     Test,
@@ -46,7 +47,8 @@ class Change:
 
     `p_value` is the smallest of all tests, multiplied by their number `tests` (Bonferroni).
     `explained` is the share of the difference that the explanations account for, and `left` the
-    p-value of the rest. `whole` (columns) is the change of all columns that fits best.
+    p-value of the rest. `whole` (columns) is the change of all columns that fits best, and `gain`
+    twice the gain in log-likelihood by the explanations, less a penalty for their amounts.
     """
 
     p_value: float
@@ -55,6 +57,7 @@ class Change:
     explained: float = 0.0
     left: float = 0.0
     whole: tuple[float, ...] = ()
+    gain: float = 0.0
 
     @property
     def amounts(self) -> Array:
@@ -75,11 +78,27 @@ class Change:
         return bool(self.explanations) and enough
 
 
-def change(difference: Difference, possible: list[Hypothesis]) -> Change:
-    """Test all hypotheses, and anything else whatever; then look for explanations."""
+def change(
+    first: LogEvidence, second: LogEvidence, turned: LogEvidence, possible: list[Hypothesis]
+) -> Change:
+    """Test all hypotheses, and anything else whatever; then look for explanations.
+
+    The zeros of the joints are taken to be known, unless another zero explains the difference
+    better: `turned` is the evidence of the second log if its zeros are in question. To leave them
+    open in all tests would hide some changes of motor constants.
+    """
+    known = Difference.between(first.without_zeros(), second.without_zeros())
+    found = found_in(known, [h for h in possible if h.kind != ZERO])
+    other = found_in(Difference.between(first, turned), possible, searches=2)
+    zero = any(e.hypothesis.kind == ZERO for e in other.explanations)
+    return other if zero and other.gain > found.gain else found
+
+
+def found_in(difference: Difference, possible: list[Hypothesis], searches: int = 1) -> Change:
+    """What one of so many searches finds."""
     whole = everything(difference)
     log_ps = [whole.log_p, *(tested(difference, [h]).log_p for h in possible)]
-    log_p = min(min(log_ps) + log(len(log_ps)), 0.0)
+    log_p = min(min(log_ps) + log(searches * len(log_ps)), 0.0)
     if not log_p < log(FALSE_ALARMS):
         return Change(exp(log_p), len(log_ps))
     amounts = tuple(whole.amounts.tolist())
@@ -91,7 +110,8 @@ def change(difference: Difference, possible: list[Hypothesis]) -> Change:
     left = log_tail_f(rest / whole.excess / rank, rank, difference.freedom)
     share = found.beyond_noise / (found.beyond_noise + max(rest - rank * whole.excess, 0.0))
     explanations = _described(chosen, rivals, found)
-    return Change(exp(log_p), len(log_ps), explanations, share, exp(left), amounts)
+    gain = found.raw - found.excess * penalty(difference, found.rank)
+    return Change(exp(log_p), len(log_ps), explanations, share, exp(left), amounts, gain)
 
 
 def _chosen(

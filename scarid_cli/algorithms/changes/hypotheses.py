@@ -32,7 +32,8 @@ FRICTION = (
     CoupledViscous,
     CoupledCoulomb,
 )
-PAYLOAD, DELAY, MOTOR, DRIFT, OFFSET = "payload", "delay", "motor constant", "friction", "offset"
+PAYLOAD, DELAY, MOTOR, DRIFT = "payload", "delay", "motor constant", "friction"
+OFFSET, ZERO = "offset", "zero"
 
 
 @dataclass(frozen=True)
@@ -57,12 +58,13 @@ def hypotheses(robot: Robot) -> list[Hypothesis]:
     found += [_friction(robot, (j,)) for j in joints]
     found += [_friction(robot, tuple(joints))] if len(joints) > 1 else []
     found += [_offset(robot, j) for j in joints]
+    found += [_zero(robot, j) for j in joints]
     return [h for h in found if h.directions.shape[1]]
 
 
 def width(robot: Robot) -> int:
     """The number of all columns."""
-    return len(robot.parameters) + 1 + 2 * len(robot.joints)
+    return len(robot.parameters) + 1 + 3 * len(robot.joints)
 
 
 def _of_parameters(robot: Robot, chosen: list[int]) -> Array:
@@ -128,6 +130,13 @@ def _offset(robot: Robot, joint: int) -> Hypothesis:
     unit = robot.joints[joint - 1].torque_unit
     at = own[0] if own else extra
     return Hypothesis(OFFSET, _single(robot, at), (f"offset {joint}",), (unit,), (joint,))
+
+
+def _zero(robot: Robot, joint: int) -> Hypothesis:
+    """Another zero of the positions of a joint."""
+    at = len(robot.parameters) + 2 * len(robot.joints) + joint
+    unit = robot.joints[joint - 1].unit
+    return Hypothesis(ZERO, _single(robot, at), (f"zero {joint}",), (unit,), (joint,))
 
 
 def _single(robot: Robot, at: int) -> Array:

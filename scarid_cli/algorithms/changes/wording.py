@@ -8,7 +8,14 @@ from typing import Any
 import numpy as np
 
 from scarid_cli.algorithms.changes.explanation import Change, Explanation
-from scarid_cli.algorithms.changes.hypotheses import DELAY, DRIFT, MOTOR, PAYLOAD, Hypothesis
+from scarid_cli.algorithms.changes.hypotheses import (
+    DELAY,
+    DRIFT,
+    MOTOR,
+    PAYLOAD,
+    ZERO,
+    Hypothesis,
+)
 from scarid_cli.algorithms.statistics.sentences import percents
 from scarid_cli.arrays import Array
 
@@ -72,7 +79,9 @@ def of_change(
     if change.complete:
         share = f"explains {100.0 * change.explained:.3g} % of the difference"
         return Verdict(CHANGED, f"{found}; this {share}", facts)
-    reason = "differs in a way that no payload, friction, delay, offset or motor constant explains"
+    reason = (
+        "differs in a way that no payload, friction, delay, offset, zero or motor constant explains"
+    )
     best = f"; most likely {found}, but this explains only {100.0 * change.explained:.2g} %"
     return Verdict(UNEXPLAINED, reason + (best if found else ""), facts)
 
@@ -127,6 +136,10 @@ def _amounts(e: Explanation, values: dict[str, float]) -> str:
         when = "earlier" if e.amounts[0] > 0.0 else "later"
         amount = f"{1e3 * abs(e.amounts[0]):.3g} +- {1e3 * e.errors[0]:.2g} ms"
         return f"torques {amount} {when} than at the identification"
+    if hypothesis.kind == ZERO:
+        size = "large" if e.amounts[0] < 0.0 else "small"
+        amount = f"{abs(e.amounts[0]):.3g} +- {e.errors[0]:.2g} {hypothesis.units[0]}"
+        return f"its positions are {amount} too {size}"
     clarity = np.abs(e.amounts) / np.maximum(e.errors, 1e-300)
     order = np.argsort(-clarity)
     clear = [int(i) for i in order if clarity[i] > CLEAR] or [int(order[0])]

@@ -156,7 +156,7 @@ def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -
     theta = np.zeros(whole.own)
     theta[kept] = estimates
     W = np.ascontiguousarray(whole.rows.W[:, :, : whole.own])
-    return evidence(replace(whole.rows, W=W), theta, delay)
+    return evidence(replace(whole.rows, W=W), theta, delay, model=whole.model)
 
 
 def _problem(

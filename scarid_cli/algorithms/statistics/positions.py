@@ -27,24 +27,27 @@ ROUNDING = 1e-12  # of the largest torque: a smaller change is none
 class Sensitivities:
     """The derivatives of the torques of the links by the motion of each joint.
 
-    `values` (joint, 3, samples, joints): by its position, velocity and acceleration.
+    `values` (joint, orders, samples, joints): by its position, velocity and acceleration.
     """
 
     values: Array
 
     @classmethod
-    def of(cls, model: Model, theta: Array, motion: Array) -> Sensitivities:
-        """At a motion (3, joints, samples): positions, velocities and accelerations."""
+    def of(cls, model: Model, theta: Array, motion: Array, orders: int = 3) -> Sensitivities:
+        """At a motion (3, joints, samples): positions, velocities and accelerations.
+
+        Only the derivatives by the first so many of these are computed.
+        """
         before, found = model.link_torques(motion, theta), []
         least = ROUNDING * np.max(np.abs(before), initial=0.0)
         for joint in range(motion.shape[1]):
-            for order in range(3):
+            for order in range(orders):
                 size = SMALL * max(1.0, float(np.max(np.abs(motion[order, joint]), initial=0.0)))
                 moved = motion.copy()
                 moved[order, joint] += size
                 change = model.link_torques(moved, theta) - before
                 found.append(change / size if np.max(np.abs(change)) > least else 0.0 * change)
-        return cls(np.array(found).reshape(-1, 3, *before.shape))
+        return cls(np.array(found).reshape(-1, orders, *before.shape))
 
     def column(self, joint: int, error: Array) -> Array:
         """The change of the torques (samples, joints) for an error (3, samples) of one joint."""
