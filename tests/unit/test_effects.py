@@ -30,6 +30,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     away_from_reversals,
     torque_columns,
 )
+from scarid_cli.algorithms.statistics.curvature import Form, form
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
 from scarid_cli.algorithms.statistics.parallel import SIGNALS, differences
@@ -63,6 +64,13 @@ def axis(tau: Change | None = None, motion: Change | None = None, seed: int = 0)
     noise = NOISE * np.random.default_rng(seed).standard_normal(exact.shape)
     seen = true if motion is None else motion(true)
     return rows_of(AXIS, np.stack((*seen, torque + noise)), np.arange(exact.shape[1]), H)
+
+
+def test_the_form_of_a_lead_is_open_where_no_row_of_a_joint_counts() -> None:
+    rows = axis()
+    none = replace(rows, scales=np.zeros_like(rows.scales))
+    residual = rows.y - rows.W @ AXIS.apriori
+    assert form(none, rows.y, (residual, residual)) == Form(0.0, 0.0)
 
 
 def forward(rows: Rows) -> Rows:

@@ -56,6 +56,17 @@ def test_a_zero_that_is_a_quarter_turn_away_is_found(name: str, joint: int, degr
     assert finding.text.startswith(told)
 
 
+def test_neighbours_that_are_a_quarter_turn_off_in_opposite_directions_are_found() -> None:
+    """The zero of an upper arm is upright, and the forearm is level: neither alone explains it."""
+    robot = robot_named(ARM)
+    seen = log_of(robot)
+    motion = seen.motion.copy()
+    motion[0, 1] -= 0.5 * np.pi
+    motion[0, 2] += 0.5 * np.pi
+    (finding,) = findings(mounted(robot, replace(seen, motion=motion)).case)
+    assert "joint 2 at 90 degrees and joint 3 at -90 degrees where" in finding.figure
+
+
 def test_a_robot_on_the_ceiling_is_found() -> None:
     robot = robot_named(ARM)
     assert robot.body

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import degrees, pi
 
 import numpy as np
@@ -58,16 +59,28 @@ class Mounting:
             yield replace(self, signs=_with(self.signs, joint, -sign))
 
     def turned(self, robot: Robot) -> Iterator[Mounting]:
-        """One joint has another zero, or gravity acts along another axis of the base."""
-        for joint, described in enumerate(robot.joints):
-            if described.unit == "rad":
+        """A joint has another zero, or gravity acts along another axis of the base."""
+        for joint, one in enumerate(robot.joints):
+            if one.unit == "rad":
                 for turn in TURNS:
                     yield replace(self, turns=_with(self.turns, joint, turn))
         if robot.body and any(robot.body.gravity):
             size = float(np.linalg.norm(robot.body.gravity))
             for axis in range(3):
-                for one in (size, -size):
-                    yield replace(self, gravity=_with((0.0, 0.0, 0.0), axis, one))
+                for along in (size, -size):
+                    yield replace(self, gravity=_with((0.0, 0.0, 0.0), axis, along))
+
+    def folded(self, robot: Robot) -> Iterator[Mounting]:
+        """Two neighbouring joints are a quarter turn off, in opposite directions.
+
+        As where an upper arm is upright at 0, and level in the description, and the forearm is
+        level in both.
+        """
+        for joint, pair in enumerate(pairwise(robot.joints)):
+            if all(one.unit == "rad" for one in pair):
+                for turn in (0.5 * pi, -0.5 * pi):
+                    turns = _with(_with(self.turns, joint, turn), joint + 1, -turn)
+                    yield replace(self, turns=turns)
 
 
 def _with(values: tuple[float, ...], place: int, value: float) -> tuple[float, ...]:
@@ -92,17 +105,22 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
     def reversed_axes(found: Explained[Mounting]) -> list[Mounting]:
         return list(found.case.reversed())
 
-    def all_else(found: Explained[Mounting]) -> list[Mounting]:
+    def turned(found: Explained[Mounting]) -> list[Mounting]:
         return [*found.case.reversed(), *found.case.turned(robot)]
 
-    as_described = Explained(start, fit_of(start))
-    left = as_described.fit.residuals.max()
-    if left < EXACT:
+    def folded(found: Explained[Mounting]) -> list[Mounting]:
+        return [*turned(found), *found.case.folded(robot)]
+
+    found = as_described = Explained(start, fit_of(start))
+    if as_described.fit.residuals.max() < EXACT:
         return as_described
-    found = searched(start, fit_of, reversed_axes, FALL ** (1.0 / joints))
-    if left > TURNED:
-        other = searched(start, fit_of, all_else)
-        found = min(found, other, key=lambda one: one.fit.misfit)
+    searches = ((reversed_axes, FALL ** (1.0 / joints)), (turned, FALL), (folded, FALL))
+    for neighbours, fall in searches:
+        other = searched(start, fit_of, neighbours, fall)
+        if other.fit.misfit < found.fit.misfit + np.log(fall):
+            found = other
+        if found.fit.residuals.max() < TURNED:
+            break
     return as_described if found.fit.residuals.max() > UNEXPLAINED else found
 
 

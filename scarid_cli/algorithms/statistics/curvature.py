@@ -46,8 +46,7 @@ def form(rows: Rows, bent: Array, residuals: Sequence[Array]) -> Form:
     """
     counted = away_from_reversals(rows, MARGIN / rows.bandwidth if rows.bandwidth else 0.0) > 0.0
     squares = np.sum(residuals[0] ** 2 * counted, axis=0)
-    with np.errstate(divide="ignore"):
-        weights = np.where(squares > 0.0, counted.sum(axis=0) / squares, 0.0)
+    weights = np.divide(counted.sum(axis=0), squares, np.zeros_like(squares), where=squares > 0.0)
     signals = np.concatenate((rows.W, np.stack((bent, *residuals), axis=2)), axis=2)
     signals *= (counted * np.sqrt(weights))[:, :, None]
     smooth, at = _smooth(rows, signals)
