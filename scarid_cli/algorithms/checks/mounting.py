@@ -111,16 +111,16 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
     def folded(found: Explained[Mounting]) -> list[Mounting]:
         return [*turned(found), *found.case.folded(robot)]
 
-    found = as_described = Explained(start, fit_of(start))
-    if as_described.fit.residuals.max() < EXACT:
+    as_described = Explained(start, fit_of(start))
+    left = as_described.fit.residuals.max()
+    if left < EXACT:
         return as_described
-    searches = ((reversed_axes, FALL ** (1.0 / joints)), (turned, FALL), (folded, FALL))
-    for neighbours, fall in searches:
-        other = searched(start, fit_of, neighbours, fall)
-        if other.fit.misfit < found.fit.misfit + np.log(fall):
-            found = other
-        if found.fit.residuals.max() < TURNED:
-            break
+    found = searched(start, fit_of, reversed_axes, FALL ** (1.0 / joints))
+    if left > TURNED:
+        found = min(found, searched(start, fit_of, turned), key=lambda one: one.fit.misfit)
+    if found.fit.residuals.max() > TURNED:
+        other = searched(start, fit_of, folded)
+        found = other if other.fit.misfit < found.fit.misfit + np.log(FALL) else found
     return as_described if found.fit.residuals.max() > UNEXPLAINED else found
 
 
