@@ -23,9 +23,10 @@ CUT = b"# scarid: the table ends here because the stage that wrote it failed\n"
 
 BOM = "\N{ZERO WIDTH NO-BREAK SPACE}"  # at the start of a text of Windows
 
-# Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
-# How programs write a missing number; in a column of text they are texts.
+# How programs write a missing number; in a table with a column of text they are texts.
 MARKS = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
+
+# Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
 NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence, inverse, torque_shares
+from scarid_cli.algorithms.changes.evidence import LogEvidence, Products, inverse
 from scarid_cli.algorithms.changes.explanation import change
 from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, ZERO, hypotheses
 from scarid_cli.algorithms.changes.wiring import rewired
@@ -97,8 +97,8 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
     if steps:
         return of_wiring(steps)
     rows = in_step(rows, theta, model.delay, low_pass=model.low_pass)
-    links = Model(robot, list(range(len(theta))))
-    now = evidence(rows, theta, model=links)
+    sums = Products.of(rows, theta, model=Model(robot, list(range(len(theta)))))
+    now = sums.evidence()
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)
     ratios = None
@@ -108,10 +108,10 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
     else:
         possible = [h for h in possible if h.kind not in (DELAY, OFFSET, ZERO)]
     values = dict(zip(robot.names, theta.tolist(), strict=True))
-    found = change(first, now, evidence(rows, theta, model=links, zeros=True), possible)
+    found = change(first, now, sums.evidence(zeros=True), possible)
     slight = None
     if found.changed:
-        shares = torque_shares(rows, theta, found.amounts, links)
+        shares = sums.torque_shares(found.amounts)
         within = np.all(shares <= np.minimum(before.torques, VAGUE))
         slight = float(shares.max()) if within else None
     return of_change(found, values, ratios, slight)

@@ -78,8 +78,9 @@ def _explained(log: Log, robot: Robot, motion: Motion) -> Iterator[Finding]:
         yield failed("model", figure, "give a longer log in which every joint moves")
         return
     found, mounted = wiring.wired(robot, samples), mounting.mounted(robot, samples)
-    if mounting.findings(mounted.case) and mounted.fit.misfit < found.fit.misfit:
-        yield from mounting.findings(mounted.case)
+    differs = mounting.findings(mounted.case)
+    if differs and mounted.fit.misfit < found.fit.misfit:
+        yield from differs
         robot = mounted.case.of(robot)
         motion = motion.mounted(np.array(mounted.case.signs), np.array(mounted.case.turns))
         found = Explained(Wiring.same(len(robot.joints)), mounted.fit)

@@ -14,7 +14,7 @@ from crossvalidation import COMMON, log
 from stages.tables import SCARA
 from unit.support import adjusted
 
-from scarid_cli.algorithms.changes.evidence import torque_shares
+from scarid_cli.algorithms.changes.evidence import Products
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.rows import rows_of
@@ -135,10 +135,11 @@ def test_the_torque_that_a_change_makes_is_relative_to_that_of_each_joint() -> N
     changed[3] = 0.2
     torques, moved = rows.W @ theta, rows.W[:, :, 3] * 0.2
     expected = np.sqrt((moved**2).sum(axis=0) / (torques**2).sum(axis=0))
-    np.testing.assert_allclose(torque_shares(rows, theta, changed), expected, rtol=1e-9)
+    sums = Products.of(rows, theta)
+    np.testing.assert_allclose(sums.torque_shares(changed), expected, rtol=1e-9)
     changed = np.zeros(8 + 1 + 3 * 2)
     changed[8 + 1 + 1] = 0.05  # the motor constant of joint 2
-    np.testing.assert_allclose(torque_shares(rows, theta, changed), [0.0, 0.05], atol=1e-12)
+    np.testing.assert_allclose(sums.torque_shares(changed), [0.0, 0.05], atol=1e-12)
 
 
 def test_a_change_within_the_stated_intervals_is_named_but_is_none() -> None:

@@ -10,7 +10,7 @@ import pytest
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.alternatives import STRIBECK
+from scarid_cli.algorithms.statistics.alternatives import STRIBECK, tilted
 from scarid_cli.algorithms.statistics.consequences import Consequences
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
@@ -269,3 +269,16 @@ def test_a_motion_that_is_matched_is_not_to_be_matched() -> None:
     doubtful = evidence(effects=(effect(PARALLEL, moved=-4.0, largest=9.0),))
     assert advice in verdict(doubtful, SCARA).reasons[0]
     assert advice not in verdict(replace(doubtful, matched=True), SCARA).reasons[0]
+
+
+@pytest.mark.parametrize(
+    ("amounts", "tangent"),
+    [([0.1, 0.0], 0.1), ([0.0, -0.1], 0.1), ([np.nan, 0.1], 0.1), ([np.nan, np.nan], 0.0)],
+)
+def test_gravity_of_a_tilted_base_is_as_large_as_before(
+    amounts: list[float], tangent: float
+) -> None:
+    down = np.array([0.0, 0.0, -9.81])
+    gravity = tilted(down, np.array(amounts))
+    np.testing.assert_allclose(np.linalg.norm(gravity), 9.81)
+    np.testing.assert_allclose(np.linalg.norm(gravity[:2]) / -gravity[2], tangent, atol=1e-12)

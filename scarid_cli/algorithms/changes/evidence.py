@@ -16,7 +16,7 @@ from scarid_cli.algorithms.regression.rows import Rows, delay_column
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
 from scarid_cli.algorithms.statistics.positions import Sensitivities, zero_columns
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, Numbers
 
 REFITS = 3  # times that the joints are weighted by their residuals
 LEAST = 1e-9  # of the rms torque of a joint: a smaller residual is rounding
@@ -56,58 +56,71 @@ class LogEvidence:
         return replace(self, information=information, score=score, scores=scores)
 
 
-def evidence(
-    rows: Rows,
-    theta: Array,
-    delay: float = 0.0,
-    *,
-    model: Model | None = None,
-    zeros: bool = False,
-) -> LogEvidence:
-    """The evidence of the rows of a log, at parameters and a delay [s] of the torques.
+@dataclass(frozen=True)
+class Products:
+    """The sums from which the evidence of a log is computed, at given parameters.
 
-    Without the `model` of the rows it has nothing about the zeros of the joints. Unless the `zeros`
-    are in question, the residual is that without another zero.
+    `values` (joints, blocks, columns + 1, columns + 1) are A'A of each joint and block of half a
+    second, where A = [all columns, residual]. `counts` (joints) are the rows that count, and
+    `powers` (joints) their mean square torques [(N m or N)2].
     """
-    # (joints, blocks, columns + 1, columns + 1)
-    products = _products(rows, theta, delay, _zeros(rows, theta, model))
-    joints, columns = rows.y.shape[1], products.shape[2] - 1
-    first = np.arange(columns if zeros else columns - joints)
-    alone = products[:, :, [*first, columns]][:, :, :, [*first, columns]]
-    whole = alone.sum(axis=1)
-    counts = np.maximum(np.count_nonzero(rows.scales, axis=0), 1)
-    torque = np.sum((rows.y * (rows.scales > 0.0)) ** 2, axis=0) / counts
-    variances = whole[:, -1, -1] / counts
-    for _ in range(REFITS):
-        variances = np.maximum(variances, LEAST**2 * torque + TINY)
-        weighted = np.tensordot(1.0 / variances, whole, 1)
-        along = np.append(-solved(weighted[:-1, :-1], weighted[:-1, -1]), 1.0)
-        variances = np.einsum("i,jik,k->j", along, whole, along).clip(min=0.0) / counts
-    variances = np.maximum(variances, LEAST**2 * torque + TINY)
-    scores = np.einsum("jbik,k->jbi", products[:, :, :-1, [*first, columns]], along)
-    grams = np.tensordot(1.0 / variances, alone[:, :, :-1, :-1], 1)
-    scores[:, :, first] = _without_leverage(scores[:, :, first], grams)
-    weights = 1.0 / (variances * _inflations(scores[:, :, first], whole, variances))
-    total = np.tensordot(weights, products.sum(axis=1), 1)
-    return LogEvidence(
-        information=total[:-1, :-1],
-        score=total[:-1, -1],
-        deviations=np.sqrt(variances),
-        scores=np.tensordot(weights, scores, 1),
-    )
 
+    values: Array
+    counts: Numbers
+    powers: Array
 
-def torque_shares(rows: Rows, theta: Array, change: Array, model: Model | None = None) -> Array:
-    """The rms of what a change of all columns (columns) does to the torque of each joint (joints).
+    @classmethod
+    def of(
+        cls, rows: Rows, theta: Array, delay: float = 0.0, model: Model | None = None
+    ) -> Products:
+        """Those of the rows of a log, at parameters and a delay [s] of the torques.
 
-    It is relative to the rms of the torque that the parameters predict.
-    """
-    products = _products(rows, theta, 0.0, _zeros(rows, theta, model)).sum(axis=1)[:, :-1, :-1]
-    changes = np.einsum("i,jik,k->j", change, products, change).clip(min=0.0)
-    joints = np.arange(len(products))
-    torques = products[joints, len(theta) + 1 + joints, len(theta) + 1 + joints]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.sqrt(changes / torques))
+        Without the `model` of the rows they have nothing about the zeros of the joints.
+        """
+        counts = np.maximum(np.count_nonzero(rows.scales, axis=0), 1)
+        powers = np.sum((rows.y * (rows.scales > 0.0)) ** 2, axis=0) / counts
+        return cls(_products(rows, theta, delay, _zeros(rows, theta, model)), counts, powers)
+
+    def evidence(self, *, zeros: bool = False) -> LogEvidence:
+        """What the log says about all columns.
+
+        Unless the `zeros` of the joints are in question, the residual is that without others.
+        """
+        joints, columns = len(self.values), self.values.shape[2] - 1
+        first = np.arange(columns if zeros else columns - joints)
+        alone = self.values[:, :, [*first, columns]][:, :, :, [*first, columns]]
+        whole = alone.sum(axis=1)
+        least = LEAST**2 * self.powers + TINY
+        variances = np.maximum(whole[:, -1, -1] / self.counts, least)
+        for _ in range(REFITS):
+            weighted = np.tensordot(1.0 / variances, whole, 1)
+            along = np.append(-solved(weighted[:-1, :-1], weighted[:-1, -1]), 1.0)
+            squares = np.einsum("i,jik,k->j", along, whole, along)
+            variances = np.maximum(squares / self.counts, least)
+        scores = np.einsum("jbik,k->jbi", self.values[:, :, :-1, [*first, columns]], along)
+        grams = np.tensordot(1.0 / variances, alone[:, :, :-1, :-1], 1)
+        scores[:, :, first] = _without_leverage(scores[:, :, first], grams)
+        weights = 1.0 / (variances * _inflations(scores[:, :, first], whole, variances))
+        total = np.tensordot(weights, self.values.sum(axis=1), 1)
+        return LogEvidence(
+            information=total[:-1, :-1],
+            score=total[:-1, -1],
+            deviations=np.sqrt(variances),
+            scores=np.tensordot(weights, scores, 1),
+        )
+
+    def torque_shares(self, change: Array) -> Array:
+        """The rms of what a change of all columns does to the torque of each joint (joints).
+
+        It is relative to the rms of the torque that the parameters predict; `change` (columns).
+        """
+        sums = self.values.sum(axis=1)[:, :-1, :-1]
+        changes = np.einsum("i,jik,k->j", change, sums, change).clip(min=0.0)
+        joints = np.arange(len(sums))
+        predicted = len(change) - 3 * len(sums) + joints  # the columns of the motor constants
+        torques = sums[joints, predicted, predicted]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(np.sqrt(changes / torques))
 
 
 def solved(gram: Array, right: Array) -> Array:

@@ -97,7 +97,6 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
     nothing is left as described: of a log without noise, rounding could differ by as much.
     """
     joints = len(robot.joints)
-    start = Mounting.described(joints)
 
     def fit_of(case: Mounting) -> Fit:
         return case.fitted(robot, samples)
@@ -111,15 +110,17 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
     def folded(found: Explained[Mounting]) -> list[Mounting]:
         return [*turned(found), *found.case.folded(robot)]
 
-    as_described = Explained(start, fit_of(start))
+    described = Mounting.described(joints)
+    as_described = Explained(described, fit_of(described))
     left = as_described.fit.residuals.max()
     if left < EXACT:
         return as_described
-    found = searched(start, fit_of, reversed_axes, FALL ** (1.0 / joints))
+    found = searched(as_described, fit_of, reversed_axes, FALL ** (1.0 / joints))
     if left > TURNED:
-        found = min(found, searched(start, fit_of, turned), key=lambda one: one.fit.misfit)
+        other = searched(as_described, fit_of, turned)
+        found = min(found, other, key=lambda one: one.fit.misfit)
     if found.fit.residuals.max() > TURNED:
-        other = searched(start, fit_of, folded)
+        other = searched(as_described, fit_of, folded)
         found = other if other.fit.misfit < found.fit.misfit + np.log(FALL) else found
     return as_described if found.fit.residuals.max() > UNEXPLAINED else found
 

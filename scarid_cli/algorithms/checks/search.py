@@ -25,18 +25,17 @@ class Explained(Generic[T]):
 
 
 def searched(
-    start: T,
+    found: Explained[T],
     fitted: Callable[[T], Fit],
     neighbours: Callable[[Explained[T]], list[T]],
     fall: float = FALL,
 ) -> Explained[T]:
     """The case that leaves far less of the torques than all that come before it, if there is one.
 
-    `neighbours` are the cases that are tried from one to the next, and `fall` is what one must
-    leave at most of the mean square residual. Of those that explain the torques alike the one is
-    taken whose friction brakes.
+    The first of these is what was `found`. `neighbours` are the cases that are tried from one to
+    the next, and `fall` is what one must leave at most of the mean square residual. Of those that
+    explain the torques alike the one is taken whose friction brakes.
     """
-    found = Explained(start, fitted(start))
     for _ in range(STEPS):
         others = [Explained(case, fitted(case)) for case in neighbours(found)]
         least = min(other.fit.misfit for other in others)

@@ -25,8 +25,8 @@ def wired(robot: Robot, samples: Samples) -> Explained[Wiring]:
     def fit_of(wiring: Wiring) -> Fit:
         return fitted(robot, samples.wired(wiring))
 
-    found = searched(Wiring.same(len(robot.joints)), fit_of, _neighbours)
-    return _braking(found, fit_of)
+    same = Wiring.same(len(robot.joints))
+    return _braking(searched(Explained(same, fit_of(same)), fit_of, _neighbours), fit_of)
 
 
 def _neighbours(found: Explained[Wiring]) -> list[Wiring]:

@@ -77,8 +77,11 @@ class Model:
 
 
 def tilted(gravity: Array, amounts: Array) -> Array:
-    """The gravity [m/s2] of a base that is tilted by these amounts (2), as large as before."""
-    turned = gravity + amounts @ _sideways(gravity)
+    """The gravity [m/s2] of a base that is tilted by these amounts (2), as large as before.
+
+    An amount of nan, about an axis about which the log shows no tilt, is none.
+    """
+    turned = gravity + np.nan_to_num(amounts) @ _sideways(gravity)
     return np.asarray(turned * np.linalg.norm(gravity) / np.linalg.norm(turned))
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.evidence import LogEvidence, evidence
+from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
@@ -156,7 +156,7 @@ def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -
     theta = np.zeros(whole.own)
     theta[kept] = estimates
     W = np.ascontiguousarray(whole.rows.W[:, :, : whole.own])
-    return evidence(replace(whole.rows, W=W), theta, delay, model=whole.model)
+    return Products.of(replace(whole.rows, W=W), theta, delay, whole.model).evidence()
 
 
 def _problem(

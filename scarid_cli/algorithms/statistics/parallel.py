@@ -7,7 +7,6 @@ signals: a delay, a low-pass of the logged torque, errors of the encoders, elast
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,19 +62,18 @@ def smoothed(rows: Rows, model: Model | None, estimates: Array, own: int) -> Smo
     sizes = {name: columns.shape[2] for name, columns in found[0][0].items()}
     A = np.concatenate([np.concatenate([*x.values()], axis=2) for x, _ in found])
     centres = np.concatenate([x for _, x in found])
-    return Smoothed(A, rows.at[centres], centres, dict(_places(sizes)))
+    return Smoothed(A, rows.at[centres], centres, _places(sizes))
 
 
-def _places(sizes: dict[str, int]) -> Iterator[tuple[str, list[int]]]:
-    """The places of the columns of each alternative, whose names and sizes are in this order."""
-    start = 0
+def _places(sizes: dict[str, int]) -> dict[str, list[int]]:
+    """The places of the columns of each alternative, in A of columns of these names and sizes."""
+    places, start = {}, 0
     for name, size in sizes.items():
-        own = list(range(start, start + size))
-        if name in (SIGNALS, ZEROS, ELASTICITY):
-            yield name, own
-        elif name == ENCODERS:  # which may have another zero as well
-            yield name, [*range(start - size // 2, start), *own]
+        places[name] = list(range(start, start + size))
         start += size
+    if ENCODERS in places:  # an eccentric encoder may have another zero as well
+        places[ENCODERS] = places[ZEROS] + places[ENCODERS]
+    return {name: own for name, own in places.items() if name not in ("W", "y")}
 
 
 @dataclass(frozen=True)
