@@ -148,6 +148,7 @@ UNSEEN = [
     Condition("positions 5 ms late", {"position-delay": (0.005,)}),
     Condition("positions held at 50 Hz", {"position-rate": (50.0,)}),
     Condition("torques held at 50 Hz", {"torque-rate": (50.0,)}),
+    Condition("logged torque behind 10 Hz", {"torque-bandwidth": (10.0,)}),
     _friction("coarse torques", "torque-resolution", 0.2),
     Condition("11 bit at 1000 Hz, slow", {"encoder-bits": (11,)}, rate=1000.0, speed=0.4),
     Condition(

@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.rows import Rows, joined
-from scarid_cli.algorithms.regression.shifting import REACH, led
+from scarid_cli.algorithms.regression.shifting import led, reach
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
@@ -35,16 +35,16 @@ def predicted(
     """
     delay, low_pass = models[0].delay, models[0].low_pass
     parts = treated(table, models[0].robot, treatment, left_out=left_out)
-    reach = REACH + abs(round(delay / table.period)) if delay and table.period > 0.0 else 0
-    for (batch, rows), around, own in _with_context(parts, reach):
+    needed = reach(delay, table.period, low_pass=low_pass)
+    for (batch, rows), around, own in _with_context(parts, needed):
         torques = [model.robot.torques(around.W, model.theta) for model in models]
         if delay:
             torques = [led(around, tau.T, delay, low_pass=low_pass).T for tau in torques]
         yield batch, rows, [np.ascontiguousarray(tau[:, own]) for tau in torques]
 
 
-def _with_context(parts: Iterator[Part], reach: int) -> Iterator[tuple[Part, Rows, slice]]:
-    """Each part, its rows with up to `reach` samples before and after, and the slice of its own.
+def _with_context(parts: Iterator[Part], needed: int) -> Iterator[tuple[Part, Rows, slice]]:
+    """Each part, its rows with up to `needed` samples before and after, and the slice of its own.
 
     A part is returned once so many samples after it have been read.
     """
@@ -56,13 +56,13 @@ def _with_context(parts: Iterator[Part], reach: int) -> Iterator[tuple[Part, Row
         following = sum(rows.samples for _, rows in waiting) - (
             waiting[0][1].samples if waiting else 0
         )
-        while waiting and (part is None or following >= reach):
+        while waiting and (part is None or following >= needed):
             own = waiting.popleft()
             after = [rows for _, rows in waiting]
             around = joined([*before, own[1], *after])
             first = sum(rows.samples for rows in before)
             yield own, around, slice(first, first + own[1].samples)
-            before = _last(reach, [*before, own[1]])
+            before = _last(needed, [*before, own[1]])
             following -= waiting[0][1].samples if waiting else 0
 
 

@@ -2,7 +2,8 @@
 
 A low-pass of first order shifts torques as well, and bends them. If the log has the command of a
 drive, tau_log = tau + T dtau/dt, and if it has a low-passed torque, tau_log + abs(T) dtau_log/dt =
-tau with T < 0. To second order both are tau(t + T) - T abs(T) / 2 d2tau/dt2.
+tau with T < 0. To second order both are tau(t + T) - T abs(T) / 2 d2tau/dt2. This would not do for
+slow low-passes: the torque behind one is computed as the sum over the torques before.
 
 Between samples a polynomial of degree five goes through the six nearest (Lagrange). Its error is
 less than 0.005 (w h)^6 of a component of angular frequency w, sampled every h: 1e-5 of 5 Hz at
@@ -17,11 +18,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from scarid_cli.algorithms.regression.rows import Rows, curvature, predicted, runs
+from scarid_cli.algorithms.regression.rows import Rows, curvature, delay_column, predicted, runs
 from scarid_cli.arrays import Array, Numbers
 
 NODES = np.arange(-2, 4)  # of the polynomial, counted from the last sample before the instant
-REACH = 5  # samples needed on either side: three by an interpolation, two by a second derivative
+SIDES = 5  # samples needed on either side: three by an interpolation, two by a second derivative
+FORGOTTEN = 1e-7  # of the response of a low-pass: the last part, which is not computed
 
 
 def shifted(rows: Rows, shift: float) -> Rows:
@@ -46,11 +48,11 @@ def shifted(rows: Rows, shift: float) -> Rows:
 def led(rows: Rows, predicted: Array, delay: float, *, low_pass: bool = False) -> Array:
     """Predicted torques (samples, joints) as a measurement shows them that leads by the delay [s].
 
-    With `low_pass` it leads as behind a low-pass of first order. Near the end of a run its last
-    sample takes the place of those that are missing.
+    With `low_pass` it leads as behind a low-pass of first order. Near the ends of a run its first
+    or last sample takes the place of those that are missing.
     """
-    if low_pass:
-        predicted = predicted - bend(rows, predicted, delay)
+    if low_pass and rows.h > 0.0:
+        return _low_passed(rows, predicted, delay)
     samples = delay / rows.h if rows.h > 0.0 else 0.0
     places = np.arange(rows.samples)[:, None] + nodes(samples)
     for run in runs(rows.at):
@@ -76,8 +78,49 @@ def bend(rows: Rows, predicted: Array, delay: float) -> Array:
 
     `delay` [s] is the time T by which the torques lead.
     """
-    found: Array = 0.5 * delay * abs(delay) * curvature(rows, predicted)
+    return predicted - led(rows, _low_passed(rows, predicted, delay), -delay)
+
+
+def _low_passed(rows: Rows, predicted: Array, delay: float) -> Array:
+    """Predicted torques (samples, joints) as a low-pass shows them that leads by the delay [s].
+
+    The straight lines between samples are corrected for the curve that the torques take between
+    them. Before a run, the torques are taken to have had the slope of its start.
+    """
+    if delay >= 0.0:
+        return predicted + delay * delay_column(rows, predicted)
+    taps = _taps(rows.h / -delay)
+    before = np.arange(1 - len(taps), 0)
+    smooth = predicted - rows.h**2 / 12.0 * curvature(rows, predicted)
+    found = np.empty_like(predicted)
+    for run in runs(rows.at):
+        for j, torque in enumerate(smooth[run].T):
+            ramp = torque[0] + before * np.diff(torque[:2]).sum()
+            found[run, j] = np.convolve(np.append(ramp, torque), taps, "valid")
     return found
+
+
+def _taps(interval: float) -> Array:
+    """The weights of the last sample, the one before and so on in the output of a low-pass.
+
+    Between samples its input follows straight lines. `interval` is that between samples, over the
+    time constant.
+    """
+    decay = np.exp(-interval)
+    count = max(1, int(np.ceil(np.log(FORGOTTEN) / -interval)))
+    taps = np.append(
+        1.0 - (1.0 - decay) / interval, (1.0 - decay) ** 2 / interval * decay ** np.arange(count)
+    )
+    taps[-1] += 1.0 - taps.sum()
+    return taps
+
+
+def reach(delay: float, h: float, *, low_pass: bool = False) -> int:
+    """The samples on either side without which `led` does not predict torques h [s] apart."""
+    if not (delay and h > 0.0):
+        return 0
+    memory = len(_taps(h / -delay)) if low_pass and delay < 0.0 else 0
+    return SIDES + abs(round(delay / h)) + memory
 
 
 def nodes(samples: float) -> Numbers:

@@ -49,6 +49,11 @@ class Aligned:
     lead: Lead
 
     @property
+    def residuals(self) -> Array:
+        """What the fit leaves of the torques (samples, joints)."""
+        return np.asarray(self.rows.y - self.rows.W @ self.found.fit.estimates)
+
+    @property
     def delay(self) -> float:
         """The time [s] by which the torques lead the motion."""
         return self.lead.seconds + float(self.found.fit.estimates[-1])
@@ -79,38 +84,42 @@ class _Search:
     own: int
 
     def lead(self, rows: Rows, theta: Array) -> Lead:
-        """The lead from these rows, by fits that begin with the estimates `theta`.
+        """The lead from these rows, by a search that begins with the estimates `theta`."""
+        delay = self._fitted(rows, Lead(0.0, theta))
+        return self._likelier(rows, delay) if rows.h > 0.0 else delay.lead
 
-        tau(t) = W(t + T) theta is linear in T only if T is small. Therefore the torques are shifted
-        until next to nothing remains.
-        """
-        seconds, longest = 0.0, min(LONGEST, 0.25 * rows.samples * rows.h)
-        for fit in range(FITS):
-            own = theta[: self.own]
-            wide = with_delay(in_step(rows, own, seconds), own)
-            found = self.quick.of_rows(wide, self.start)
-            theta = found.fit.estimates
-            rest = float(theta[-1])
-            near = not abs(rest) > NEAR * rows.h or abs(seconds + rest) > longest
-            if near and fit + 1 >= FEWEST:
-                break
-            if not near and fit > 0:
-                seconds += rest
-        return self.likelier(Lead(seconds, theta), wide, found)
-
-    def likelier(self, delay: Lead, rows: Rows, found: Estimation) -> Lead:
-        """The lead as behind a delay, with its rows and fit, or a low-pass if that is likelier."""
-        if not rows.h > 0.0:
-            return delay
-        bent = bend(rows, predicted(rows, delay.theta[: self.own]), delay.seconds)
-        straight = replace(rows, y=rows.y + bent)
-        other = self.quick.of_rows(straight, self.start)
-        residuals = [x.y - x.W @ y.fit.estimates for x, y in ((rows, found), (straight, other))]
-        seen = form(rows, bent, residuals)
+    def _likelier(self, rows: Rows, delay: Aligned) -> Lead:
+        """The lead as behind this delay, or as behind a low-pass if that is likelier."""
+        lead = delay.lead
+        bent = bend(delay.rows, predicted(delay.rows, lead.theta[: self.own]), lead.seconds)
+        straight = replace(delay.rows, y=delay.rows.y + bent)
+        other = replace(delay, rows=straight, found=self.quick.of_rows(straight, self.start))
+        seen = form(delay.rows, bent, [delay.residuals, other.residuals])
         low_pass = seen.ratio > CLEAR
         probability = np.exp(-np.logaddexp(0.0, abs(seen.ratio)))
         # Of a lead that is partly a delay, the other part is missed.
         missed = probability + (seen.share - low_pass) ** 2
-        doubt = np.sqrt(missed) * (other.fit.estimates - delay.theta)
-        theta = other.fit.estimates if low_pass else delay.theta
-        return Lead(delay.seconds, theta, low_pass=low_pass, doubt=doubt)
+        doubt = np.sqrt(missed) * (other.found.fit.estimates - lead.theta)
+        lead = replace(lead, low_pass=low_pass, doubt=doubt)
+        return self._fitted(rows, lead).lead if low_pass else lead
+
+    def _fitted(self, rows: Rows, lead: Lead) -> Aligned:
+        """The lead of this form that fits the rows, by fits that begin with this one.
+
+        tau(t) = W(t + T) theta is linear in T only if T is small. Therefore the torques are shifted
+        until next to nothing remains.
+        """
+        seconds, theta = lead.seconds, lead.theta
+        longest = min(LONGEST, 0.25 * rows.samples * rows.h)
+        for fit in range(FITS):
+            own = theta[: self.own]
+            wide = with_delay(in_step(rows, own, seconds, low_pass=lead.low_pass), own)
+            found = self.quick.of_rows(wide, self.start)
+            theta = found.fit.estimates
+            rest = float(theta[-1])
+            far = NEAR * rows.h < abs(rest) <= longest - abs(seconds)
+            if not far and fit + 1 >= FEWEST:
+                break
+            if far and fit > 0:
+                seconds += rest
+        return Aligned(wide, found, replace(lead, seconds=seconds, theta=theta))

@@ -1,6 +1,6 @@
 """Whether torques lead the motion as behind a low-pass of first order, or as behind a delay.
 
-The two differ by a multiple of the second derivative of the torques (shifting.py).
+To second order the two differ by a multiple of the second derivative of the torques (shifting.py).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Form:
 def form(rows: Rows, bent: Array, residuals: Sequence[Array]) -> Form:
     """The form of the lead, from the residuals behind the delay and behind the low-pass.
 
-    `bent` (samples, joints) is in proportion to the curvature of the predicted torques. What the
+    `bent` (samples, joints) is the difference of the two for the predicted torques. What the
     columns of W leave of it is an instrument: no change of the estimates changes its product with
     the residual, whose mean is 0 for the true form. The variance of the sum is that of its blocks
     of half a second.
