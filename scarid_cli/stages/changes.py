@@ -11,11 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.evidence import LogEvidence, Products, inverse
+from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
 from scarid_cli.algorithms.changes.explanation import change
 from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, ZERO, hypotheses
 from scarid_cli.algorithms.changes.wiring import rewired
 from scarid_cli.algorithms.changes.wording import Verdict, of_change, of_wiring
+from scarid_cli.algorithms.regression.normal_equations import inverse
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot

@@ -57,10 +57,14 @@ def test_a_collision_is_found_at_its_time(starts: tuple[float, ...]) -> None:
         assert [x.end - 0.05 for x in found] == pytest.approx(starts, abs=0.05)
 
 
-def test_a_payload_of_two_seconds_is_no_burst() -> None:
+def test_a_payload_of_two_seconds_is_found_but_not_one_of_half_the_log() -> None:
     r, y, counts = residual("autocorrelated", 1)
-    r[(T > 6.0) & (T < 8.5), 0] += 60.0
-    assert bursts(0.2 * r, y, counts, T) == ()
+    short, long = r.copy(), r.copy()
+    short[(T > 6.0) & (T < 8.0), 0] += 60.0
+    long[T > 10.0, 0] += 60.0
+    (found,) = bursts(0.2 * short, y, counts, T)
+    assert (found.start, found.end) == pytest.approx((6.0, 8.0), abs=0.05)
+    assert bursts(0.2 * long, y, counts, T) == ()
 
 
 @pytest.mark.parametrize(
@@ -68,7 +72,10 @@ def test_a_payload_of_two_seconds_is_no_burst() -> None:
     [
         ([(2.02, 2.11)], "at 2 to 2.2 s * with --from-time 2.2"),
         ([(8.0, 8.1)], "at 8 to 8.1 s * with --to-time 8"),
-        ([(2.0, 2.1), (9.0, 9.1)], "at 2 to 2.1 s and at 9 to * --from-time 2.1 --to-time 9"),
+        (
+            [(2.0, 2.1), (9.0, 9.1)],
+            "at 2 to 2.1 s and at 9 to * several logs * --from-time 2.1 --to-time 9",
+        ),
     ],
 )
 def test_the_longest_part_without_a_burst_is_kept(

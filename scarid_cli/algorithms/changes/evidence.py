@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from scarid_cli.algorithms.regression.normal_equations import roots, solved
 from scarid_cli.algorithms.regression.rows import Rows, delay_column
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
@@ -22,7 +23,6 @@ REFITS = 3  # times that the joints are weighted by their residuals
 LEAST = 1e-9  # of the rms torque of a joint: a smaller residual is rounding
 TINY = 1e-30  # the least variance, of a joint without torques
 MOST_LEVERAGE = 0.9  # of a block that counts in full
-FLAT = 1e-10  # of the largest eigenvalue: directions below it are not in the motion
 
 
 @dataclass(frozen=True)
@@ -121,32 +121,6 @@ class Products:
         torques = sums[joints, predicted, predicted]
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.sqrt(changes / torques))
-
-
-def solved(gram: Array, right: Array) -> Array:
-    """The solution of normal equations, 0 along directions that they leave undetermined."""
-    found: Array = inverse(gram) @ right
-    return found
-
-
-def inverse(gram: Array) -> Array:
-    """The pseudo-inverse of a Gram matrix whose columns may have any units."""
-    whitening, _ = roots(gram)
-    found: Array = whitening @ whitening.T
-    return found
-
-
-def roots(gram: Array) -> tuple[Array, Array]:
-    """V and U with V' gram V = 1, U V' = 1 and U U' = gram (columns, rank), in any units.
-
-    Directions that the Gram matrix leaves undetermined are left out.
-    """
-    size = np.sqrt(np.diag(gram))
-    size[size == 0.0] = 1.0
-    values, vectors = np.linalg.eigh(gram / np.outer(size, size))
-    kept = values > FLAT * values[-1]
-    root = np.sqrt(values[kept])
-    return vectors[:, kept] / root / size[:, None], vectors[:, kept] * root * size[:, None]
 
 
 def _without_leverage(scores: Array, grams: Array) -> Array:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.evidence import LogEvidence, inverse
+from scarid_cli.algorithms.changes.evidence import LogEvidence
+from scarid_cli.algorithms.regression.normal_equations import inverse
 from scarid_cli.arrays import Array
 
 

@@ -1,8 +1,9 @@
 """Short intervals of a record whose torques the model does not explain, such as a collision.
 
 The record is divided into blocks of half a second. In a few of them the mean square of the residual
-of a joint is more than FAR times the one that nine blocks of ten do not exceed, and these blocks
-hold most of the sum of its squares. Neither noise nor friction that the model lacks does that.
+of a joint is more than FAR times the one that three blocks of four do not exceed, and these blocks
+hold most of the sum of its squares. Neither noise nor friction that the model lacks does that, if
+the residual is that of the blocks which the model explains best (trimmed.py).
 """
 
 from __future__ import annotations
@@ -18,12 +19,13 @@ from scarid_cli.arrays import Array, Marks, Numbers
 
 BLOCK = 0.5  # s
 FEWEST = 16  # blocks with rows that count, below which what is usual is not known
-MOST = 4  # blocks
-USUAL = 0.9  # of the blocks
+USUAL = 0.75  # of the blocks, at least
 FAR = 50.0  # times the mean square that USUAL blocks do not exceed
+NEAR, GAP = 9.0, 0.05  # times this, and s between samples: what belongs to a burst beside it
 FULL = 0.5  # of the rows of the fullest block, by which the squares are at least divided
 SHARE = 0.5  # of the squares of the residual
 SIZE = 0.1  # of the root-mean-square torque: a smaller residual is none of a collision
+MUCH = 0.75  # of the log: where less would be kept, the other parts are worth a fit as well
 
 
 @dataclass(frozen=True)
@@ -41,45 +43,57 @@ def bursts(residual: Array, torque: Array, counts: Marks, t: Array) -> tuple[Int
     times t (samples) [s].
     """
     block = ((t - t[0]) / BLOCK).astype(np.int64)
-    far = np.zeros(len(t), dtype=np.bool_)
+    far, near = np.zeros((2, len(t)), dtype=np.bool_)
     for r, y, k in zip(residual.T, torque.T, counts.T, strict=True):
-        far[k] |= _far(r[k] ** 2, float(np.sum(y[k] ** 2)), block[k])
-    if not 0 < np.count_nonzero(np.bincount(block[far])) <= MOST:
+        usual, burst = _of_joint(r[k] ** 2, float(np.sum(y[k] ** 2)), block[k], block[-1] + 1)
+        far |= k & burst[block] & (r**2 > FAR * usual)
+        near |= k & (r**2 > NEAR * usual)
+    blocks = len(np.unique(block[np.any(counts, axis=1)]))
+    if not 0 < len(np.unique(block[far])) <= (1.0 - USUAL) * blocks:
         return ()
-    at = np.flatnonzero(far)
-    parts = np.split(at, np.flatnonzero(np.diff(t[at]) > BLOCK) + 1)
+    parts = [part for part in _parts(np.flatnonzero(near), t, GAP) if far[part].any()]
+    parts = _parts(np.concatenate(parts), t, BLOCK)
     return tuple(Interval(float(t[part[0]]), float(t[part[-1]])) for part in parts)
 
 
-def _far(squares: Array, torque: float, block: Numbers) -> Marks:
-    """Which squares of the residual (rows) of a joint belong to a burst; the torque's sum."""
-    none = np.zeros(len(squares), dtype=np.bool_)
-    counts, sums = np.bincount(block), np.bincount(block, squares)
+def _parts(at: Numbers, t: Array, gap: float) -> list[Numbers]:
+    """The samples `at` in parts with more than a gap [s] between them."""
+    return np.split(at, np.flatnonzero(np.diff(t[at]) > gap) + 1)
+
+
+def _of_joint(squares: Array, torque: float, block: Numbers, blocks: int) -> tuple[float, Marks]:
+    """The usual mean square of the residual of a joint, and which blocks are far above it.
+
+    squares (rows) of the residual, the sum of those of the torque, the block of each row and the
+    number of blocks. The first is infinite and there are none if these do not hold most of the sum.
+    """
+    counts, sums = (np.bincount(block, x, blocks) for x in (None, squares))
+    nothing = np.inf, np.zeros(blocks, dtype=np.bool_)
     if np.count_nonzero(counts) < FEWEST:
-        return none
+        return nothing
     means = sums / np.maximum(counts, FULL * counts.max())  # a few rows prove nothing
     known = np.sort(means[counts > 0])
     usual = float(known[int(USUAL * (len(known) - 1))])
     burst = (means > FAR * usual) & (means > SIZE**2 * torque / len(squares))
-    if not sums[burst].sum() > SHARE * sums.sum():
-        return none
-    return np.asarray(burst[block] & (squares > FAR * usual))
+    return (usual, burst) if sums[burst].sum() > SHARE * sums.sum() else nothing
 
 
 def advice(found: Sequence[Interval], start: float, end: float) -> str:
     """Which torques are not explained, and how they are left out of a log from `start` to `end`.
 
-    Times [s] are rounded so that the intervals grow. The longest part without a burst is kept.
+    Times [s] are rounded so that the intervals grow. The options keep the longest part.
     """
     if not found:
         return ""
     edges = [(floor(10.0 * x.start) / 10.0, ceil(10.0 * x.end) / 10.0) for x in found]
-    parts = pairwise([start, *(time for edge in edges for time in edge), end])
-    first, last = max(list(parts)[::2], key=lambda part: part[1] - part[0])
+    kept = pairwise([start, *(time for edge in edges for time in edge), end])
+    first, last = max(list(kept)[::2], key=lambda part: part[1] - part[0])
     options = [f"--from-time {first:g}"] if first != start else []
     options += [f"--to-time {last:g}"] if last != end else []
     times = " and at ".join(f"{a:g} to {b:g} s" for a, b in edges)
+    few = last - first < MUCH * (end - start)
+    parts = "give the other parts as several logs, or " if few else ""
     return (
-        f"the torques at {times} cannot be explained (a collision?): leave them out with "
-        f"{' '.join(options)}"
+        f"the torques at {times} cannot be explained (a contact, or another load?): {parts}leave "
+        f"them out with {' '.join(options)}"
     )

@@ -32,6 +32,7 @@ from scarid_cli.algorithms.statistics.jackknife import (
 )
 from scarid_cli.algorithms.statistics.parallel import ENCODERS, ZEROS
 from scarid_cli.algorithms.statistics.residuals import JointResidual, residuals
+from scarid_cli.algorithms.statistics.trimmed import trimmed
 from scarid_cli.arrays import Array, median
 
 
@@ -116,7 +117,7 @@ def diagnose(
             model,
             rows.motion[0],
         ),
-        bursts=() if record else _bursts(rows, estimates),
+        bursts=() if record else _bursts(rows, trimmed(whole)),
         halves=trial.halves(longer),
     )
 

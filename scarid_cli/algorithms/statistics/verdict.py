@@ -210,9 +210,10 @@ def _vague(evidence: Evidence) -> list[str]:
         for i, (noise, whole) in enumerate(intervals, start=1)
         if not (noise <= VAGUE and whole <= UNKNOWN)
     ]
+    advice = "" if evidence.unexplained else ": use a longer log, or fewer parameters"
     reasons += [
         f"parts of the log that were left out of the fit are predicted with {ratio:.2g} times the "
-        f"error of the fit at joint {i}: use a longer log, or fewer parameters"
+        f"error of the fit at joint {i}{advice}"
         for i, ratio in enumerate(found.held_out, start=1)
         if not ratio <= HELD_OUT
     ]
