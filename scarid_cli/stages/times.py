@@ -5,14 +5,19 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
+from math import ceil, floor
 
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.statistics.bursts import Interval, advice
+from scarid_cli.algorithms.statistics.bursts import Interval
+from scarid_cli.algorithms.statistics.sentences import listed
 from scarid_cli.io.table import Table, matrix, segments_of
 from scarid_cli.stages.rows import Gaps
 from scarid_cli.stages.several import LOGS
+
+MUCH = 0.75  # of the log: where less would be kept, the other parts are worth a fit as well
 
 
 class Times:
@@ -59,3 +64,24 @@ class Times:
         """The time in the log [s] of a time that is counted from sample 0 [s]."""
         start, t = self._starts[max(0, bisect_right(self._starts, (counted, np.inf)) - 1)]
         return t + counted - start
+
+
+def advice(found: Sequence[Interval], start: float, end: float) -> str:
+    """Which torques are not explained, and how they are left out of a log from `start` to `end`.
+
+    Times [s] are rounded so that the intervals grow. The options keep the longest part.
+    """
+    if not found:
+        return ""
+    edges = [(floor(10.0 * x.start) / 10.0, ceil(10.0 * x.end) / 10.0) for x in found]
+    kept = pairwise([start, *(time for edge in edges for time in edge), end])
+    first, last = max(list(kept)[::2], key=lambda part: part[1] - part[0])
+    options = [f"--from-time {first:g}"] if first != start else []
+    options += [f"--to-time {last:g}"] if last != end else []
+    times = listed([f"{a:g} to {b:g} s" for a, b in edges])
+    few = last - first < MUCH * (end - start)
+    parts = "give the other parts as several logs, or " if few else ""
+    return (
+        f"the torques at {times} cannot be explained (a contact, or another load?): {parts}leave "
+        f"them out with {' '.join(options)}"
+    )

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from stages.tables import PERIOD, collected, table
 
-from scarid_cli.algorithms.statistics.bursts import Interval, advice, bursts
+from scarid_cli.algorithms.statistics.bursts import Interval, bursts
 from scarid_cli.arrays import Array, Marks
 from scarid_cli.stages.several import joined
-from scarid_cli.stages.times import Times
+from scarid_cli.stages.times import Times, advice
 
 H, ROWS = 0.004, 5000
 T = H * np.arange(ROWS)
@@ -74,7 +74,7 @@ def test_a_payload_of_two_seconds_is_found_but_not_one_of_half_the_log() -> None
         ([(8.0, 8.1)], "at 8 to 8.1 s * with --to-time 8"),
         (
             [(2.0, 2.1), (9.0, 9.1)],
-            "at 2 to 2.1 s and at 9 to * several logs * --from-time 2.1 --to-time 9",
+            "at 2 to 2.1 s and 9 to * several logs * --from-time 2.1 --to-time 9",
         ),
     ],
 )

@@ -8,10 +8,7 @@ the residual is that of the blocks which the model explains best (trimmed.py).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from math import ceil, floor
 
 import numpy as np
 
@@ -25,7 +22,6 @@ NEAR, GAP = 9.0, 0.05  # times this, and s between samples: what belongs to a bu
 FULL = 0.5  # of the rows of the fullest block, by which the squares are at least divided
 SHARE = 0.5  # of the squares of the residual
 SIZE = 0.1  # of the root-mean-square torque: a smaller residual is none of a collision
-MUCH = 0.75  # of the log: where less would be kept, the other parts are worth a fit as well
 
 
 @dataclass(frozen=True)
@@ -76,24 +72,3 @@ def _of_joint(squares: Array, torque: float, block: Numbers, blocks: int) -> tup
     usual = float(known[int(USUAL * (len(known) - 1))])
     burst = (means > FAR * usual) & (means > SIZE**2 * torque / len(squares))
     return (usual, burst) if sums[burst].sum() > SHARE * sums.sum() else nothing
-
-
-def advice(found: Sequence[Interval], start: float, end: float) -> str:
-    """Which torques are not explained, and how they are left out of a log from `start` to `end`.
-
-    Times [s] are rounded so that the intervals grow. The options keep the longest part.
-    """
-    if not found:
-        return ""
-    edges = [(floor(10.0 * x.start) / 10.0, ceil(10.0 * x.end) / 10.0) for x in found]
-    kept = pairwise([start, *(time for edge in edges for time in edge), end])
-    first, last = max(list(kept)[::2], key=lambda part: part[1] - part[0])
-    options = [f"--from-time {first:g}"] if first != start else []
-    options += [f"--to-time {last:g}"] if last != end else []
-    times = " and at ".join(f"{a:g} to {b:g} s" for a, b in edges)
-    few = last - first < MUCH * (end - start)
-    parts = "give the other parts as several logs, or " if few else ""
-    return (
-        f"the torques at {times} cannot be explained (a contact, or another load?): {parts}leave "
-        f"them out with {' '.join(options)}"
-    )
