@@ -24,6 +24,8 @@ CLEAR = 3.0  # errors: a smaller amount is not named
 NOISIER = 2.0  # times the residual at identification
 
 UNCHANGED, CHANGED, UNEXPLAINED = "unchanged", "changed", "unexplained"
+LARGER = "larger than at the identification"
+DISTURBED = "noise, vibration, friction that the model lacks, or another soft sensor"
 
 
 @dataclass(frozen=True)
@@ -66,10 +68,7 @@ def of_change(
             return Verdict(
                 UNCHANGED, f"the residuals are those of the identification; {tests}", facts
             )
-        cause = "noise, vibration, friction that the model lacks, or another soft sensor"
-        reason = (
-            f"the residuals are larger than at the identification ({noise}), but {tests}: {cause}"
-        )
+        reason = f"the residuals are {LARGER} ({noise}), but {tests}: {DISTURBED}"
         return Verdict(UNEXPLAINED, reason, facts)
     found = " and ".join(map(_sentence_of(values), change.explanations))
     if slight is not None and not noise:
@@ -78,7 +77,8 @@ def of_change(
         return Verdict(UNCHANGED, f"the torques differ {size}{cause}", facts)
     if change.complete:
         share = f"explains {100.0 * change.explained:.3g} % of the difference"
-        return Verdict(CHANGED, f"{found}; this {share}", facts)
+        more = f"; the residuals without it are {LARGER}, too ({noise}): {DISTURBED}"
+        return Verdict(CHANGED, f"{found}; this {share}{more if noise else ''}", facts)
     reason = (
         "differs in a way that no payload, friction, delay, offset, zero or motor constant explains"
     )
