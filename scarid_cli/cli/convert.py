@@ -97,8 +97,9 @@ def command() -> None:
       scarid convert --robot arm.urdf recording.mcap -o log.parquet
 
     Reads and writes CSV, Parquet, Arrow streams and Arrow files. It also reads NumPy's .npz and
-    MATLAB's .mat files (before version 7.3), whose matrices become the columns q1, q2, ... Every
-    number is kept exactly. CSV has no metadata: units and history are lost there.
+    MATLAB's .mat files (before version 7.3), whose matrices become the columns q1, q2, ..., or
+    log.q1, log.q2, ... if they are in a structure. Every number is kept exactly. CSV has no
+    metadata: units and history are lost there.
 
     The separator of a text log, decimal commas, names in a comment, and units in names (q1 [deg],
     t_ms) are found from its first lines and reported, and known recorders are recognised by their

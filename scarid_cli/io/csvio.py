@@ -23,6 +23,9 @@ CUT = b"# scarid: the table ends here because the stage that wrote it failed\n"
 
 BOM = "\N{ZERO WIDTH NO-BREAK SPACE}"  # at the start of a text of Windows
 
+CONVERTED = (".npz", ".mat", ".bag", ".db3", ".mcap")  # files that `scarid convert` reads
+JSON = (b'{"', b"[{", b"[[")  # how a file of JSON begins
+
 # How programs write a missing number; in a table with a column of text they are texts.
 MARKS = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
@@ -43,7 +46,15 @@ def read_csv(source: ByteSource) -> Table:
 
 
 def _not_a_table(name: str) -> BadData:
+    if name.lower().endswith(CONVERTED):
+        convert = f"scarid convert {shlex.quote(name)} -o log.parquet"
+        return BadData(f"{name}: convert it first: `{convert}`")
     return BadData(f"{name}: neither CSV nor Parquet nor Arrow; is it a table?")
+
+
+def _refuse_json(header: bytes, name: str) -> None:
+    if header.startswith(JSON) or header.strip() in (b"{", b"["):
+        raise BadData(f"{name}: JSON is not read; write the log as CSV, a row for each sample")
 
 
 def _table(source: ByteSource) -> Table:
@@ -58,6 +69,7 @@ def _table(source: ByteSource) -> Table:
             expected="a CSV header",
             remedy="is the file empty, or did the previous command fail?",
         )
+    _refuse_json(first[:header_end], source.name)
     names = _header(first, header_end, source.name)
     body = first[header_end:]
     while not body.strip() and (more := next(lines, None)):

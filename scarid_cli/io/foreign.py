@@ -84,6 +84,7 @@ def _read(path: str) -> dict[str, Any]:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise BadData(
             f"{path}: not a readable {Path(path).suffix} file ({reason}); save it again"
+            f"{' with save -v7' if path.endswith('.mat') else ''}"
         ) from None
 
 
@@ -128,6 +129,11 @@ def _mat(path: str) -> dict[str, Any]:
         return {name: arrays[name] for name in arrays.files}
 
 
+def _kind(array: Any) -> str:
+    text = array.dtype.kind in "US"  # by which cells and objects are described, too
+    return "text, cells or objects" if text else f"values of type {array.dtype}"
+
+
 def _columns(path: str, name: str, array: Any) -> dict[str, Any]:
     """One column for a vector; for a matrix one per column, or one per row if rows are longer."""
     if array.size < 2:
@@ -135,7 +141,7 @@ def _columns(path: str, name: str, array: Any) -> dict[str, Any]:
     if array.dtype.kind not in "fiub" or array.ndim > 2:
         raise bad_data(
             path,
-            f"{array.ndim} dimensions" if array.ndim > 2 else f"values of type {array.dtype}",
+            f"{array.ndim} dimensions" if array.ndim > 2 else _kind(array),
             expected="vectors or matrices of real numbers",
             remedy="save only the arrays of the log",
             column=name,

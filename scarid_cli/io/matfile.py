@@ -12,6 +12,7 @@ import math
 import resource
 import sys
 import warnings
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -35,16 +36,27 @@ def main(path: str, most: int) -> int:
     # What the file states may be untrue: the libraries take the rest.
     resource.setrlimit(resource.RLIMIT_DATA, (most + LIBRARIES, most + LIBRARIES))
     found = {name: x for name, x in loadmat(path).items() if not name.startswith("__")}
-    arrays: dict[str, Any] = {name: _plain(np.asarray(x)) for name, x in found.items()}
-    np.savez(sys.stdout.buffer, **arrays)
+    arrays = [pair for name, x in found.items() for pair in _arrays(name, x)]
+    np.savez(sys.stdout.buffer, **dict(arrays))
     return 0
 
 
-def _plain(array: Any) -> Any:
-    """Cells and structures as their description in words; other arrays as they are."""
-    if array.dtype.hasobject:
-        return np.full(array.shape, "cell or structure")
-    return array
+def _arrays(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """The arrays of a variable by name; a structure has one for each field, as `log.q`.
+
+    Structures in a matrix are numbered. Of their fields only numbers are kept. Cells and objects
+    are described in words.
+    """
+    if type(value) is np.ndarray and value.dtype.names:
+        for i, one in enumerate(value.ravel(), start=1):
+            number = str(i) if value.size > 1 else ""
+            for field in value.dtype.names:
+                inside = _arrays(f"{name}{number}.{field}", one[field])
+                yield from ((n, x) for n, x in inside if x.dtype.kind in "fiubc")
+    elif np.asarray(value).dtype.hasobject:
+        yield name, np.full(np.shape(value), "cell or object")
+    else:
+        yield name, np.asarray(value)
 
 
 if __name__ == "__main__":

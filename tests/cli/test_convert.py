@@ -56,6 +56,34 @@ def test_arrays_become_columns(extension: str, shell: Shell, tmp_path: Path) -> 
     assert result.out == "t,q1,q2,tau1,tau2\n0,0,1,1,1\n0.01,2,3,1,1\n0.02,4,5,1,1\n"
 
 
+def test_fields_of_structures_become_columns(shell: Shell, tmp_path: Path) -> None:
+    """As loggers in MATLAB and Simulink write them."""
+    signals = {"values": np.ones((2, 3)), "label": "torques"}
+    log = {"time": np.arange(3) * 0.01, "q": np.arange(6.0).reshape(3, 2), "signals": signals}
+    scipy.io.savemat(tmp_path / "log.mat", {"log": log, "rate": 100.0})
+    renamed = "--map t=log.time --map 'q*=log.q' --map 'tau*=log.signals.values'"
+    result = shell(f"scarid convert {renamed} log.mat")
+    assert result.out == "t,q1,q2,tau1,tau2\n0,0,1,1,1\n0.01,2,3,1,1\n0.02,4,5,1,1\n"
+
+
+@pytest.mark.parametrize("name", ["log.mat", "log.npz", "a log.MCAP"])
+def test_a_file_that_only_convert_reads_names_it(name: str, shell: Shell, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(b"\0" * 200)
+    result = shell(f"scarid identify --robot scara2 '{name}'")
+    quoted = name if name != "a log.MCAP" else f"'{name}'"
+    refused(result, 65, f"{name}: convert it first: `scarid convert {quoted} -o log.parquet`")
+
+
+@pytest.mark.parametrize(
+    "text", ['{"t": 0.0, "q1": 1.0}\n', '[\n  {"t": 0.0}\n]\n', "[[0.0, 1.0]]\n"]
+)
+def test_json_is_refused(text: str, shell: Shell, tmp_path: Path) -> None:
+    """A line of it looks like a line of CSV."""
+    (tmp_path / "log.json").write_text(text)
+    for command in ("convert", "info"):
+        refused(shell(f"scarid {command} log.json"), 65, "log.json: JSON is not read; write")
+
+
 @pytest.mark.parametrize(
     ("command", "status", "message"),
     [
