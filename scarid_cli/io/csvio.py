@@ -135,7 +135,7 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
     text = block[:end].decode("utf-8-sig", errors="replace")
     line = text.rstrip("\r\n").rpartition("\n")[2]
     names = [column.strip() for column in next(csv.reader([line]), [])]
-    if len(names) == 1 and re.search(r"[;\t]", names[0]):
+    if len(names) == 1 and (re.search(r"[;\t]", names[0]) or _spaced(names[0], block[end:])):
         raise bad_data(
             name,
             f"the single column {names[0]!r}",
@@ -152,6 +152,12 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
     # A line that ends in a comma has a last column without a name, which must be empty.
     _require_different(names[:-1] if len(names) > 1 and not names[-1] else names, name)
     return names
+
+
+def _spaced(header: str, body: bytes) -> bool:
+    """Whether white space separates the values: as many words as numbers in the first row."""
+    row = body.partition(b"\n")[0].decode(errors="replace").split()
+    return 1 < len(header.split()) == len(row) and all(NUMERIC.match(value) for value in row)
 
 
 def _require_different(names: list[str], name: str) -> None:

@@ -62,6 +62,7 @@ CASES = {
     "duplicate column": (["t,q1,q1", *GOOD[1:]], "column q1: found 2 columns of this name"),
     "nameless column": (["t,q1,", *GOOD[1:]], "row 1, column 3: found '0.0', expected nothing, as"),
     "other separator": (["t;q1;tau1", "0;1;2"], "found the single column 't;q1;tau1', expected"),
+    "white space": (["t q1 tau1", "0 1.5 2e-3"], "found the single column 't q1 tau1', expected"),
     "one row": (GOOD[:2], "found 1 row, expected at least 2 samples; give a longer log"),
     "header only": (GOOD[:1], "found no rows, expected at least 2 samples; give a longer log"),
     "comments only": (["# a", "# b"], "found no rows, expected a CSV header; is the file empty"),
