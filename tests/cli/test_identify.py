@@ -199,7 +199,9 @@ def test_the_delay_goes_with_the_parameters_to_validate(options: str, shell: She
     )
     assert result.status == 0, result.err
     assert "applied the delay that identify fitted" in result.err
-    assert result.err.splitlines()[-1].startswith("scarid identify: CSV does not keep the delay")
+    *_, remark, verdict = result.err.splitlines()
+    assert remark.startswith("scarid identify: CSV does not keep the delay")
+    assert verdict.startswith("scarid identify: doubtful: ")
 
 
 def test_the_friction_of_separable_is_no_initial_value_of_others(shell: Shell) -> None:

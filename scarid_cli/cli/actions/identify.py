@@ -149,9 +149,9 @@ def _tell(job: Job, table: Table, robot: str, chosen: Chosen, extra: dict[str, A
     report(job, table, chosen.treatment.counting, extra.get("left_out", {}))
     facts, verdict = summary_lines(robot, chosen.name, extra)
     job.say(facts)
-    job.say(verdict, extra["verdict"])
     if chosen.treatment.align and job.out.format == "csv":
         job.say("CSV does not keep the delay: write -o FILE.parquet for validate to apply it")
+    job.say(verdict, extra["verdict"])
 
 
 def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
