@@ -14,7 +14,7 @@ from scipy.signal import butter, sosfiltfilt
 from unit.regressions import estimated
 
 from scarid_cli.algorithms.estimators import ls
-from scarid_cli.algorithms.regression.rows import Rows, rows_of, thinned
+from scarid_cli.algorithms.regression.rows import Rows, plain, rows_of, thinned
 from scarid_cli.algorithms.regression.shifting import led, shifted
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.alignment import Aligned, aligned
@@ -400,6 +400,14 @@ def test_predicted_torques_are_those_behind_a_low_pass(lag: float) -> None:
     found = led(rows, np.sin(w * t), -lag, low_pass=True)
     inside = slice(int(10.0 * lag / H), -2)
     np.testing.assert_allclose(found[inside], low_passed(t, lag, w)[inside], atol=1e-3)
+
+
+@pytest.mark.parametrize("samples", [0, 1, 2, 50])
+def test_constant_torques_are_the_same_behind_a_low_pass(samples: int) -> None:
+    rows = plain(np.ones((samples, 1, 1)), np.ones((samples, 1)), H)
+    for lag in (0.5, 0.01, 1e-12):
+        found = led(rows, rows.y, -lag, low_pass=True)
+        np.testing.assert_allclose(found, rows.y, rtol=1e-12)
 
 
 @pytest.mark.parametrize("lag", [0.004, 0.01, 0.02])

@@ -87,7 +87,7 @@ def _low_passed(rows: Rows, predicted: Array, delay: float) -> Array:
     The straight lines between samples are corrected for the curve that the torques take between
     them. Before a run, the torques are taken to have had the slope of its start.
     """
-    if delay >= 0.0:
+    if delay >= 0.0 or not rows.samples:
         return predicted + delay * delay_column(rows, predicted)
     taps = _taps(rows.h / -delay)
     before = np.arange(1 - len(taps), 0)
