@@ -39,7 +39,7 @@ FORMER = (
         "CUTOFF_PER_NATURAL_FREQUENCY = 10.0",
         "CUTOFF_PER_NATURAL_FREQUENCY = 11.0",
     ),
-    ("scarid_cli/io/csvio.py", "if len(names) == 1 and re.", "if len(names) == 2 and re."),
+    ("scarid_cli/io/csvio.py", "if len(names) == 1 and (re.", "if len(names) == 2 and (re."),
     ("scarid_cli/io/csvio.py", 're.search(r"[;\\t]", names[0])', 're.search(r"[\\t]", names[0])'),
     ("scarid_cli/stages/identify.py", "holds or estimator.HOLDS", "holds and estimator.HOLDS"),
     ("scarid_cli/cli/actions/identify.py", "holds or method.HOLDS", "holds and method.HOLDS"),

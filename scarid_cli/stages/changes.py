@@ -15,17 +15,25 @@ from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
 from scarid_cli.algorithms.changes.explanation import change
 from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, ZERO, hypotheses
 from scarid_cli.algorithms.changes.wiring import rewired
-from scarid_cli.algorithms.changes.wording import Verdict, of_change, of_wiring
+from scarid_cli.algorithms.changes.wording import (
+    UNCHANGED,
+    UNEXPLAINED,
+    Verdict,
+    of_change,
+    of_wiring,
+)
 from scarid_cli.algorithms.regression.normal_equations import inverse
-from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.rows import Rows, predicted
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.statistics.bursts import bursts
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.verdict import VAGUE
 from scarid_cli.arrays import Array, median
 from scarid_cli.io.table import Table
 from scarid_cli.stages.parameters import EVIDENCE, Identified
+from scarid_cli.stages.times import CAUSE, Times, spans
 
 
 @dataclass(frozen=True)
@@ -91,8 +99,8 @@ def _torques(table: Table, joints: int, blocks: int) -> Array:
     return quantile(0.975, blocks - 1.0) * np.array(stated if known else [0.0] * joints)
 
 
-def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
-    """The verdict on the rows of a log."""
+def verdict(rows: Rows, model: Identified, before: Known, times: Times) -> Verdict:
+    """The verdict on the rows of a log, with the `times` at which its torques are not explained."""
     robot, theta = model.robot, model.theta
     steps = rewired(robot, rows, theta)
     if steps:
@@ -115,7 +123,20 @@ def verdict(rows: Rows, model: Identified, before: Known) -> Verdict:
         shares = sums.torque_shares(found.amounts)
         within = np.all(shares <= np.minimum(before.torques, VAGUE))
         slight = float(shares.max()) if within else None
-    return of_change(found, values, ratios, slight)
+    judged = of_change(found, values, ratios, sums.residual_shares(), slight)
+    as_before = judged.grade == UNCHANGED and ratios is not None
+    return judged if as_before else _with_times(judged, rows, theta, times)
+
+
+def _with_times(judged: Verdict, rows: Rows, theta: Array, times: Times) -> Verdict:
+    """The verdict with the times of the largest residuals, if they are few."""
+    residual = rows.y - predicted(rows, theta)
+    found = times.of(bursts(residual, rows.y, rows.scales > 0.0, np.asarray(rows.at * rows.h)))
+    if not found:
+        return judged
+    more = f"most of the squares of the residual are those at {spans(found)} ({CAUSE})"
+    grade = UNEXPLAINED if judged.grade == UNCHANGED else judged.grade
+    return replace(judged, grade=grade, reason=f"{judged.reason}; {more}")
 
 
 def _alike(now: LogEvidence, errors: Array, robot: Robot) -> LogEvidence:

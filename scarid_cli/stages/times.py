@@ -18,6 +18,7 @@ from scarid_cli.stages.rows import Gaps
 from scarid_cli.stages.several import LOGS
 
 MUCH = 0.75  # of the log: where less would be kept, the other parts are worth a fit as well
+CAUSE = "a contact, or another load?"
 
 
 class Times:
@@ -49,16 +50,20 @@ class Times:
             yield batch
 
     def unexplained(self, bursts: Sequence[Interval]) -> str:
-        """What to do about these intervals, counted from sample 0; empty if their time is unknown.
+        """What to do about these intervals, counted from sample 0; empty if they have no time."""
+        found = self.of(bursts)
+        return advice(found, self._starts[0][1], self._end) if found else ""
+
+    def of(self, bursts: Sequence[Interval]) -> list[Interval]:
+        """These intervals, counted from sample 0, in the times of the log.
 
         Those of several logs, and those before the first sample of this table, have no time.
         """
         if self._several or not self._starts:
-            return ""
+            return []
         if any(burst.start < self._starts[0][0] for burst in bursts):
-            return ""
-        found = [Interval(self._time(burst.start), self._time(burst.end)) for burst in bursts]
-        return advice(found, self._starts[0][1], self._end)
+            return []
+        return [Interval(self._time(burst.start), self._time(burst.end)) for burst in bursts]
 
     def _time(self, counted: float) -> float:
         """The time in the log [s] of a time that is counted from sample 0 [s]."""
@@ -69,19 +74,26 @@ class Times:
 def advice(found: Sequence[Interval], start: float, end: float) -> str:
     """Which torques are not explained, and how they are left out of a log from `start` to `end`.
 
-    Times [s] are rounded so that the intervals grow. The options keep the longest part.
+    The options keep the longest part.
     """
-    if not found:
-        return ""
-    edges = [(floor(10.0 * x.start) / 10.0, ceil(10.0 * x.end) / 10.0) for x in found]
+    edges = _rounded(found)
     kept = pairwise([start, *(time for edge in edges for time in edge), end])
     first, last = max(list(kept)[::2], key=lambda part: part[1] - part[0])
     options = [f"--from-time {first:g}"] if first != start else []
     options += [f"--to-time {last:g}"] if last != end else []
-    times = listed([f"{a:g} to {b:g} s" for a, b in edges])
     few = last - first < MUCH * (end - start)
     parts = "give the other parts as several logs, or " if few else ""
     return (
-        f"the torques at {times} cannot be explained (a contact, or another load?): {parts}leave "
-        f"them out with {' '.join(options)}"
+        f"the torques at {spans(found)} cannot be explained ({CAUSE}): {parts}leave them out with "
+        f"{' '.join(options)}"
     )
+
+
+def spans(found: Sequence[Interval]) -> str:
+    """The intervals in words."""
+    return listed([f"{a:g} to {b:g} s" for a, b in _rounded(found)])
+
+
+def _rounded(found: Sequence[Interval]) -> list[tuple[float, float]]:
+    """Starts and ends [s], rounded so that the intervals grow."""
+    return [(floor(10.0 * x.start) / 10.0, ceil(10.0 * x.end) / 10.0) for x in found]

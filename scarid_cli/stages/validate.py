@@ -18,6 +18,7 @@ from scarid_cli.stages import Sink
 from scarid_cli.stages.changes import Known, verdict
 from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.prediction import added, predicted
+from scarid_cli.stages.times import Times
 
 
 def validate(
@@ -43,7 +44,9 @@ def validate(
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
     subsample = Checkpoint.at_start(None, table.period, holds=False).subsample
     treatment, left_out = treatment or Treatment(), LeftOut()
-    for batch, rows, (torques,) in predicted(table, [model], treatment, left_out):
+    times = Times(table, 0)
+    watched = times.watched(table)
+    for batch, rows, (torques,) in predicted(watched, [model], treatment, left_out):
         sums = added(sums, rows, torques)
         if before:
             subsample = subsample.add(rows)
@@ -54,7 +57,7 @@ def validate(
     if model.delay:
         extra["delay"] = model.delay
     if before:
-        extra["change"] = verdict(subsample.rows(), model, before).extra
+        extra["change"] = verdict(subsample.rows(), model, before, times).extra
     return _metrics(table, robot, [Quality.of(joint) for joint in sums], extra)
 
 

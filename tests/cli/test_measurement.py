@@ -200,6 +200,23 @@ def test_validate_takes_a_log_with_the_bandwidth_of_the_identification(shell: Ru
     assert line.split(" | ")[0] == of_identify
 
 
+@pytest.mark.parametrize("parameters", ["p.parquet", "p.csv"])
+def test_validate_names_the_time_at_which_the_robot_was_pushed(
+    parameters: str, shell: Run, tmp_path: Path
+) -> None:
+    shell("scarid trajgen --seed 3 --duration 20 | scarid simulate --seed 3 -o log.parquet")
+    shell(f"scarid identify log.parquet -o {parameters}")
+    table = pq.read_table(tmp_path / "log.parquet")
+    t = table["t"].to_numpy()
+    pushed = table["tau1"].to_numpy() + np.where(np.abs(t - 7.55) < 0.3, 5.0, 0.0)
+    at = table.column_names.index("tau1")
+    pq.write_table(table.set_column(at, table.field(at), pa.array(pushed)), tmp_path / "p.log")
+    found = shell(f"scarid validate --parameters {parameters} p.log")
+    assert found.status == 0, found.err
+    assert "\nscarid validate: unexplained: " in found.err
+    assert re.search(r"residual are those at 7\.1 to (7\.9|8) s \(a contact, or", found.err)
+
+
 def test_validate_chooses_a_bandwidth_where_the_parameters_have_none(shell: Run) -> None:
     shell("scarid identify $SAMPLES/scara2.csv -o p.csv")
     found = shell("scarid validate --parameters p.csv $SAMPLES/scara2.csv")

@@ -51,19 +51,26 @@ def of_wiring(steps: tuple[str, ...]) -> Verdict:
 
 
 def of_change(
-    change: Change, values: dict[str, float], ratios: Array | None, slight: float | None = None
+    change: Change,
+    values: dict[str, float],
+    ratios: Array | None,
+    residuals: Array,
+    slight: float | None = None,
 ) -> Verdict:
     """The verdict of the tests.
 
     `values` are the parameters at identification; `ratios` (joints) the deviations of the residual,
-    divided by those at identification, if these are known. A change of the torques by this part is
-    `slight`, because it is within the intervals of the identification.
+    divided by those at identification, if these are known, and `residuals` (joints) its rms,
+    relative to that of the torques. A change of the torques by this part is `slight`, because it is
+    within the intervals of the identification.
     """
     noisy = [] if ratios is None else np.flatnonzero(ratios > NOISIER).tolist()
     noise = "; ".join(f"joint {j + 1} {ratios[j]:.2g} times" for j in noisy if ratios is not None)
     facts = _facts(change, ratios)
     if not change.changed:
         tests = f"{change.tests} tests find no change (smallest p-value {change.p_value:.2g})"
+        if ratios is None:
+            return Verdict(UNCHANGED, f"{tests}, residual {percents(residuals)}", facts)
         if not noise:
             return Verdict(
                 UNCHANGED, f"the residuals are those of the identification; {tests}", facts
