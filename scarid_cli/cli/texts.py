@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -31,26 +31,31 @@ class Columns:
 
 def read_log(
     job: Job, file: str, source: ByteSource, given: Notation | None, beside: Sequence[str],
-    *, by_name: bool,
+    *, named: Collection[str],
 ) -> Table:  # fmt: skip
-    """A log and those that lie beside it; reports how they are written."""
-    table = _read(job, file, source, given, by_name=by_name)
+    """A log and those that lie beside it; reports how they are written.
+
+    `named` are the columns that are renamed.
+    """
+    table = _read(job, file, source, given, named)
     for other in beside:
-        more = _read(job, other, job.opened(other), replace(given, header=()) if given else None,
-                     by_name=by_name)  # fmt: skip
-        table = side_by_side(table, more)
+        apart = replace(given, header=()) if given else None
+        table = side_by_side(table, _read(job, other, job.opened(other), apart, named))
     return table
 
 
 def _read(
-    job: Job, file: str, source: ByteSource, given: Notation | None, *, by_name: bool
+    job: Job, file: str, source: ByteSource, given: Notation | None, named: Collection[str]
 ) -> Table:
     if file.endswith(ARCHIVES):
-        return read_archive(file)
+        table, left_out = read_archive(file, named)
+        if left_out:
+            job.notes.append(f"{file}: left out {', '.join(left_out)}, which --map does not name")
+        return table
     source = unzipped(source)
     if source.peek(4).startswith(BINARY):
         return flattened(job.read_source(source))
-    notation = notation_of(source, given, by_name=by_name)
+    notation = notation_of(source, given, by_name=bool(named))
     if notation.plain:
         return job.read_source(source)
     if not (given and given.separator):

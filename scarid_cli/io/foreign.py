@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Collection
 from os import SEEK_END
 from pathlib import Path
 from typing import Any
@@ -56,23 +57,43 @@ class TranslatedCsv(Wrapped):
         return b"\n".join(b",".join(line.split()) for line in lines)
 
 
-def read_archive(path: str) -> Table:
+def read_archive(path: str, named: Collection[str] = ()) -> tuple[Table, list[str]]:
     """The arrays of an .npz or .mat file as columns; a matrix `q` becomes q1, q2, ...
 
-    Single numbers are left out. Any other array that is not of real numbers, or whose numbers a
-    double cannot hold exactly, is BadData, as is a file that cannot be read.
+    Single numbers are left out. If the other arrays are not the columns of one table, only those
+    are read that are `named`, by themselves or one of their columns; the second value are the names
+    of those that are left out. An array that is not of real numbers, or whose numbers a double
+    cannot hold exactly, is BadData, as is a file that cannot be read.
     """
+    arrays = {name: array for name, array in _read(path).items() if array.size > 1}
+    kept = {name: array for name, array in arrays.items() if {*_names(name, array)} & {*named}}
+    if not kept or _are_a_table(arrays):
+        kept = arrays
     columns: dict[str, Any] = {}
-    for name, array in _read(path).items():
-        columns |= _columns(path, name, np.asarray(array))
-    lengths = {len(column) for column in columns.values()}
-    if not columns or len(lengths) > 1:
-        found = ", ".join(f"{name} ({len(x)})" for name, x in columns.items()) or "no numbers"
-        raise bad_data(
-            path, found, expected="arrays of one length", remedy="save only those of the log"
-        )
+    for name, array in kept.items():
+        columns |= _columns(path, name, array)
+    if not _are_a_table(kept):
+        found = ", ".join(f"{name} ({_size(x)})" for name, x in kept.items()) or "no numbers"
+        remedy = "name those of the log, such as `--map 't=time,q*=pos'`"
+        raise bad_data(path, found, expected="arrays of one length", remedy=remedy)
     batch = pa.RecordBatch.from_arrays([doubles(x) for x in columns.values()], list(columns))
-    return Table(path, batch.schema, Metadata(), iter([batch]))
+    table = Table(path, batch.schema, Metadata(), iter([batch]))
+    return table, [name for name in arrays if name not in kept]
+
+
+def _numeric(array: Any) -> bool:
+    return array.dtype.kind in "fiub" and array.ndim <= 2
+
+
+def _are_a_table(arrays: dict[str, Any]) -> bool:
+    """Whether all are numbers, and of one length."""
+    lengths = {max(array.shape) for array in arrays.values()}
+    return len(lengths) == 1 and all(map(_numeric, arrays.values()))
+
+
+def _size(array: Any) -> str:
+    """`1000 x 6`, or `1000` of a vector."""
+    return " x ".join(str(n) for n in sorted(array.shape, reverse=True) if n > 1)
 
 
 def _read(path: str) -> dict[str, Any]:
@@ -135,19 +156,16 @@ def _kind(array: Any) -> str:
 
 
 def _columns(path: str, name: str, array: Any) -> dict[str, Any]:
-    """One column for a vector; for a matrix one per column, or one per row if rows are longer."""
-    if array.size < 2:
-        return {}
-    if array.dtype.kind not in "fiub" or array.ndim > 2:
+    """The columns of an array by name."""
+    if not _numeric(array):
         raise bad_data(
             path,
             f"{array.ndim} dimensions" if array.ndim > 2 else _kind(array),
             expected="vectors or matrices of real numbers",
-            remedy="save only the arrays of the log",
+            remedy="save only the arrays of the log, or name those with --map",
             column=name,
         )
-    flat = array.reshape(len(array), -1)
-    if array.dtype.kind in "iu" and np.any(flat.astype(np.float64).astype(array.dtype) != flat):
+    if array.dtype.kind in "iu" and np.any(array.astype(np.float64).astype(array.dtype) != array):
         raise bad_data(
             path,
             "whole numbers beyond 2^53",
@@ -155,8 +173,13 @@ def _columns(path: str, name: str, array: Any) -> dict[str, Any]:
             remedy="subtract an offset before saving them",
             column=name,
         )
+    flat = array.reshape(len(array), -1)
     if flat.shape[0] < flat.shape[1]:
         flat = flat.T
-    if flat.shape[1] == 1:
-        return {name: flat[:, 0]}
-    return {f"{name}{i}": column for i, column in enumerate(flat.T, start=1)}
+    return dict(zip(_names(name, array)[-flat.shape[1] :], flat.T, strict=True))
+
+
+def _names(name: str, array: Any) -> list[str]:
+    """The name of a vector; of a matrix, its name and one for each column, or longer row."""
+    width = min(array.shape) if array.ndim > 1 else 1
+    return [name, *(f"{name}{i}" for i in range(1, width + 1))] if width > 1 else [name]

@@ -66,6 +66,18 @@ def test_fields_of_structures_become_columns(shell: Shell, tmp_path: Path) -> No
     assert result.out == "t,q1,q2,tau1,tau2\n0,0,1,1,1\n0.01,2,3,1,1\n0.02,4,5,1,1\n"
 
 
+def test_map_names_the_arrays_of_the_log_among_others(shell: Shell, tmp_path: Path) -> None:
+    """As in the files of benchmarks with a part to test and one to validate."""
+    arrays = {"t_test": np.arange(3) * 0.01, "q_test": np.ones((2, 3)), "u_test": np.ones((2, 3))}
+    others = {"q_val": np.ones((2, 4)), "poses": np.ones((4, 4, 3)), "z": np.ones(3) * 1j}
+    scipy.io.savemat(tmp_path / "log.mat", arrays | others)
+    result = shell("scarid convert --map 't=t_test,q*=q_test,tau1=u_test1' log.mat")
+    assert result.out == "t,q1,q2,tau1,u_test2\n0,1,1,1,1\n0.01,1,1,1,1\n0.02,1,1,1,1\n"
+    assert "log.mat: left out q_val, poses, z, which --map does not name" in result.err
+    message = "found q_test (3 x 2), q_val (4 x 2), expected arrays of one length; name those"
+    refused(shell("scarid convert --map 'q*=q_test,a=q_val1' log.mat"), 65, message)
+
+
 @pytest.mark.parametrize("name", ["log.mat", "log.npz", "a log.MCAP"])
 def test_a_file_that_only_convert_reads_names_it(name: str, shell: Shell, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(b"\0" * 200)

@@ -48,7 +48,7 @@ def run(
     extension = bag_extension(file, source)
     if extension is None:
         notation = _notation(separator, header, decimal_comma=decimal_comma)
-        table = read_log(job, file, source, notation, beside, by_name=bool(pairs))
+        table = read_log(job, file, source, notation, beside, named=pairs.values())
         columns = columns_of(job, table, pairs, given, recorder, arm, order)
     else:
         from scarid_cli.cli.recordings import Choice, read_recording  # not needed otherwise
