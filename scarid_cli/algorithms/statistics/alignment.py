@@ -24,9 +24,8 @@ class Lead:
     """The time [s] by which the torques lead the motion, as behind a delay or a low-pass.
 
     `theta` (columns) are the estimates with which it was found, the last of them what remains of
-    the delay. `doubt` (columns) is how far they may be off because the other form may be the true
-    one, or a part of the lead may have it: as a root mean square over both, as likely as the log
-    says, and over the part.
+    the delay. `doubt` (columns) is their root mean square error from two causes: the other form may
+    be the true one, with the probability that the log gives it, or part of the lead may have it.
     """
 
     seconds: float
@@ -63,8 +62,8 @@ def aligned(estimator: BaseEstimator, start: Array, rows: Rows, theta: Array, ow
     """The estimation with the delay of the torques: a shift, and what remains as a parameter.
 
     The search begins with the estimates `theta`, without a delay. The first `own` columns of W are
-    those of the parameters; the delay moves their torques alone. The ringing of friction, of which
-    little is known but its size, has derivatives that are large where nothing else is.
+    those of the parameters; the delay moves their torques alone, not those of the ringing of
+    friction: little is known of it but its size, and its derivatives are large.
 
     If a low-pass is the likelier cause of the lead, the torques are straightened too. The error of
     what remains enters those of the parameters.
