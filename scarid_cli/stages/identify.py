@@ -53,7 +53,8 @@ def identify(
     if checkpoint is None:
         holds = treatment.holds or estimator.HOLDS
         state = estimator.init(initial)
-        checkpoint = Checkpoint.at_start(state, table.period, holds=holds)
+        thins = treatment.align and not estimator.RECURSIVE  # for which each row counts
+        checkpoint = Checkpoint.at_start(state, table.period, holds=holds, thins=thins)
     times, reach = Times(table, checkpoint.seen), Reach(len(robot.joints))
     watched = times.watched(reach.watched(table))
     checkpoint = _after_all_rows(watched, robot, estimator, treatment, checkpoint, trace)
@@ -102,11 +103,14 @@ def _after_all_rows(
         trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
     parts = treated(table, robot, treatment, checkpoint.seen, estimator, checkpoint.left_out)
     for batch, rows in parts:
+        if treatment.align:  # then the rows of the subsample are fitted
+            checkpoint = _with_sample(checkpoint, rows)
+            continue
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))
             trace.write(with_columns(batch, schema, new))
-    return checkpoint
+    return replace(checkpoint, subsample=checkpoint.subsample.packed())
 
 
 def _matched(table: Table) -> bool:
@@ -132,11 +136,14 @@ def _stepped(
     estimator: BaseEstimator, checkpoint: Checkpoint, rows: Rows, *, trace: bool
 ) -> tuple[Checkpoint, Array]:
     state, estimates = estimator.step(checkpoint.state, rows, trace=trace)
-    seen = int(rows.at[-1]) + 1 if rows.samples else checkpoint.seen
     blocks = checkpoint.blocks.add(rows) if checkpoint.blocks else None
-    subsample = checkpoint.subsample.add(rows)
-    following = replace(checkpoint, state=state, subsample=subsample, blocks=blocks, seen=seen)
-    return following, estimates
+    return replace(_with_sample(checkpoint, rows), state=state, blocks=blocks), estimates
+
+
+def _with_sample(checkpoint: Checkpoint, rows: Rows) -> Checkpoint:
+    """The checkpoint whose subsample has seen these rows as well."""
+    seen = int(rows.at[-1]) + 1 if rows.samples else checkpoint.seen
+    return replace(checkpoint, subsample=checkpoint.subsample.add(rows), seen=seen)
 
 
 def _not_identifiable(table: Table, robot: Robot, error: NotIdentifiableError) -> BadData:

@@ -170,6 +170,8 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         EVIDENCE: stored(found.evidence, labels.names),
         **found.found.extra,
     }
+    if found.thin > 1:
+        extra["thinned"] = found.thin
     if np.isfinite(found.covariance).all():
         extra["covariance"] = found.covariance.tolist()
     if found.delay:

@@ -44,7 +44,7 @@ def treated(
 
     `left_out` counts the rows that are left out near reversals and standstill.
 
-    A treatment that needs all rows at once gives a single part, without a batch. `seen` is the
+    Rows that are decimated are a single part, without a batch. `seen` is the
     number of the first sample. The rows include the reference position and velocity if the
     estimator needs them and the table has them; for one that follows the reference, the rows are
     those of the reference.
@@ -71,7 +71,7 @@ def _treated(
 ) -> Iterator[tuple[pa.RecordBatch | None, Rows]]:
     if treatment.counting and not treatment.decimate:
         parts = counted(parts, treatment.counting, left_out)
-    if not treatment.holds:
+    if not treatment.decimate:
         yield from parts
         return
     held = [rows for _, rows in parts]

@@ -42,7 +42,7 @@ def validate(
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
         predictions.start(replace(table, schema=schema, meta=meta).arrow_schema())
-    subsample = Checkpoint.at_start(None, table.period, holds=False).subsample
+    subsample = Checkpoint.at_start(None, table.period).subsample
     treatment, left_out = treatment or Treatment(), LeftOut()
     times = Times(table, 0)
     watched = times.watched(table)

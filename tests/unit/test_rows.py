@@ -77,6 +77,18 @@ def test_a_subsample_is_thinned_before_segments_are_dropped() -> None:
 
 
 @pytest.mark.parametrize("sizes", SIZES)
+@pytest.mark.parametrize("thinnest", [1, 5])
+def test_a_subsample_may_cover_the_whole_record(sizes: tuple[int, ...], thinnest: int) -> None:
+    W = np.arange(60_000.0).reshape(-1, 1, 1)
+    empty = Subsample(samples=5_000, thinnest=thinnest, covers=True)
+    kept = fed(empty, plain(W, W[:, :, 0]), sizes)
+    assert isinstance(kept, Subsample)
+    thin = {1: 1, 5: 4}[thinnest]
+    np.testing.assert_array_equal(kept.rows().W[:, 0, 0], np.arange(0.0, 60_000.0, thin))
+    np.testing.assert_array_equal(kept.packed().rows().W, kept.rows().W)
+
+
+@pytest.mark.parametrize("sizes", SIZES)
 def test_blocks_have_the_same_bits_however_rows_arrive(sizes: tuple[int, ...]) -> None:
     rows = regression(60_000)
     gapped = rows.part(np.flatnonzero((rows.at < 20_000) | (rows.at > 31_234)))

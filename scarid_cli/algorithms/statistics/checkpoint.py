@@ -8,7 +8,7 @@ from typing import Any
 from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.rows import thinning
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.subsample import ALL, Subsample
+from scarid_cli.algorithms.statistics.subsample import MOST_HELD, Subsample
 
 
 @dataclass(frozen=True)
@@ -27,11 +27,15 @@ class Checkpoint:
     left_out: LeftOut = field(default_factory=LeftOut)
 
     @classmethod
-    def at_start(cls, state: Any, h: float, *, holds: bool) -> Checkpoint:
+    def at_start(
+        cls, state: Any, h: float, *, holds: bool = False, thins: bool = False
+    ) -> Checkpoint:
         """The checkpoint before the first sample of a record sampled every h [s].
 
-        `holds`: the estimation keeps all rows in memory.
+        `holds`: the estimation keeps rows of the whole record in memory; all, unless it `thins`
+        them where they are many.
         """
         if holds:
-            return cls(state, Subsample(samples=ALL), None)
+            thinnest = thinning(h) if thins else 1
+            return cls(state, Subsample((), MOST_HELD, MOST_HELD, thinnest, covers=True), None)
         return cls(state, Subsample(thinnest=thinning(h)), Blocks.every(h))

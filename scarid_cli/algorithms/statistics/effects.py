@@ -200,13 +200,16 @@ class Trial:
         return self._of(A, scales, self.places), places
 
     def _of(self, A: Array, scales: Array, places: Numbers) -> Products:
-        """The products of rows in these places, which have the same distance in each run."""
+        """The products of rows A in these places, which have the same distance in each run.
+
+        A is large, and is overwritten.
+        """
         scales, rows = scales[places], self.rows
         if self.noise:
             A = self.noise.whitened(A, scales > 0.0, rows.at[places], rows.h)
             scales = np.ones_like(scales)
-        weighted = A * (scales * self.weights)[:, :, None]
-        return Products.of(weighted, self.number[places], self.count, rows.W.shape[2])
+        A *= (scales * self.weights)[:, :, None]
+        return Products.of(A, self.number[places], self.count, rows.W.shape[2])
 
     def beside(
         self, products: Products, places: dict[str, list[int]], plain: Solved, same: Solved
@@ -231,7 +234,7 @@ class Trial:
         if smooth is None:
             return []
         for scales, without in same:
-            products = self._of(smooth.A, scales, smooth.centres)
+            products = self._of(smooth.A.copy(), scales, smooth.centres)
             if parallel := products.solved([]):
                 found = self.effect(PARALLEL, plain, without, parallel)
                 return [found, *self.beside(products, smooth.places, plain, parallel)]

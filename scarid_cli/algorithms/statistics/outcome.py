@@ -90,9 +90,9 @@ class Outcome:
     the model was reduced to essential parameters. `full` is the fit of all parameters, before any
     were dropped, and `covariance` their covariance, nan if it is not known. `delay` is the fitted
     delay of the torques and its standard error [s], `low_pass` whether they lead as behind a
-    low-pass. `excitation` (parameters) is the root-mean-
-    square torque that one unit of each parameter causes on this motion. `samples` is the number of
-    samples. `evidence` is that of the rows, at these estimates, which later logs are compared with.
+    low-pass. `excitation` (parameters) is the root-mean-square torque that one unit of each
+    parameter causes on this motion. `samples` is the number of samples, of which every `thin`-th is
+    fitted. `evidence` is that of the rows, at these estimates, which later logs are compared with.
     """
 
     found: Estimation
@@ -105,6 +105,7 @@ class Outcome:
     low_pass: bool
     excitation: Array
     samples: int
+    thin: int
     evidence: LogEvidence
 
 
@@ -122,8 +123,9 @@ def outcome(
     whole = _problem(estimator, initial, end, robot, align=treatment.align)
     problem, diagnostics = whole, whole.diagnostics(treatment.gain_error)
     covariance, reduction = diagnostics.matrix, None
+    thin = end.subsample.thin if treatment.align else 1
     if treatment.essential:
-        noise = _noise(whole, diagnostics, end.subsample.counted)
+        noise = _noise(whole, diagnostics, end.subsample.counted // thin)
         reduction = essential(whole.found.fit, noise, whole.own)
         if reduction.dropped:
             problem = whole.reduced(reduction)
@@ -144,6 +146,7 @@ def outcome(
         low_pass=lead is not None and lead.low_pass,
         excitation=_excitation(whole),
         samples=end.subsample.total,
+        thin=thin,
         evidence=_evidence(whole, fit.estimates[:own], kept, problem.rest),
     )
 

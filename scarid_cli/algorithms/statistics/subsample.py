@@ -1,4 +1,4 @@
-"""A subsample of a record: all rows of a short one, evenly spread segments of a long one."""
+"""A subsample of a record: all rows of a short one, evenly spread ones of a long one."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from scarid_cli.algorithms.regression.rows import Rows, joined
 
 MOST_SAMPLES = 16_384  # of a streamed record
 MOST_NUMBERS = 2_000_000  # in the arrays of these samples, unless FEWEST_SAMPLES have more
+MOST_HELD = 20_000_000  # numbers, before a record that is held is thinned
 FEWEST_SAMPLES = 4096
-ALL = 10**15
 MOST_SEGMENTS = 8
 
 
@@ -19,14 +19,17 @@ MOST_SEGMENTS = 8
 class Subsample:
     """Every `thin`-th sample of every `stride`-th segment of a record.
 
-    At most `samples` are held. As the record grows, the samples are thinned first, until every
-    `thinnest`-th is left; after that, segments are dropped. `total` is the number of samples of the
-    record so far, and `counted` the number of their rows whose scale is not zero.
+    At most `samples` are held, with at most so many `numbers`. As the record grows, the samples are
+    thinned first, until every `thinnest`-th is left; after that, segments are dropped, unless the
+    subsample `covers` the whole record. `total` is the number of samples of the record so far, and
+    `counted` the number of their rows whose scale is not zero.
     """
 
     parts: tuple[Rows, ...] = ()
     samples: int = MOST_SAMPLES
+    numbers: int = MOST_NUMBERS
     thinnest: int = 1
+    covers: bool = False
     thin: int = 1
     stride: int = 1
     total: int = 0
@@ -34,9 +37,7 @@ class Subsample:
 
     def add(self, rows: Rows) -> Subsample:
         """The subsample after the next samples of the record."""
-        limit = self.samples
-        if limit < ALL:
-            limit = min(limit, max(FEWEST_SAMPLES, MOST_NUMBERS // _size(rows)))
+        limit = min(self.samples, max(FEWEST_SAMPLES, self.numbers // _size(rows)))
         parts, thin, stride = list(self.parts), self.thin, self.stride
         start = 0
         while start < rows.samples:
@@ -49,6 +50,8 @@ class Subsample:
                 if 2 * thin <= self.thinnest:
                     thin, segment = 2 * thin, 2 * segment
                     parts = _thinned(parts, thin)
+                elif self.covers:
+                    break
                 else:
                     stride *= 2
                     parts = [part for part in parts if int(part.at[0]) // segment % stride == 0]
@@ -66,6 +69,10 @@ class Subsample:
     def complete(self) -> bool:
         """Whether the subsample has every sample of the record."""
         return self.thin == self.stride == 1
+
+    def packed(self) -> Subsample:
+        """The same in one part, of which `rows` makes no copy."""
+        return replace(self, parts=(joined(self.parts),)) if self.parts else self
 
     def rows(self) -> Rows:
         """The rows of the subsample, with `at` and `h` those of the thinned record."""

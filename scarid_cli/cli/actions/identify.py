@@ -275,6 +275,8 @@ def _number(text: str, part: str) -> float:
 def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[str, str]:
     """A line of facts, and the verdict."""
     line = f"{robot}, {estimator}, {extra['samples']} samples"
+    if thin := extra.get("thinned"):
+        line += f" (every {thin}th fitted)"
     if extra.get("whitened"):
         line += ", whitened, as the residuals are correlated in time"
     if "delay" in extra:
