@@ -174,6 +174,18 @@ def dead(joint: int) -> Callable[[Log], Log]:
     return spoil
 
 
+def deadened(joint: int, share: float) -> Callable[[Log], Log]:
+    """A drive that reports the smaller ones of the torques, this share of the rows, as 0."""
+
+    def spoil(log: Log) -> Log:
+        tau = log.tau.copy()
+        least = np.quantile(np.abs(tau[joint - 1]), share)
+        tau[joint - 1, np.abs(tau[joint - 1]) < least] = 0.0
+        return replace(log, tau=tau)
+
+    return spoil
+
+
 SPOILED = {
     "degrees": Spoiled("scara", degrees, "positions", "degrees"),
     "degrees, six joints": Spoiled("ur10", degrees, "positions", "degrees"),
@@ -190,6 +202,12 @@ SPOILED = {
     ),
     "torque of joint 3 of 6 reversed": Spoiled(
         "ur10", torques_times(1, 1, -1, 1, 1, 1), "signs", "torque of joint 3 seems reversed"
+    ),
+    "torques of joints 4 to 6 of 6 reversed": Spoiled(
+        "ur10",
+        torques_times(1, 1, 1, -1, -1, -1),
+        "signs",
+        "torque of joints 4, 5, 6 seems reversed",
     ),
     "position of joint 1 reversed": Spoiled(
         "arm", positions_times(-1.0, 1.0), "signs", "position of joint 1 seems reversed"
@@ -230,5 +248,8 @@ SPOILED = {
     "torques 10 rows late, six joints": Spoiled("ur10", late(10), "delay", "behind"),
     "encoder of 9 bits": Spoiled("scara", coarse(2 * np.pi / 512), "resolution", "coarse"),
     "joint 2 braked": Spoiled("scara", frozen(2), "motion", "joint 2 hardly moves"),
+    "small torques of joint 2 not measured": Spoiled(
+        "scara", deadened(2, 0.8), "dead zone", "joint 2 is one and the same value in"
+    ),
     "no torque of joint 1": Spoiled("arm", dead(1), "constant torque", "joint 1 never changes"),
 }

@@ -43,6 +43,8 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
         return
     constant = values.constant(log.tau)
     yield constant
+    if constant.status == OK and time.period:
+        yield values.dead_zone(log, time.period)
     yield values.saturation(log.tau)
     motion = Motion.of(log, time.period) if time.period else None
     if motion is None or not motion.parts():

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from scarid_cli.algorithms.changes.wiring import Wiring
+from scarid_cli.algorithms.regression.normal_equations import roots
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array, Marks
@@ -25,6 +27,7 @@ PER_COLUMN, FEWEST, MOST = 8, 300, 1500  # samples that are fitted, spread over 
 EXTRA = 4  # columns added for each joint: viscous, Coulomb, offset, derivative of the torque
 FRICTION = 2  # of which the first are friction
 RIDGE = 1e-10  # added to the squares of columns of unit length, so that all is determined
+MOST_JOINTS = 12  # whose signs are tried all at once
 EXACT = 1e-9  # of the mean square torque, below which a residual is rounding
 DEVIATIONS = 3.0  # standard errors from which on a sign is known
 
@@ -160,6 +163,27 @@ def fitted(robot: Robot, samples: Samples) -> Fit:
     wide = columns(robot, samples.motion)
     found = solved(wide, samples.motion[3], samples.counts)
     return Fit(found.residuals, _powers(robot, wide, samples, found))
+
+
+def torque_signs(robot: Robot, samples: Samples) -> tuple[int, ...]:
+    """The sign of the torque of each joint, 1 or -1, with which the model leaves least of them.
+
+    That of joint 1 is 1. Signs leave A'A as it is, and A'y is a sum of the joints with their signs.
+    So the squares that a fit explains are known for all signs from the products of one.
+    """
+    motion, counts = samples.motion, samples.counts
+    joints = len(counts)
+    if joints > MOST_JOINTS:
+        return (1,) * joints
+    tau = motion[3]
+    wide, weights = columns(robot, motion), 1.0 / _deviations(tau, counts)
+    parts = [_weighted(wide[:, [j]], tau[[j]], counts[[j]], weights[[j]]) for j in range(joints)]
+    independent, _ = roots(np.sum([A.T @ A for A, _ in parts], axis=0))
+    each = independent.T @ np.stack([A.T @ y for A, y in parts], axis=1)
+    signs = np.array(list(product((1, -1), repeat=joints - 1)))
+    signs = np.insert(signs, 0, 1, axis=1)
+    best = np.argmax(np.sum((signs @ each.T) ** 2, axis=1))
+    return tuple(signs[best].tolist())
 
 
 def _deviations(tau: Array, counts: Marks) -> Array:

@@ -47,7 +47,9 @@ def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
             advice += f", or `{single}` if all others are in rad"
         return failed("positions", figure, advice), factors
     excess = max(_excess(log.q[i], robot, i, speeds[i]) for i in outside)
-    figure = f"{names} at {excess:.3g} times the limits of {robot.short_name}"
+    resting = max(_excess(log.q[i], robot, i, 0.0) for i in outside)
+    what = "limits" if resting > SPARE else "velocity limit"
+    figure = f"{names} at {excess:.3g} times the {what} of {robot.short_name}"
     advice = "is this the robot, and is a position that of the motor (gear_ratio, zero, unit)?"
     return (failed if excess > GEAR else warning)("positions", figure, advice), factors
 

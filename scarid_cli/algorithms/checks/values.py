@@ -1,4 +1,4 @@
-"""Values that are missing, and torques that stay at their extreme."""
+"""Values that are missing, and torques that stay at their extreme or at another value."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ PILE = 5.0 / (2.0**0.5 - 1.0)
 BIN = 0.01  # of the range: the levels below the extreme that it is compared with, at least one
 FEWEST = 10  # values at the extreme
 MANY = 0.05  # of the rows: the torque of so many is not known
+INTERVAL = 0.2  # s, over which a moving joint goes further than a resting one with its noise
+MOVING = 0.05  # of the root mean square of how far it goes
+MOST = 0.5  # of the rows in which a joint moves: more with one torque are not measured
 
 
 def missing(log: Log) -> Finding:
@@ -68,3 +71,29 @@ def constant(tau: Array) -> Finding:
         return ok("constant torque", "none")
     figure = f"the torque of {joints_text(still)} never changes"
     return failed("constant torque", figure, "log the motor's torque or current of every joint")
+
+
+def dead_zone(log: Log, period: float) -> Finding:
+    """Torques that seldom change while their joint moves, in a log of this period [s]."""
+    rows = max(1, round(INTERVAL / period))
+    shares = np.array([_same(x, y, rows) for x, y in zip(log.q, log.tau, strict=True)])
+    dead = np.flatnonzero(shares > MOST)
+    if not len(dead):
+        return ok("dead zone", "torques change while joints move")
+    figure = (
+        f"the torque of {joints_text(dead + 1)} is one and the same value in "
+        f"{', '.join(f'{100.0 * x:.0f}' for x in shares[dead])} % of the rows in which it moves"
+    )
+    advice = "small torques are not measured: log the motor's current with all its digits"
+    return failed("dead zone", figure, advice)
+
+
+def _same(q: Array, tau: Array, rows: int) -> float:
+    """The largest share with one torque of the rows in which a joint moves.
+
+    It moves where it goes far within so many rows.
+    """
+    way = np.abs(q[rows:] - q[:-rows])
+    moves = way > MOVING * np.sqrt(np.nanmean(way**2)) if np.isfinite(way).any() else way > 0.0
+    values, counts = np.unique(tau[: len(way)][moves], return_counts=True)
+    return float(counts.max() / counts.sum()) if len(values) else 0.0

@@ -2,20 +2,25 @@
 
 Wirings that differ from the log by a few reversals or exchanges are fitted. One that leaves far
 less of the torques unexplained is preferred; of those that explain them alike, one whose friction
-brakes. A reversal of all torques changes nothing but the sign of all parameters, and so only the
-friction tells it.
+brakes. All signs of the torques are tried at once, because motors are mounted either way. A
+reversal of all torques changes nothing but the sign of all parameters, and so only the friction
+tells it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+
+import numpy as np
 
 from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok, warning
-from scarid_cli.algorithms.checks.model import Fit, Samples, fitted
-from scarid_cli.algorithms.checks.search import Explained, searched
+from scarid_cli.algorithms.checks.model import DEVIATIONS, Fit, Samples, fitted, torque_signs
+from scarid_cli.algorithms.checks.search import FALL, Explained, searched
 from scarid_cli.algorithms.robots.description import Robot
 
+SURE = 30.0  # standard errors of the friction, whose sign decides then
+ALIKE = 1.1  # times the mean square residual of one joint, for the same explanation
 EXPLAINED = 0.02  # of the mean square torque of each joint: exchanged joints leave far more
 
 
@@ -26,7 +31,8 @@ def wired(robot: Robot, samples: Samples) -> Explained[Wiring]:
         return fitted(robot, samples.wired(wiring))
 
     same = Wiring.same(len(robot.joints))
-    return _braking(searched(Explained(same, fit_of(same)), fit_of, _neighbours), fit_of)
+    found = _signed(Explained(same, fit_of(same)), torque_signs(robot, samples), fit_of)
+    return _braking(searched(found, fit_of, _neighbours), fit_of)
 
 
 def _neighbours(found: Explained[Wiring]) -> list[Wiring]:
@@ -37,19 +43,50 @@ def _neighbours(found: Explained[Wiring]) -> list[Wiring]:
     return [other for other in others if other.places == found.case.places]
 
 
-def _braking(found: Explained[Wiring], fit_of: Callable[[Wiring], Fit]) -> Explained[Wiring]:
-    """The wiring with all torques reversed, if friction brakes more joints then.
+def _signed(
+    found: Explained[Wiring], signs: tuple[int, ...], fit_of: Callable[[Wiring], Fit]
+) -> Explained[Wiring]:
+    """The wiring with these signs of the torques, if the model explains them better then.
 
-    Single joints are not reversed for their friction alone: the friction of a joint that hardly has
-    a torque may be negative for other reasons.
+    All of them may be reversed as well: the signs are taken whose friction brakes, or else those
+    that reverse fewer.
     """
-    if not found.fit.driving:
+    if len(set(signs)) == 1:
         return found
+    few = sum(sign < 0 for sign in signs) <= len(signs) / 2
+    both = [_reversed(found, signs, fit_of), _reversed(found, [-s for s in signs], fit_of)]
+    other = min(both if few else both[::-1], key=lambda one: len(one.fit.driving))
+    most = found.fit.misfit + np.log(FALL) / len(signs)  # half the residual of one joint
+    return other if other.fit.misfit < most else found
+
+
+def _reversed(
+    found: Explained[Wiring], signs: Sequence[int], fit_of: Callable[[Wiring], Fit]
+) -> Explained[Wiring]:
     wiring = found.case
-    for joint in range(len(found.fit.powers)):
+    for joint in (j for j, sign in enumerate(signs) if sign < 0):
         wiring = wiring.reversed(1, joint)
-    other = Explained(wiring, fit_of(wiring))
-    return other if len(other.fit.driving) < len(found.fit.driving) else found
+    return Explained(wiring, fit_of(wiring))
+
+
+def _braking(found: Explained[Wiring], fit_of: Callable[[Wiring], Fit]) -> Explained[Wiring]:
+    """The wiring with the torques of those joints reversed that friction drives.
+
+    Friction must brake them then, and the model explain the torques alike, as it does if these
+    joints hardly move others: the friction of a joint that hardly has a torque may be negative for
+    other reasons. Or else all torques are reversed, if friction drives at most half as many then.
+    """
+    driving = found.fit.driving
+    if not driving:
+        return found
+    joints = range(len(found.fit.powers))
+    some = _reversed(found, [-1 if j in driving else 1 for j in joints], fit_of)
+    alike = some.fit.misfit < found.fit.misfit + np.log(ALIKE) / len(joints)
+    before, after = found.fit.powers[driving], some.fit.powers[driving]
+    if np.all(after > DEVIATIONS) and (alike or np.all(np.minimum(-before, after) > SURE)):
+        return some
+    every = _reversed(found, [-1] * len(joints), fit_of)
+    return every if 2 * len(every.fit.driving) <= len(driving) else found
 
 
 def findings(found: Explained[Wiring]) -> list[Finding]:
