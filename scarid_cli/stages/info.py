@@ -80,6 +80,8 @@ class Description:
         meta, schema = self.table.meta, self.schema
         stated = schema and schema.kind == meta.kind
         origin = f"version {meta.version}" if stated else "inferred from its columns"
+        if schema and schema.kind == "trace" and not stated:  # which may have any names
+            origin = "or a log whose columns have other names: `scarid convert --map`"
         yield f"table     {self.table.name}"
         yield f"kind      {f'{schema.kind} ({origin})' if schema else 'unknown'}"
         yield f"robot     {meta.robot or 'not stated'}"

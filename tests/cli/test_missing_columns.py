@@ -82,3 +82,11 @@ def test_another_kind_of_table_is_called_what_it_is(
     result = scarid(*line.replace("SAMPLES", str(samples)).split())
     assert result.status == 65
     assert told in result.err
+
+
+def test_info_says_how_the_columns_of_a_log_get_the_expected_names(
+    shell: Run,
+) -> None:
+    """Any table with a time column may be a trace of parameters."""
+    found = shell("printf 't,shoulder\\n0,1\\n0.1,2\\n' | scarid info")
+    assert "trace (or a log whose columns have other names: `scarid convert --map`)" in found.out
