@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from conftest import Result, refused
 
+from scarid_cli.cli.actions.identify import summary_lines
+
 Shell = Callable[..., Result]
 HALVES = (
     "head -301 motion.csv > first.csv && (head -1 motion.csv; tail -n +302 motion.csv) > second.csv"
@@ -218,3 +220,10 @@ def test_an_error_of_the_delay_that_is_unknown_is_said_to_be(shell: Shell) -> No
     assert result.status == 0, result.err
     assert "(error unknown)" in result.err
     assert "nan" not in result.err
+
+
+@pytest.mark.parametrize(("thin", "words"), [(2, "every 2nd"), (4, "every 4th")])
+def test_a_fit_of_some_samples_says_of_which(thin: int, words: str) -> None:
+    extra = {"samples": 50_000, "thinned": thin, "reasons": [], "verdict": "good"}
+    line, _ = summary_lines("arm", "gls", extra)
+    assert line == f"arm, gls, 50000 samples ({words} fitted)"

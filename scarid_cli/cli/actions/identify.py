@@ -276,7 +276,7 @@ def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[st
     """A line of facts, and the verdict."""
     line = f"{robot}, {estimator}, {extra['samples']} samples"
     if thin := extra.get("thinned"):
-        line += f" (every {thin}th fitted)"
+        line += f" (every {'2nd' if thin == 2 else f'{thin}th'} fitted)"
     if extra.get("whitened"):
         line += ", whitened, as the residuals are correlated in time"
     if "delay" in extra:
