@@ -110,7 +110,9 @@ def _after_all_rows(
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))
             trace.write(with_columns(batch, schema, new))
-    return replace(checkpoint, subsample=checkpoint.subsample.packed())
+    if treatment.align:  # only then are there many rows, and none that follow
+        checkpoint = replace(checkpoint, subsample=checkpoint.subsample.packed())
+    return checkpoint
 
 
 def _matched(table: Table) -> bool:

@@ -171,6 +171,28 @@ def test_validation_applies_the_delay_that_was_fitted(order: int) -> None:
     assert np.all(at_once < late - 1e-3)
 
 
+def test_a_long_record_in_parts_has_the_statistics_of_one_in_one() -> None:
+    """The samples that are kept do not depend on where an estimation was saved and continued."""
+    (batch,) = motion().batches
+    long = pa.Table.from_batches([batch] * 12).combine_chunks().to_batches()[0]
+    long = long.set_column(0, "t", doubles(PERIOD * np.arange(long.num_rows)))
+    kept: list[Checkpoint] = []
+
+    def go_on(part: pa.RecordBatch, before: Checkpoint | None) -> Checkpoint:
+        table = Table("motion", long.schema, motion().meta, iter([part]))
+        solver = ESTIMATORS.load("ls")()
+        identify(table, SCARA, solver, SCARA.apriori, checkpoint=before, keep=kept.append)
+        return kept[-1]
+
+    whole, parts = go_on(long, None), None
+    for start in range(0, long.num_rows, 5000):
+        parts = go_on(long.slice(start, 5000), parts)
+    assert parts
+    assert not whole.subsample.complete
+    np.testing.assert_array_equal(parts.subsample.rows().at, whole.subsample.rows().at)
+    np.testing.assert_array_equal(parts.subsample.rows().W, whole.subsample.rows().W)
+
+
 def test_rows_of_a_long_record_are_thinned_before_the_delay_is_fitted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

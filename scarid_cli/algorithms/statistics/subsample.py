@@ -71,7 +71,7 @@ class Subsample:
         return self.thin == self.stride == 1
 
     def packed(self) -> Subsample:
-        """The same in one part, of which `rows` makes no copy."""
+        """The same in one part, of which `rows` makes no copy, and to which nothing is added."""
         return replace(self, parts=(joined(self.parts),)) if self.parts else self
 
     def rows(self) -> Rows:
