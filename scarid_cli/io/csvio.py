@@ -23,7 +23,6 @@ CUT = b"# scarid: the table ends here because the stage that wrote it failed\n"
 
 BOM = "\N{ZERO WIDTH NO-BREAK SPACE}"  # at the start of a text of Windows
 
-CONVERTED = (".npz", ".mat", ".bag", ".db3", ".mcap")  # files that `scarid convert` reads
 JSON = (b'{"', b"[{", b"[[")  # how a file of JSON begins
 
 # How programs write a missing number; in a table with a column of text they are texts.
@@ -46,7 +45,10 @@ def read_csv(source: ByteSource) -> Table:
 
 
 def _not_a_table(name: str) -> BadData:
-    if name.lower().endswith(CONVERTED):
+    from scarid_cli.io.bags import BEGINNINGS  # neither is needed otherwise
+    from scarid_cli.io.foreign import ARCHIVES
+
+    if name.lower().endswith((*ARCHIVES, *BEGINNINGS.values())):
         convert = f"scarid convert {shlex.quote(name)} -o log.parquet"
         return BadData(f"{name}: convert it first: `{convert}`")
     return BadData(f"{name}: neither CSV nor Parquet nor Arrow; is it a table?")

@@ -23,11 +23,11 @@ from scarid_cli.algorithms.changes.wording import (
     of_wiring,
 )
 from scarid_cli.algorithms.regression.normal_equations import inverse
-from scarid_cli.algorithms.regression.rows import Rows, predicted
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alternatives import Model
-from scarid_cli.algorithms.statistics.bursts import bursts
+from scarid_cli.algorithms.statistics.bursts import bursts_of
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.verdict import VAGUE
 from scarid_cli.arrays import Array, median
@@ -99,8 +99,13 @@ def _torques(table: Table, joints: int, blocks: int) -> Array:
     return quantile(0.975, blocks - 1.0) * np.array(stated if known else [0.0] * joints)
 
 
-def verdict(rows: Rows, model: Identified, before: Known, times: Times) -> Verdict:
-    """The verdict on the rows of a log, with the `times` at which its torques are not explained."""
+def verdict(
+    rows: Rows, model: Identified, before: Known, residuals: Array, times: Times
+) -> Verdict:
+    """The verdict on the rows of a log, with the `times` at which its torques are not explained.
+
+    `residuals` (joints) are those of the whole log, relative to its torques.
+    """
     robot, theta = model.robot, model.theta
     steps = rewired(robot, rows, theta)
     if steps:
@@ -123,15 +128,14 @@ def verdict(rows: Rows, model: Identified, before: Known, times: Times) -> Verdi
         shares = sums.torque_shares(found.amounts)
         within = np.all(shares <= np.minimum(before.torques, VAGUE))
         slight = float(shares.max()) if within else None
-    judged = of_change(found, values, ratios, sums.residual_shares(), slight)
+    judged = of_change(found, values, ratios, residuals, slight)
     as_before = judged.grade == UNCHANGED and ratios is not None
     return judged if as_before else _with_times(judged, rows, theta, times)
 
 
 def _with_times(judged: Verdict, rows: Rows, theta: Array, times: Times) -> Verdict:
     """The verdict with the times of the largest residuals, if they are few."""
-    residual = rows.y - predicted(rows, theta)
-    found = times.of(bursts(residual, rows.y, rows.scales > 0.0, np.asarray(rows.at * rows.h)))
+    found = times.of(bursts_of(rows, theta))
     if not found:
         return judged
     more = f"most of the squares of the residual are those at {spans(found)} ({CAUSE})"

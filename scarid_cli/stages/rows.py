@@ -44,10 +44,9 @@ def treated(
 
     `left_out` counts the rows that are left out near reversals and standstill.
 
-    Rows that are decimated are a single part, without a batch. `seen` is the
-    number of the first sample. The rows include the reference position and velocity if the
-    estimator needs them and the table has them; for one that follows the reference, the rows are
-    those of the reference.
+    Rows that are decimated are a single part, without a batch. `seen` is the number of the first
+    sample. The rows include the reference position and velocity if the estimator needs them and the
+    table has them; for one that follows the reference, the rows are those of the reference.
     """
     fitted = 0
     if treatment.counting:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.regression.counting import LeftOut
@@ -56,9 +57,11 @@ def validate(
     extra: dict[str, Any] = {"left_out": left_out.counts} if treatment.counting else {}
     if model.delay:
         extra["delay"] = model.delay
+    qualities = [Quality.of(joint) for joint in sums]
     if before:
-        extra["change"] = verdict(subsample.rows(), model, before, times).extra
-    return _metrics(table, robot, [Quality.of(joint) for joint in sums], extra)
+        residuals = np.array([quality.relative_error / 100.0 for quality in qualities])
+        extra["change"] = verdict(subsample.rows(), model, before, residuals, times).extra
+    return _metrics(table, robot, qualities, extra)
 
 
 def _prediction_schema(robot: Robot, table: Table) -> pa.Schema:

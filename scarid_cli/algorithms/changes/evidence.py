@@ -109,11 +109,6 @@ class Products:
             scores=np.tensordot(weights, scores, 1),
         )
 
-    def residual_shares(self) -> Array:
-        """The rms of the residual of each joint, relative to that of its torque (joints)."""
-        squares = self.values[:, :, -1, -1].sum(axis=1) / self.counts
-        return np.asarray(np.sqrt(squares / np.maximum(self.powers, TINY)))
-
     def torque_shares(self, change: Array) -> Array:
         """The rms of what a change of all columns does to the torque of each joint (joints).
 

@@ -180,8 +180,7 @@ def torque_signs(robot: Robot, samples: Samples) -> tuple[int, ...]:
     parts = [_weighted(wide[:, [j]], tau[[j]], counts[[j]], weights[[j]]) for j in range(joints)]
     independent, _ = roots(np.sum([A.T @ A for A, _ in parts], axis=0))
     each = independent.T @ np.stack([A.T @ y for A, y in parts], axis=1)
-    signs = np.array(list(product((1, -1), repeat=joints - 1)))
-    signs = np.insert(signs, 0, 1, axis=1)
+    signs = np.array(list(product((1,), *[(1, -1)] * (joints - 1))))
     best = np.argmax(np.sum((signs @ each.T) ** 2, axis=1))
     return tuple(signs[best].tolist())
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok, several, warning
 from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.algorithms.regression.counting import SLOW
 from scarid_cli.arrays import Array
 
 # A signal that turns at its extreme has sqrt(2) - 1 times as many values at the second level of its
@@ -15,7 +16,6 @@ BIN = 0.01  # of the range: the levels below the extreme that it is compared wit
 FEWEST = 10  # values at the extreme
 MANY = 0.05  # of the rows: the torque of so many is not known
 INTERVAL = 0.2  # s, over which a moving joint goes further than a resting one with its noise
-MOVING = 0.05  # of the root mean square of how far it goes
 MOST = 0.5  # of the rows in which a joint moves: more with one torque are not measured
 
 
@@ -94,6 +94,7 @@ def _same(q: Array, tau: Array, rows: int) -> float:
     It moves where it goes far within so many rows.
     """
     way = np.abs(q[rows:] - q[:-rows])
-    moves = way > MOVING * np.sqrt(np.nanmean(way**2)) if np.isfinite(way).any() else way > 0.0
+    moves = way > SLOW * np.sqrt(np.nanmean(way**2)) if np.isfinite(way).any() else way > 0.0
+    moves &= np.isfinite(tau[: len(way)])
     values, counts = np.unique(tau[: len(way)][moves], return_counts=True)
     return float(counts.max() / counts.sum()) if len(values) else 0.0

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.regression.rows import Rows, predicted
 from scarid_cli.arrays import Array, Marks, Numbers
 
 BLOCK = 0.5  # s
@@ -30,6 +31,12 @@ class Interval:
 
     start: float
     end: float
+
+
+def bursts_of(rows: Rows, estimates: Array) -> tuple[Interval, ...]:
+    """The intervals [s], counted from sample 0, that estimates of the first columns leave."""
+    residual = rows.y - predicted(rows, estimates)
+    return bursts(residual, rows.y, rows.scales > 0.0, np.asarray(rows.at * rows.h))
 
 
 def bursts(residual: Array, torque: Array, counts: Marks, t: Array) -> tuple[Interval, ...]:

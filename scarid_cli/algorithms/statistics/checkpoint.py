@@ -36,6 +36,11 @@ class Checkpoint:
         them where they are many.
         """
         if holds:
-            thinnest = thinning(h) if thins else 1
-            return cls(state, Subsample((), MOST_HELD, MOST_HELD, thinnest, covers=True), None)
+            held = Subsample(
+                samples=MOST_HELD,
+                numbers=MOST_HELD,
+                thinnest=thinning(h) if thins else 1,
+                covers=True,
+            )
+            return cls(state, held, None)
         return cls(state, Subsample(thinnest=thinning(h)), Blocks.every(h))

@@ -15,7 +15,7 @@ from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.bursts import Interval, bursts
+from scarid_cli.algorithms.statistics.bursts import Interval, bursts_of
 from scarid_cli.algorithms.statistics.consequences import (
     Consequences,
     Uncertainty,
@@ -117,14 +117,9 @@ def diagnose(
             model,
             rows.motion[0],
         ),
-        bursts=() if record else _bursts(rows, trimmed(whole)),
+        bursts=() if record else bursts_of(rows, trimmed(whole)),
         halves=trial.halves(longer),
     )
-
-
-def _bursts(rows: Rows, estimates: Array) -> tuple[Interval, ...]:
-    residual = rows.y - rows.W @ estimates
-    return bursts(residual, rows.y, rows.scales > 0.0, np.asarray(rows.at * rows.h))
 
 
 @dataclass(frozen=True)
