@@ -20,7 +20,7 @@ from scarid_cli.cli.declare import declare
 @click.option(
     "--from",
     "recorder",
-    type=click.Choice(("ur-rtde", "aurt", "libfranka", "plotjuggler", "lerobot", "indexed")),
+    type=click.Choice(("ur-rtde", "aurt", "libfranka", "plotjuggler", "lerobot")),
     help="Whose column names the log has.  [default: found from them]",
 )
 @click.option(
@@ -89,7 +89,7 @@ def command() -> None:
       scarid convert log.csv -o log.parquet
       scarid convert log.parquet | head
       scarid convert --from-time 1 --to-time 4 log.csv -o part.parquet
-      scarid convert --map 'q1=joint_1_pos,tau1=effort_1' --unit 'q*=deg' robot.csv -o log.parquet
+      scarid convert --map 'q1=encoder_a,tau1=load_a' --unit 'q*=deg' robot.csv -o log.parquet
       scarid convert --separator ';' --decimal-comma --header t,q1,tau1 export.txt
       scarid convert positions.txt --beside torques.txt --map 'q*=positions,tau*=torques' --rate 500
       scarid convert --rate 500 measured.mat -o log.parquet
@@ -102,8 +102,9 @@ def command() -> None:
     metadata: units and history are lost there.
 
     The separator of a text log, decimal commas, names in a comment, and units in names (q1 [deg],
-    t_ms) are found from its first lines and reported, and known recorders are recognised by their
-    columns (--from). What is ambiguous is refused.
+    t_ms) are found from its first lines and reported. Known recorders are recognised by their
+    columns (--from), and other names by their words: arm_2_joint_position, effort_0, Time (s). What
+    is ambiguous keeps its name, or is refused. Dates become seconds since the first one.
 
     Recordings of ROS (MCAP, rosbag2 and ROS 1; extra `logs`) are read from topics of the types
     JointState, JointTrajectoryControllerState and JointTrajectory. Joints are matched by name.

@@ -17,7 +17,7 @@ from scarid_cli.algorithms.choices.settings import LONGEST
 from scarid_cli.cli.chain import Place
 from scarid_cli.cli.command_line import command_line, inputs
 from scarid_cli.cli.remarks import Remarks
-from scarid_cli.cli.remedies import remedies
+from scarid_cli.cli.remedies import remedies, require_our_names
 from scarid_cli.cli.robots import another, misfit
 from scarid_cli.cli.selecting import selection_of
 from scarid_cli.cli.terminal import is_terminal
@@ -120,6 +120,7 @@ class Job:
         if not kind:
             return self._reported(table)
         if schemas.load(kind).sampled:
+            require_our_names(path, table)
             table = self.within(table)
         return self._checked(path, table, kind, reads, regular=regular)
 
@@ -165,10 +166,11 @@ class Job:
         the command can do `without_derivatives`, this is the kind of a table that has none. Values
         and clock of a table `as_recorded` are not checked.
         """
-        opened = self.within(self._opened_table(path))
+        opened = self._opened_table(path)
         if without_derivatives and not schemas.numbered(opened.columns, "ddq"):
             kind = without_derivatives
-        table = conforming(opened, kind)
+        require_our_names(path, opened)
+        table = conforming(self.within(opened), kind)
         arm = self.robot(robot, table) if isinstance(robot, str | None) else robot
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []

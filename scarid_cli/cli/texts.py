@@ -11,8 +11,9 @@ from scarid_cli.io.bytesource import ByteSource, unzipped
 from scarid_cli.io.foreign import ARCHIVES, TranslatedCsv, read_archive
 from scarid_cli.io.notation import Notation, notation_of
 from scarid_cli.io.table import Table
-from scarid_cli.stages.recorders import Recognised, expanded, recognised, units_in_names
+from scarid_cli.stages.recorders import expanded, recognised, units_in_names
 from scarid_cli.stages.side import flattened, side_by_side
+from scarid_cli.stages.wording import Unclear, in_short, in_words
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -67,35 +68,59 @@ def columns_of(
     job: Job, table: Table, pairs: dict[str, str], units: list[tuple[str, str]], wanted: str | None,
     robot: Robot | None, joints: Sequence[str],
 ) -> Columns:  # fmt: skip
-    """The columns as the options, the recorder, and the units in names say, in this order."""
+    """The columns as the options, the recorder, and the words in names say, in this order."""
     names = expanded(pairs, table.columns, table.name)
     order = joints or (robot.body.joint_names if robot and robot.body else ())
     found = recognised(table.columns, wanted, order, table.name)
     described = {**robot.log.columns} if robot and robot.log else {}
     taken = {*names.values(), *described.values()}
     if found:
-        own = _with_torques(found, robot)
-        _tell(job, found, own)
+        own = _with_torques(found.columns, robot)
+        joints_found = f", joints {', '.join(found.joints)}" if found.joints else ""
+        job.notes.append(f"columns of {found.name}{joints_found}")
+        _tell_of_currents(job, own)
         own = {new: old for new, old in own.items() if old not in taken and new not in names}
         known = [(new, unit) for new, unit in found.units if new in own]
         return Columns({**own, **names}, [*known, *units], found.name)
-    inside = units_in_names([c for c in table.columns if c not in described.values()], names)
+    left = [column for column in table.columns if column not in taken]
+    worded, known = _in_words(job, table, left, {*names, *described}, order)
+    worded = _with_torques(worded, robot)
+    known = [(new, unit) for new, unit in known if new in worded]
+    inside = units_in_names(
+        [c for c in left if c not in worded.values()] + [*names.values()], names
+    )
     for old, (new, unit) in inside.items():
         job.notes.append(f"column {old!r} becomes {new}, from {unit} as its name says")
-    return Columns({**{new: old for old, (new, _) in inside.items()}, **names},
-                   [*inside.values(), *units])  # fmt: skip
+    return Columns({**worded, **{new: old for old, (new, _) in inside.items()}, **names},
+                   [*known, *inside.values(), *units])  # fmt: skip
 
 
-def _with_torques(found: Recognised, robot: Robot | None) -> dict[str, str]:
+def _in_words(
+    job: Job, table: Table, left: list[str], given: set[str], joints: Sequence[str]
+) -> tuple[dict[str, str], list[tuple[str, str]]]:
+    """The columns that the words in their names tell, and their units; says which these are."""
+    try:
+        found = None if table.meta.kind else in_words(left, given, joints)
+    except Unclear as why:
+        job.notes.append(f"columns keep their names, because {why}: rename them with --map")
+        found = None
+    if not found:
+        return {}, []
+    job.notes.append(f"columns by the words in their names: {in_short(found)}")
+    if found.joints and not joints:
+        job.notes.append("joints in the order of their columns (another: --joints)")
+    _tell_of_currents(job, found.columns)
+    return found.columns, [*found.units]
+
+
+def _with_torques(columns: dict[str, str], robot: Robot | None) -> dict[str, str]:
     """The columns; currents of motors are called tau if the robot's description converts them."""
     if not (robot and robot.log and robot.log.torques == "current"):
-        return found.columns
-    return {new.replace("current", "tau"): old for new, old in found.columns.items()}
+        return columns
+    return {new.replace("current", "tau"): old for new, old in columns.items()}
 
 
-def _tell(job: Job, found: Recognised, columns: dict[str, str]) -> None:
-    joints = f", joints {', '.join(found.joints)}" if found.joints else ""
-    job.notes.append(f"columns of {found.name}{joints}")
+def _tell_of_currents(job: Job, columns: dict[str, str]) -> None:
     if any(new.startswith("current") for new in columns):
         job.notes.append(
             "currents stay currents [A]: --robot FILE makes them torques, if its description has "

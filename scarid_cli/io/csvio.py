@@ -29,6 +29,7 @@ JSON = (b'{"', b"[{", b"[[")  # how a file of JSON begins
 MARKS = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
 # Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
+INDEX = "index"  # a first column without a name, which pandas writes
 NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
 
 
@@ -151,6 +152,8 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
             expected="a header with the names of the columns",
             remedy="name them with `scarid convert --header t,q1,...`",
         )
+    if len(names) > 2 and not names[0] and INDEX not in names:
+        names[0] = INDEX
     # A line that ends in a comma has a last column without a name, which must be empty.
     _require_different(names[:-1] if len(names) > 1 and not names[-1] else names, name)
     return names

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
@@ -16,6 +17,7 @@ import pyarrow as pa
 
 import scarid_cli.schemas
 
+COUNTED_FROM_0 = "q0"  # a column of logs in which q1 is another joint than ours
 TYPES = {"number": pa.float64(), "integer": pa.int64(), "string": pa.string()}
 
 
@@ -127,6 +129,11 @@ def column_type(column: str) -> pa.DataType | None:
     """The type of a column that some schema knows, whatever the kind of table."""
     fields = (load(kind).field_of(column) for kind in KINDS)
     return next((field.type for field in fields if field is not None), None)
+
+
+def named(columns: Sequence[str]) -> bool:
+    """Whether a log has our names, without which `scarid convert` may know its own."""
+    return {"t", "q1"} <= {*columns} and COUNTED_FROM_0 not in columns
 
 
 def numbered(columns: list[str], *prefixes: str) -> list[str]:

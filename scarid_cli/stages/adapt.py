@@ -13,6 +13,7 @@ import pyarrow as pa
 
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table, doubles, matrix, number
+from scarid_cli.stages.dates import since_start
 
 # For each unit that a log may have: the factor to multiply by, and the resulting unit.
 UNITS = {
@@ -41,8 +42,10 @@ def adapted(
     """The table with renamed and converted columns, and with a clock.
 
     `names` maps each new column name to the old one; `units` pairs patterns of new names with the
-    unit of these columns in the log. A `rate` [Hz] adds a time column to a table without one.
+    unit of these columns in the log. A `rate` [Hz] adds a time column to a table without one. Dates
+    become seconds since the first one.
     """
+    table = since_start(table, names.get("t", "t"))
     fields = _renamed(table, names)
     new = [field.name for field in fields]
     scales = _scales(new, units)

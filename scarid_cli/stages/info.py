@@ -17,6 +17,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.clock import DRIFT, nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
 from scarid_cli.printable import printable
+from scarid_cli.stages.wording import renamable
 
 FEW = 8  # values of a list, or entries of a dictionary, that are shown
 
@@ -80,10 +81,13 @@ class Description:
         meta, schema = self.table.meta, self.schema
         stated = schema and schema.kind == meta.kind
         origin = f"version {meta.version}" if stated else "inferred from its columns"
-        if schema and schema.kind == "trace" and not stated:  # which may have any names
-            origin = "or a log whose columns have other names: `scarid convert --map`"
+        kind = f"{schema.kind} ({origin})" if schema else "unknown"
+        if not stated and renamable(self.table.columns):
+            kind = "log with other names of columns (`scarid convert` gives it ours)"
+        elif schema and schema.kind == "trace" and not stated:  # which may have any names
+            kind = "trace (or a log whose columns have other names: `scarid convert --map`)"
         yield f"table     {self.table.name}"
-        yield f"kind      {f'{schema.kind} ({origin})' if schema else 'unknown'}"
+        yield f"kind      {kind}"
         yield f"robot     {meta.robot or 'not stated'}"
         yield f"rows      {self.rows:,}"
         if self.sampling:

@@ -64,15 +64,6 @@ RECORDERS = {
         "s",
         {"q{i}": ("observation.state[{k}]",), "q{i}_ref": ("action[{k}]",)},
     ),
-    "indexed": Recorder(
-        "t",
-        "s",
-        {
-            "q{i}": ("q[{k}]", "position[{k}]"),
-            "dq{i}_measured": ("dq[{k}]", "velocity[{k}]"),
-            "tau{i}": ("tau[{k}]", "effort[{k}]"),
-        },
-    ),
 }
 OTHER_NAMES = {"aurt": "ur-rtde"}
 MARK = re.compile(r"\{k\}|\{joint\}|\*")

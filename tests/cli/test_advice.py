@@ -114,12 +114,23 @@ def test_rows_must_end_as_the_header_does(
     refused(scarid("convert", path, "-o", tmp_path / "out.csv"), 65, "log.csv, row 2", found)
 
 
+def test_the_index_that_pandas_writes_is_a_column(tmp_path: Path, scarid: Run) -> None:
+    lines = [f"{k - 1 if k else ''},{line}" for k, line in enumerate(RECORD)]
+    (path := tmp_path / "pandas.csv").write_text("\n".join(lines) + "\n")
+    plain = scarid("identify", ROOT / "samples" / "scara2.csv")
+    assert scarid("identify", path).out == plain.out
+    assert scarid("convert", path).out.splitlines() == ["index" + lines[0], *lines[1:]]
+
+
 def test_a_header_with_a_nameless_column_can_be_replaced(tmp_path: Path, shell: Run) -> None:
-    lines = [f"{k or ''},{line}" for k, line in enumerate(RECORD)]
+    rows = [line.partition(",") for line in RECORD]
+    lines = [f"{t},{k or ''},{rest}" for k, (t, _, rest) in enumerate(rows)]
     (tmp_path / "numbered.csv").write_text("\n".join(lines) + "\n")
     failed = shell("scarid identify numbered.csv")
-    refused(failed, 65, "column 1: found no name")
-    replaced = re.findall(r"`(.*)`", failed.err)[0].replace("NAMES", f"number,{RECORD[0]}")
+    refused(failed, 65, "column 2: found no name")
+    replaced = re.findall(r"`(.*)`", failed.err)[0].replace(
+        "NAMES", RECORD[0].replace("t", "t,number", 1)
+    )
     assert shell(f"{replaced} | scarid identify").status == 0
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.csv
 import pyarrow.parquet
 import pytest
 from conftest import Result, refused
@@ -43,7 +44,7 @@ def test_the_notation_is_found_and_told(kind: str, name: str, scarid: Run, tmp_p
     assert header == "t,q1,tau1"
     values = [[float(x) for x in row.split(",")] for row in rows]
     np.testing.assert_allclose(values, [[0.0, 0.5, 2.0], [0.01, 1.5, -30.0]], atol=1e-12)
-    assert ("read with" in result.err or "as its name says" in result.err) != (
+    assert ("read with" in result.err or "q1 from q1 [deg] (deg)" in result.err) != (
         kind == "spaces after commas"
     )
 
@@ -103,7 +104,6 @@ NAMES = {
         "__time,/s/position[0],/s/position[1],/s/velocity[0],/s/velocity[1]\n0.5,1,2,3,4\n1,2,3,4,5\n",
         "t,q1,q2,dq1_measured,dq2_measured\n0.5,1,2,3,4\n",
     ),
-    "indexed": ("t,q[0],q[1],tau[0],tau[1]\n0.5,1,2,3,4\n", "t,q1,q2,tau1,tau2\n0.5,1,2,3,4\n"),
 }
 
 
@@ -117,6 +117,55 @@ def test_recorders_are_known_by_their_columns(kind: str, scarid: Run, tmp_path: 
     assert f"columns of {name}" in found.err
     told = scarid("convert", tmp_path / "log.csv", "--joints", "base,elbow", "--from", name)
     assert told.out == found.out
+
+
+@pytest.mark.parametrize("clock", ["date,2026-11-24 10:00:0%", "stamp,2026-11-24T10:00:0%+01:00"])
+def test_dates_become_seconds_since_the_first_one(clock: str, scarid: Run, tmp_path: Path) -> None:
+    name, _, form = clock.partition(",")
+    (log := tmp_path / "log.csv").write_text(
+        f"{name},pos1,torque1\n"
+        + "".join(f"{form.replace('%', f'{k}.25')},{k},2\n" for k in range(3))
+    )
+    assert scarid("convert", log).out == "t,q1,tau1\n0,0,2\n1,1,2\n2,2,2\n"
+    pyarrow.parquet.write_table(pyarrow.csv.read_csv(log), stamped := tmp_path / "log.parquet")
+    assert scarid("convert", stamped).out == "t,q1,tau1\n0,0,2\n1,1,2\n2,2,2\n"
+    for wrong, found in (("soon", "'soon'"), ("", "no value")):
+        log.write_text(log.read_text().replace(form.replace("%", "2.25"), wrong))
+        refused(scarid("convert", log, "-o", tmp_path / "out.csv"), 65, "row 3", found)
+        log.write_text(log.read_text().replace(f"\n{wrong},2", f"\n{form.replace('%', '2.25')},2"))
+
+
+@pytest.mark.parametrize(
+    ("line", "header"),
+    [
+        ("identify --robot scara2 log.csv", "time,position_0,position_1,effort_0,effort_1"),
+        ("identify --robot scara2 --from-time 1 log.csv", "t,q0,q1,tau0,tau1"),
+        ("differentiate -o motion.csv log.csv", "__time,/a/q1,/a/q2,/a/effort_1,/a/effort_2"),
+        ("tune < log.csv", "timestamp,actual_q_0,actual_q_1,a,b"),
+        ("check log.csv", "Time (s),Q1,Q2,Tau1,Tau2"),
+    ],
+)
+def test_a_log_with_names_that_convert_knows_is_refused_with_the_pipe_that_renames_it(
+    line: str, header: str, shell: Run
+) -> None:
+    shell(f"(echo '{header}'; tail -n +2 $SAMPLES/scara2.csv | cut -d, -f1-5) > log.csv")
+    failed = shell(f"scarid {line}")
+    assert failed.status == 65
+    assert failed.err.count("\n") == 1
+    assert "log with other names of columns" in shell("scarid info log.csv").out
+    pipe = failed.err.rpartition("`")[0].partition("; rename them with `")[2]
+    renamed = shell(f"cat log.csv | {pipe}")
+    assert "columns " in renamed.err
+    assert renamed.status == 0, renamed.err
+
+
+def test_of_several_logs_the_one_with_other_names_is_to_be_converted(shell: Run) -> None:
+    shell("sed 's/q2/position_2/; s/q1/position_1/' $SAMPLES/scara2.csv | cut -d, -f1-5 > log.csv")
+    failed = shell("scarid identify --robot scara2 log.csv log.csv")
+    expected = (
+        "`scarid identify --robot scara2 <(scarid convert --robot scara2 --format arrow log.csv)"
+    )
+    assert f"rename them with {expected} log.csv`" in failed.err
 
 
 def test_every_recorder_can_be_named() -> None:

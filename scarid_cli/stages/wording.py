@@ -1,0 +1,196 @@
+"""What the columns of a log hold, from the words in their names: `arm_2_joint_position`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+from scarid_cli.errors import UsageFault
+from scarid_cli.io.schemas import COUNTED_FROM_0, column_type, named
+from scarid_cli.stages.adapt import UNITS
+from scarid_cli.stages.recorders import CURRENT, Recognised, recognised, unit_in_name
+
+POSITION, VELOCITY, TORQUE = "q{i}", "dq{i}_measured", "tau{i}"
+QUANTITIES = {
+    POSITION: {"angle", "angles", "pos", "position", "positions", "q", "qpos", "theta"},
+    VELOCITY: {"dq", "qd", "qdot", "qvel", "speed", "speeds", "vel", "velocities", "velocity"},
+    TORQUE: {"effort", "efforts", "tau", "torque", "torques", "trq"},
+    CURRENT: {"current", "currents"},
+}
+CLOCK = {
+    "date",
+    "datetime",
+    "sec",
+    "seconds",
+    "secs",
+    "stamp",
+    "t",
+    "time",
+    "times",
+    "timestamp",
+    "timestamps",
+}
+BESIDE = {"elapsed", "field", "header", "log", "relative"}  # a word of the clock
+FRACTION = {"nanosec", "nanosecs", "nsec", "nsecs", "usec", "usecs"}  # that a clock leaves out
+# Words that tell neither the joint nor the quantity.
+PLAIN = {
+    "act", "actual", "axis", "current", "data", "feedback", "field", "j", "jnt", "joint", "joints",
+    "js", "link", "log", "meas", "measured", "msr", "present", "state", "states", "value", "values",
+}  # fmt: skip
+# Words of what was not measured at a joint itself: references, estimates, motors, the tool.
+OTHER = {
+    "cartesian", "cmd", "command", "commanded", "commands", "coriolis", "d", "ddot", "des",
+    "desired", "dot", "ee", "eef", "encoder", "err", "error", "est", "estimated", "ext", "external",
+    "feedforward", "ff", "filt", "filtered", "friction", "goal", "gravity", "hat", "limit", "lp",
+    "max", "mean", "min", "model", "motor", "motors", "nominal", "planned", "pose", "predicted",
+    "raw", "ref", "reference", "residual", "rms", "set", "setpoint", "smooth", "smoothed", "std",
+    "target", "targets", "tcp", "temperature", "tool", "var", "x", "y", "z",
+}  # fmt: skip
+WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
+
+Key = tuple[str, ...]  # the words that tell the joint: ("3",), ("shoulder", "pan")
+
+
+class Unclear(Exception):
+    """Why the columns of a log are not renamed."""
+
+
+@dataclass(frozen=True)
+class _Column:
+    name: str
+    unit: str
+    words: tuple[str, ...]
+
+
+def in_words(
+    names: Sequence[str], given: Collection[str], joints: Sequence[str]
+) -> Recognised | None:
+    """The columns whose names say in words what they hold, and of which joint.
+
+    `given` are names of ours that need no column. `joints` gives the order of joints with names, by
+    default that of their columns; joints with numbers are in the order of these, from 0 or 1. What
+    somebody computed or commanded is left alone. None if there is nothing to rename; Unclear if
+    two columns could have one name, or if the joints cannot be put in order.
+    """
+    ours = {"t"} if COUNTED_FROM_0 in names else {name for name in names if column_type(name)}
+    known = {*given, *ours.intersection(names)}
+    columns = [_read(name) for name in names if name not in known]
+    found = {new: _by_joint(new, columns) for new in _wanted(known)}
+    if "q1" not in known and not found[POSITION]:
+        return None  # no log of a robot
+    if found.get(TORQUE) or "tau1" in known:
+        found.pop(CURRENT, None)
+    order = _order([found[new] for new in (POSITION, TORQUE) if found.get(new)], joints)
+    if "q1" in known and not _numbers(order):
+        order = []  # nothing says which joint is the first one
+    pairs = [] if "t" in known else _clock(columns)
+    for new, own in found.items():
+        if all(key in own for key in order):
+            pairs += [(new.replace("{i}", str(i + 1)), own[key]) for i, key in enumerate(order)]
+    units = tuple((new, column.unit) for new, column in pairs if column.unit)
+    by_name = () if _numbers(order) else tuple(" ".join(key) for key in order)
+    renamed = {new: column.name for new, column in pairs}
+    return Recognised("", renamed, units, by_name) if renamed else None
+
+
+def renamable(columns: Sequence[str]) -> bool:
+    """Whether a log has no columns t and q1 of ours, and `scarid convert` gives it some."""
+    if named(columns):
+        return False
+    try:
+        found = recognised(columns, None, (), "") or in_words(columns, (), ())
+    except UsageFault:  # `convert` says what it needs
+        return True
+    except Unclear:
+        return False
+    return found is not None and {"t", "q1"} <= {*columns, *found.columns}
+
+
+def in_short(found: Recognised) -> str:
+    """Which columns become which: `t from time; q1 to q6 from angle_0 (deg) to angle_5 (deg)`."""
+    units = dict(found.units)
+    groups: dict[str, dict[str, str]] = {}
+    for new, old in found.columns.items():
+        text = f"{old} ({units[new]})" if units.get(new) in UNITS else old
+        groups.setdefault(re.sub(r"\d+", "", new), {})[new] = text
+    return "; ".join(f"{_few([*own])} from {_few([*own.values()])}" for own in groups.values())
+
+
+def _few(names: list[str]) -> str:
+    """All names, or the first and the last of more than two that differ in numbers only."""
+    alike = len({re.sub(r"\d+", "", name) for name in names}) == 1
+    return f"{names[0]} to {names[-1]}" if alike and len(names) > 2 else ", ".join(names)
+
+
+def _read(name: str) -> _Column:
+    """A column, the unit that its name states, and the words before it, numbers without zeros."""
+    before, unit = unit_in_name(name) or (name, "")
+    words = (word.lower() for word in WORD.findall(before))
+    return _Column(name, unit, tuple(str(int(w)) if w.isdigit() else w for w in words))
+
+
+def _wanted(known: Collection[str]) -> list[str]:
+    """The quantities of which a log has no column with our name."""
+    wanted = [new for new in QUANTITIES if new.replace("{i}", "1") not in known]
+    if "q1" in known:
+        wanted.remove(VELOCITY)  # which keep their names beside positions that have ours
+    return wanted
+
+
+def _clock(columns: Sequence[_Column]) -> list[tuple[str, _Column]]:
+    """The column of the time, preferably the stamp in the header of a message."""
+    if any({*column.words} & FRACTION for column in columns):
+        return []  # seconds in one column, their fractions in another
+    found = [c for c in columns if {*c.words} & CLOCK and {*c.words} <= CLOCK | BESIDE]
+    stamps = [column for column in found if "header" in column.words]
+    return [("t", column) for column in (stamps or found)[:1]]
+
+
+def _by_joint(new: str, columns: Sequence[_Column]) -> dict[Key, _Column]:
+    """The columns of a quantity, by the words that tell their joint."""
+    found: dict[Key, _Column] = {}
+    for column in columns:
+        if _quantity(column) != new:
+            continue
+        key = tuple(word for word in column.words if word not in PLAIN | QUANTITIES[new])
+        if key in found:
+            what = new.replace("{i}", "")
+            raise Unclear(f"both {found[key].name} and {column.name} could be {what} of one joint")
+        found[key] = column
+    return found
+
+
+def _quantity(column: _Column) -> str | None:
+    """What a column holds, if its name says this, and nothing against it."""
+    kinds = {new for new, words in QUANTITIES.items() if words & {*column.words}}
+    if len(kinds) > 1:
+        kinds.discard(CURRENT)  # "current" means "present" beside another quantity
+    return kinds.pop() if len(kinds) == 1 and not OTHER & {*column.words} else None
+
+
+def _order(found: Sequence[dict[Key, _Column]], joints: Sequence[str]) -> list[Key]:
+    """The joints that all these quantities have, in order."""
+    common = [key for key in found[0] if all(key in own for own in found)] if found else []
+    if found and not common:
+        first, second = (next(iter(own.values())).name for own in found)
+        raise Unclear(f"{first} and {second} seem to be of different joints")
+    wanted = [tuple(word for word in _read(joint).words if word not in PLAIN) for joint in joints]
+    if wanted and all(key in common for key in wanted):
+        return wanted
+    numbers = _numbers(common)
+    order = sorted(numbers)
+    if numbers and (order[0] > 1 or order != [*range(order[0], order[0] + len(order))]):
+        raise Unclear(f"their joints are numbered {', '.join(map(str, order))}")
+    if common and wanted and not numbers:
+        raise Unclear(f"they have none of the joints {', '.join(joints)}")
+    return [numbers[number] for number in order] or common
+
+
+def _numbers(keys: Sequence[Key]) -> dict[int, Key]:
+    """The joints by their numbers, if the words of their names differ in nothing else."""
+    if list(keys) == [()]:
+        return {1: ()}
+    found = {int(word): key for key in keys for word in key if word.isdigit()}
+    others = {tuple("" if word.isdigit() else word for word in key) for key in keys}
+    return found if len(found) == len(keys) and len(others) == 1 else {}
