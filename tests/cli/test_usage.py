@@ -19,6 +19,10 @@ USAGE = {
         ["trajgen", "--robot", "r2d2"],
         "unknown robot 'r2d2'; choose emps, planar2-gravity, scara2",
     ),
+    "macros of a URDF": (
+        ["trajgen", "--robot", "my arm.urdf.xacro"],
+        "make it a URDF first: `xacro 'my arm.urdf.xacro' > 'my arm.urdf'`",
+    ),
     "no such method": (["differentiate", "--method", "magic"], "'magic' is not one of"),
     "no such column": (["filter", "-c", "q7", "LOG"], "no column 'q7'; the table has t, q1"),
     "no such setting": (["differentiate", "--set", "gamma2=1", "LOG"], "has no setting 'gamma2'"),

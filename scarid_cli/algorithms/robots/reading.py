@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import tomllib
 from dataclasses import MISSING, fields
 from pathlib import Path
@@ -40,6 +41,9 @@ def load(name: str) -> Robot:
 def _loaded(name: str) -> Robot:
     if name.endswith(".urdf"):
         return _arm(name, {"title": name, "urdf": name}, Path())
+    if name.endswith(".xacro"):
+        urdf = shlex.quote(name.removesuffix(".xacro").removesuffix(".urdf") + ".urdf")
+        raise UsageFault(f"{name}: make it a URDF first: `xacro {shlex.quote(name)} > {urdf}`")
     known = built_in()
     if not name.endswith(".toml") and name not in known:
         choice = ", ".join(known)
