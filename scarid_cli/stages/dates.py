@@ -22,7 +22,7 @@ def since_start(table: Table, clock: str) -> Table:
 
     Dates are those of Arrow, or texts as ISO 8601 writes them; all have a zone, or none has.
     """
-    if clock not in table.columns:
+    if clock not in table.columns or not _may_have_dates(table.schema.field(clock).type):
         return table
     at, batches = table.columns.index(clock), table.batches
     first = next(batches, None)
@@ -32,6 +32,10 @@ def since_start(table: Table, clock: str) -> Table:
         return table
     schema = table.schema.set(at, number(clock, "s"))
     return replace(table, schema=schema, batches=_rows(table, schema, at, kind))
+
+
+def _may_have_dates(kind: pa.DataType) -> bool:
+    return bool(pa.types.is_timestamp(kind) or pa.types.is_string(kind))
 
 
 def _kind(column: pa.Array) -> pa.DataType | None:

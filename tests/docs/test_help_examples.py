@@ -192,7 +192,7 @@ def of_others() -> None:
         np.savetxt(name, columns, delimiter=",", header=names, comments="", **how)
 
     written("points.csv", np.array([[0, 0, 0], [1, 0.5, -0.5], [2, 0, 0]]), "t,q1,q2")
-    written("robot.csv", np.column_stack((t, q[0], tau[0])), "t,joint_1_pos,effort_1")
+    written("robot.csv", np.column_stack((t, q[0], tau[0])), "t,encoder_a,load_a")
     written("motors.csv", rows, "enc_a,enc_b,i_a,i_b")
     written("positions.txt", q.T, "positions1,positions2")
     written("torques.txt", tau.T, "torques1,torques2")
