@@ -27,7 +27,6 @@ class Columns:
 
     names: dict[str, str]
     units: list[tuple[str, str]]
-    recorder: str = ""
 
 
 def read_log(
@@ -81,7 +80,7 @@ def columns_of(
         _tell_of_currents(job, own)
         own = {new: old for new, old in own.items() if old not in taken and new not in names}
         known = [(new, unit) for new, unit in found.units if new in own]
-        return Columns({**own, **names}, [*known, *units], found.name)
+        return Columns({**own, **names}, [*known, *units])
     left = [column for column in table.columns if column not in taken]
     worded, known = _in_words(job, table, left, {*names, *described}, order)
     worded = _with_torques(worded, robot)

@@ -62,7 +62,7 @@ def _flat(
 
 def episodes_joined(table: Table, episode: str) -> Table:
     """The table with a `segment` for each episode, and a time `t` [s] that goes on between them."""
-    if episode not in table.columns or SEGMENT in table.columns:
+    if not {"t", episode} <= {*table.columns} or SEGMENT in table.columns:
         return table
     schema = table.schema.append(pa.field(SEGMENT, pa.int64()))
 

@@ -189,14 +189,23 @@ def test_currents_become_torques_by_the_description_only(scarid: Run, tmp_path: 
     assert scarid("convert", log, "--robot", robot).out == "t,q1,tau1\n0,1,10\n0.002,1,15\n"
 
 
-def test_episodes_of_lerobot_become_segments(scarid: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("first", "second", "header"),
+    [
+        ("observation.state", "action", "q1,q2,q1_ref,q2_ref"),
+        ("observation.state.pos", "observation.state.effort", "q1,q2,tau1,tau2"),
+    ],
+)
+def test_episodes_of_lerobot_become_segments(
+    first: str, second: str, header: str, scarid: Run, tmp_path: Path
+) -> None:
     """Lists become columns; each episode starts a second after the end of the one before."""
     state = [[float(k), -float(k)] for k in range(5)]
     pyarrow.parquet.write_table(
         pa.table(
             {
-                "observation.state": pa.array(state, pa.list_(pa.float32(), 2)),
-                "action": pa.array(state, pa.list_(pa.float32())),
+                first: pa.array(state, pa.list_(pa.float32(), 2)),
+                second: pa.array(state, pa.list_(pa.float32())),
                 "timestamp": pa.array([0.0, 0.5, 1.0, 0.0, 0.5], pa.float32()),
                 "episode_index": pa.array([7, 7, 7, 9, 9], pa.int64()),
             }
@@ -206,7 +215,7 @@ def test_episodes_of_lerobot_become_segments(scarid: Run, tmp_path: Path) -> Non
     )
     result = scarid("convert", tmp_path / "episodes.parquet")
     assert result.out.splitlines() == [
-        "q1,q2,q1_ref,q2_ref,t,episode_index,segment",
+        f"{header},t,episode_index,segment",
         "0,-0,0,-0,0,7,0",
         "1,-1,1,-1,0.5,7,0",
         "2,-2,2,-2,1,7,0",

@@ -17,7 +17,7 @@ from scarid_cli.stages.side import episodes_joined
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
 
-EPISODE = "episode_index"  # LeRobot's column
+EPISODE = "episode_index"  # the column of LeRobot's data sets
 
 
 def run(
@@ -66,7 +66,7 @@ def _adapted(table: Table, columns: Columns, rate: float | None, robot: Robot | 
         table = as_described(table, robot, columns.names, columns.units, rate)
     else:
         table = adapted(table, columns.names, columns.units, rate)
-    return episodes_joined(table, EPISODE) if columns.recorder == "lerobot" else table
+    return episodes_joined(table, EPISODE)
 
 
 def _notation(separator: str, header: str, *, decimal_comma: bool) -> Notation | None:
