@@ -239,11 +239,12 @@ def test_via_points_that_break_the_bounds_are_refused(scarid: Run, tmp_path: Pat
 
 def test_a_robot_without_bounds_needs_them_as_options(scarid: Run, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text((ROBOTS / "emps.toml").read_text("utf-8").replace("velocity_limit", "# v"))
+    text = (ROBOTS / "emps.toml").read_text("utf-8")
+    path.write_text(text.replace("velocity_limit", "# v").replace("acceleration_limit", "# a"))
     result = scarid("trajgen", "--robot", path)
     assert result.status == 2
-    assert "--dq-max: the bounds must be positive and finite; the description of" in result.err
-    assert scarid("trajgen", "--robot", path, "--dq-max", 0.1, "-q").status == 0
+    assert "has no limits of velocity, acceleration: type `--dq-max NUMBERS --dd" in result.err
+    assert scarid("trajgen", "--robot", path, "--dq-max", 0.1, "--ddq-max", 1, "-q").status == 0
 
 
 def test_a_loop_that_blows_up_is_an_error_and_not_a_table(scarid: Run, tmp_path: Path) -> None:

@@ -141,20 +141,39 @@ def _excitation(given: dict[str, Any]) -> Any:
 def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
     """The limits of the robot's description, or those that were given instead."""
     own = Limits.of(arm.joints)
+    _require_limits(arm, own, given)
 
     def row(option: str, otherwise: Array, *, positive: bool = True) -> Array:
         numbers = given[option.strip("-").replace("-", "_")]
         values = np.array(per_joint(numbers, len(arm.joints), option)) if numbers else otherwise
         if not (np.abs(values) < LARGEST_LIMIT).all() or (positive and not (values > 0.0).all()):
             what = "positive and finite" if positive else "finite"
-            lack = f"; the description of {arm.name} gives none: type `{option} NUMBERS`"
-            raise UsageFault(f"{option}: the bounds must be {what}{'' if numbers else lack}")
+            raise UsageFault(f"{option}: the bounds must be {what}")
         return values
 
     symmetric = bool(given["q_max"]) and not given["q_min"]
     upper = row("--q-max", own.upper, positive=symmetric)
     lower = row("--q-min", -upper if symmetric else own.lower, positive=False)
     return Limits(lower, upper, row("--dq-max", own.dq), row("--ddq-max", own.ddq))
+
+
+def _require_limits(arm: Robot, own: Limits, given: dict[str, Any]) -> None:
+    """Refuse a robot without limits that were not given either, and say what to type."""
+    lacking = {
+        option: quantity
+        for quantity, option, values in (
+            ("position", "--q-max", np.maximum(own.upper, -own.lower)),
+            ("velocity", "--dq-max", own.dq),
+            ("acceleration", "--ddq-max", own.ddq),
+        )
+        if not given[option.strip("-").replace("-", "_")] and not (values < LARGEST_LIMIT).all()
+    }
+    if lacking:
+        options = " ".join(f"{option} NUMBERS" for option in lacking)
+        raise UsageFault(
+            f"the description of {arm.name} has no limits of {', '.join(lacking.values())}: "
+            f"type `{options}`"
+        )
 
 
 def _tell_narrowed(job: Job, asked: Limits, limits: Limits) -> None:
