@@ -29,6 +29,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.bursts import bursts_of
 from scarid_cli.algorithms.statistics.jackknife import quantile
+from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.algorithms.statistics.verdict import VAGUE
 from scarid_cli.arrays import Array, median
 from scarid_cli.io.table import Table
@@ -111,7 +112,8 @@ def verdict(
     if steps:
         return of_wiring(steps)
     rows = in_step(rows, theta, model.delay, low_pass=model.low_pass)
-    sums = Products.of(rows, theta, model=Model(robot, list(range(len(theta)))))
+    modelled = Model(robot, list(range(len(theta))))
+    sums = Products.of(with_ringing(rows, robot), theta, model=modelled)
     now = sums.evidence()
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)

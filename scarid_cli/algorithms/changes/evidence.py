@@ -75,11 +75,17 @@ class Products:
     ) -> Products:
         """Those of the rows of a log, at parameters and a delay [s] of the torques.
 
-        Without the `model` of the rows they have nothing about the zeros of the joints.
+        Columns of W beyond those of `theta`, such as the ringing of friction, are fitted to each
+        log and left out of the comparison. Without the `model` of the rows there is nothing about
+        the zeros of the joints.
         """
+        p = len(theta)
+        nuisances = rows.W[:, :, p:]
+        rows = replace(rows, W=np.ascontiguousarray(rows.W[:, :, :p]))
         counts = np.maximum(np.count_nonzero(rows.scales, axis=0), 1)
         powers = np.sum((rows.y * (rows.scales > 0.0)) ** 2, axis=0) / counts
-        return cls(_products(rows, theta, delay, _zeros(rows, theta, model)), counts, powers)
+        zeros = _zeros(rows, theta, model)
+        return cls(_products(rows, theta, delay, zeros, nuisances), counts, powers)
 
     def evidence(self, *, zeros: bool = False) -> LogEvidence:
         """What the log says about all columns.
@@ -160,8 +166,8 @@ def _zeros(rows: Rows, theta: Array, model: Model | None) -> Array:
     return zero_columns(Sensitivities.of(model, theta, rows.motion[:3], orders=1))
 
 
-def _products(rows: Rows, theta: Array, delay: float, zeros: Array) -> Array:
-    """A'A of each joint and block, where A = [all columns, residual]."""
+def _products(rows: Rows, theta: Array, delay: float, zeros: Array, nuisances: Array) -> Array:
+    """A'A of each joint and block, where A = [all columns, residual] without the `nuisances`."""
     predicted = rows.W @ theta
     column = delay_column(rows, predicted)
     residual = rows.y - predicted - delay * column
@@ -177,11 +183,17 @@ def _products(rows: Rows, theta: Array, delay: float, zeros: Array) -> Array:
         )
         own = [p + 1 + j, p + 1 + joints + j]
         at = np.array([*range(p + 1), *own, *range(columns - joints, columns + 1)])
-        narrow *= counted
+        narrow = _without(counted * nuisances[:, j], counted * narrow)
         for b, (start, stop) in enumerate(starts):
             part = narrow[start:stop]
             found[j, b, at[:, None], at] = part.T @ part
     return found
+
+
+def _without(nuisances: Array, columns: Array) -> Array:
+    """What a fit of the nuisances leaves of columns, both (samples, columns)."""
+    along = np.linalg.qr(nuisances[:, np.any(nuisances != 0.0, axis=0)])[0]
+    return np.asarray(columns - along @ (along.T @ columns))
 
 
 def _blocks(rows: Rows) -> list[tuple[int, int]]:

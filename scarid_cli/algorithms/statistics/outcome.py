@@ -158,7 +158,8 @@ def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -
     """
     theta = np.zeros(whole.own)
     theta[kept] = estimates
-    W = np.ascontiguousarray(whole.rows.W[:, :, : whole.own])
+    further = whole.lead is not None  # the last column is that of the delay
+    W = whole.rows.W[:, :, :-1] if further else whole.rows.W
     return Products.of(replace(whole.rows, W=W), theta, delay, whole.model).evidence()
 
 
