@@ -65,6 +65,8 @@ def _evidence(x: Any) -> bool:
     joints = len(x["deviations"])
     # Older tables have nothing about the zeros of the joints.
     known = q in (alone + 2 * joints, alone + 3 * joints)
+    moves = x.get("biases", [])  # of each parameter by what the model may lack
+    known = known and _list(_list(number))(moves) and all(len(m) == alone - 1 for m in moves)
     return known and len(x["information"]) == q * (q + 1) // 2
 
 

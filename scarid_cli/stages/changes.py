@@ -33,7 +33,7 @@ from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.algorithms.statistics.verdict import VAGUE
 from scarid_cli.arrays import Array, median
 from scarid_cli.io.table import Table
-from scarid_cli.stages.parameters import EVIDENCE, Identified
+from scarid_cli.stages.parameters import BIASES, EVIDENCE, Identified
 from scarid_cli.stages.times import CAUSE, Times, spans
 
 
@@ -44,11 +44,27 @@ class Known:
     `evidence` is that log's, None if the table does not have it; `errors` (parameters) are the
     standard errors of the estimates, nan where there are none. `torques` (joints) are half the
     95 % intervals of the predicted torques, relative to the torques; 0 where they are not known.
+    `biases` (alternatives, columns) are how far what the model may lack moves the estimates beyond
+    noise, and `sizes` (joints) the root mean squares of the torques, nan where they are not known.
     """
 
     evidence: LogEvidence | None
     errors: Array
     torques: Array | float = 0.0
+    biases: Array | None = None
+    sizes: Array | float = np.nan
+
+    def ratios(self, now: LogEvidence, powers: Array) -> Array | None:
+        """The residuals of a log, divided by those at identification (joints), if these are known.
+
+        Noise and errors of a model grow with the torques, so what counts is the smaller one of
+        their ratio and that of the residuals relative to the torques, of mean squares `powers`.
+        """
+        if self.evidence is None:
+            return None
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = np.nan_to_num(now.deviations / self.evidence.deviations, posinf=1.0)
+            return np.asarray(ratios * np.fmin(self.sizes / np.sqrt(powers), 1.0))
 
     @property
     def remark(self) -> str:
@@ -90,7 +106,16 @@ def known(table: Table, robot: Robot, errors: Array) -> Known:
         np.array(stored["deviations"]),
         np.zeros((stored["blocks"], len(kept))),
     )
-    return Known(found, errors, _torques(table, joints, found.blocks))
+    facts = table.meta.extra.get("joints", [])
+    sizes = [x.get("torque", np.nan) for x in facts] if len(facts) == joints else np.nan
+    biases = np.array(stored.get(BIASES, [])).reshape(-1, p)[:, : len(names)]
+    return Known(
+        found,
+        errors,
+        _torques(table, joints, found.blocks),
+        np.pad(biases, ((0, 0), (0, len(kept) - len(names)))),
+        np.array(sizes, dtype=np.float64),
+    )
 
 
 def _torques(table: Table, joints: int, blocks: int) -> Array:
@@ -117,14 +142,11 @@ def verdict(
     now = sums.evidence()
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)
-    ratios = None
-    if before.evidence:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratios = np.nan_to_num(now.deviations / before.evidence.deviations, posinf=1.0)
-    else:
+    ratios = before.ratios(now, sums.powers)
+    if before.evidence is None:
         possible = [h for h in possible if h.kind not in (DELAY, OFFSET, ZERO)]
     values = dict(zip(robot.names, theta.tolist(), strict=True))
-    found = change(first, now, sums.evidence(zeros=True), possible)
+    found = change(first, now, sums.evidence(zeros=True), possible, before.biases)
     slight = None
     if found.changed:
         shares = sums.torque_shares(found.amounts)

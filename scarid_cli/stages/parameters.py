@@ -21,6 +21,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, table_of
 
 EVIDENCE = "evidence"  # key of the metadata
+BIASES = "biases"  # key of the evidence
 
 
 @dataclass(frozen=True)
@@ -167,7 +168,7 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         "effects": _effects(found.diagnostics),
         "widened": _widened(found.diagnostics),
         "torque_constants": _torque_constants(found, labels),
-        EVIDENCE: stored(found.evidence, labels.names),
+        EVIDENCE: stored(found.evidence, labels.names) | {BIASES: _biases(found, labels)},
         **found.found.extra,
     }
     if found.thin > 1:
@@ -229,6 +230,12 @@ def _effects(diagnostics: Diagnostics) -> dict[str, Any]:
             }
             for effect in diagnostics.effects
         }
+
+
+def _biases(found: Outcome, labels: Labels) -> list[list[float]]:
+    """How far each alternative to the model moves the estimates beyond noise, if it does."""
+    moves = [effect.bias for effect in found.diagnostics.effects if np.any(effect.bias)]
+    return [labels.placed(np.nan_to_num(bias), 0.0) for bias in moves]
 
 
 def stored(found: LogEvidence, columns: list[str]) -> dict[str, Any]:

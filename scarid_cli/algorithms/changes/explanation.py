@@ -79,20 +79,28 @@ class Change:
 
 
 def change(
-    first: LogEvidence, second: LogEvidence, turned: LogEvidence, possible: list[Hypothesis]
+    first: LogEvidence,
+    second: LogEvidence,
+    turned: LogEvidence,
+    possible: list[Hypothesis],
+    biases: Array | None = None,
 ) -> Change:
     """Test all hypotheses, and anything else whatever; then look for explanations.
+
+    What the model may lack moves the estimates of both logs by such `biases` (k, columns).
 
     The zeros of the joints are taken to be known, unless another zero explains the difference
     better: `turned` is the evidence of the second log if its zeros are in question. To leave them
     open in all tests would hide some changes of motor constants.
     """
-    known = Difference.between(first.without_zeros(), second.without_zeros())
+    moves = np.zeros((0, len(first.score))) if biases is None else biases
+    known = Difference.between(first.without_zeros(), second.without_zeros()).allowing(moves)
     others = [h for h in possible if h.kind != ZERO]
     found = found_in(known, others)
     if len(others) == len(possible):
         return found
-    other = found_in(Difference.between(first, turned), possible, searches=2)
+    open_zeros = Difference.between(first, turned).allowing(moves)
+    other = found_in(open_zeros, possible, searches=2)
     zero = any(e.hypothesis.kind == ZERO for e in other.explanations)
     return other if zero and other.gain > found.gain else found
 

@@ -49,6 +49,24 @@ class Difference:
             freedom=max(min(first.blocks, second.blocks) - 1, 1),
         )
 
+    def allowing(self, biases: Array) -> Difference:
+        """The difference if psi is also uncertain by these moves (k, columns), one error each.
+
+        They add B'B to its covariance, so that P becomes (P^-1 + B'B)^-1 = (1 - P B' K B) P, with
+        K = (1 + B P B')^-1.
+        """
+        along = self.information @ biases.T
+        gain = np.linalg.solve(np.eye(len(biases)) + biases @ along, along.T)
+        part = np.eye(len(self.gradient)) - gain.T @ biases
+        information = part @ self.information
+        return Difference(
+            information=0.5 * (information + information.T),
+            gradient=part @ self.gradient,
+            scores=self.scores @ part.T,
+            model=part @ self.model @ part.T,
+            freedom=self.freedom,
+        )
+
 
 @dataclass(frozen=True)
 class Test:
