@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
-from scarid_cli.algorithms.changes.explanation import change
+from scarid_cli.algorithms.changes.explanation import Change, change
 from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, ZERO, hypotheses
 from scarid_cli.algorithms.changes.wiring import rewired
 from scarid_cli.algorithms.changes.wording import (
@@ -43,15 +43,13 @@ class Known:
 
     `evidence` is that log's, None if the table does not have it; `errors` (parameters) are the
     standard errors of the estimates, nan where there are none. `torques` (joints) are half the
-    95 % intervals of the predicted torques, relative to the torques; 0 where they are not known.
-    `biases` (alternatives, columns) are how far what the model may lack moves the estimates beyond
-    noise, and `sizes` (joints) the root mean squares of the torques, nan where they are not known.
+    95 % intervals of the predicted torques, relative to the torques, 0 where they are not known,
+    and `sizes` (joints) the root mean squares of the torques, nan where they are not known.
     """
 
     evidence: LogEvidence | None
     errors: Array
     torques: Array | float = 0.0
-    biases: Array | None = None
     sizes: Array | float = np.nan
 
     def ratios(self, now: LogEvidence, powers: Array) -> Array | None:
@@ -100,22 +98,21 @@ def known(table: Table, robot: Robot, errors: Array) -> Known:
     lower[np.tril_indices(there)], score[:there] = stored["information"], stored["score"]
     kept = np.array([*range(len(names)), *range(p, q)])
     information = (lower + np.tril(lower, -1).T)[np.ix_(kept, kept)]
+    biases = np.array(stored.get(BIASES, [])).reshape(-1, p)[:, : len(names)]
     found = LogEvidence(
         information,
         score[kept],
         np.array(stored["deviations"]),
         np.zeros((stored["blocks"], len(kept))),
-    )
-    facts = table.meta.extra.get("joints", [])
-    sizes = [x.get("torque", np.nan) for x in facts] if len(facts) == joints else np.nan
-    biases = np.array(stored.get(BIASES, [])).reshape(-1, p)[:, : len(names)]
-    return Known(
-        found,
-        errors,
-        _torques(table, joints, found.blocks),
         np.pad(biases, ((0, 0), (0, len(kept) - len(names)))),
-        np.array(sizes, dtype=np.float64),
     )
+    return Known(found, errors, _torques(table, joints, found.blocks), _sizes(table, joints))
+
+
+def _sizes(table: Table, joints: int) -> Array | float:
+    """The root mean square of the torque of each joint (joints), nan where it is not known."""
+    facts = table.meta.extra.get("joints", [])
+    return np.array([x.get("torque", np.nan) for x in facts]) if len(facts) == joints else np.nan
 
 
 def _torques(table: Table, joints: int, blocks: int) -> Array:
@@ -146,15 +143,36 @@ def verdict(
     if before.evidence is None:
         possible = [h for h in possible if h.kind not in (DELAY, OFFSET, ZERO)]
     values = dict(zip(robot.names, theta.tolist(), strict=True))
-    found = change(first, now, sums.evidence(zeros=True), possible, before.biases)
-    slight = None
-    if found.changed:
-        shares = sums.torque_shares(found.amounts)
-        within = np.all(shares <= np.minimum(before.torques, VAGUE))
-        slight = float(shares.max()) if within else None
+    found = change(first, now, sums.evidence(zeros=True), possible)
+    slight = _slight(found, sums, first, now, before)
     judged = of_change(found, values, ratios, residuals, slight)
     as_before = judged.grade == UNCHANGED and ratios is not None
     return judged if as_before else _with_times(judged, rows, theta, times)
+
+
+def _slight(
+    found: Change, sums: Products, first: LogEvidence, now: LogEvidence, before: Known
+) -> float | None:
+    """The part of a torque that the change makes, where no torque changes beyond its interval.
+
+    The intervals are those that the identification states. A change that is not one of those with
+    a name has as many directions as there are parameters, and two logs that determine them: then
+    they are the 95 % intervals of the difference of the torques on this motion.
+    """
+    if not (found.changed and found.whole):
+        return None
+    shares = sums.torque_shares(np.outer(found.amounts, found.amounts))
+    intervals = before.torques
+    if not found.complete:
+        joints, columns = len(now.deviations), len(now.score)
+        own = slice(columns - 3 * joints - 1)  # the columns of the parameters
+        covariance = np.zeros((columns, columns))
+        covariance[own, own] = sum(inverse(log.information[own, own]) for log in (first, now))
+        if first.biases is not None:
+            covariance += first.biases.T @ first.biases
+        factor = quantile(0.975, min(first.blocks, now.blocks) - 1.0)
+        intervals = factor * sums.torque_shares(covariance)
+    return float(shares.max()) if np.all(shares <= np.minimum(intervals, VAGUE)) else None
 
 
 def _with_times(judged: Verdict, rows: Rows, theta: Array, times: Times) -> Verdict:

@@ -35,13 +35,16 @@ class LogEvidence:
     motor constant of each joint, then the offset of each joint [N m or N], then the position of
     each joint where the log has 0 [rad or m]. `deviations` (joints) are the standard deviations of
     the residual after all columns, with or without those of the zeros, have been fitted, and
-    `scores` (blocks, columns) those of blocks of half a second with this residual.
+    `scores` (blocks, columns) those of blocks of half a second with this residual. `biases`
+    (alternatives, columns) are how far what the model may lack moves the estimates beyond noise,
+    if this is known.
     """
 
     information: Array
     score: Array
     deviations: Array
     scores: Array
+    biases: Array | None = None
 
     @property
     def blocks(self) -> int:
@@ -115,15 +118,16 @@ class Products:
             scores=np.tensordot(weights, scores, 1),
         )
 
-    def torque_shares(self, change: Array) -> Array:
+    def torque_shares(self, squares: Array) -> Array:
         """The rms of what a change of all columns does to the torque of each joint (joints).
 
-        It is relative to the rms of the torque that the parameters predict; `change` (columns).
+        It is relative to the rms of the torque that the parameters predict. `squares` (columns,
+        columns) are the products of the changes of two columns, or their covariances.
         """
         sums = self.values.sum(axis=1)[:, :-1, :-1]
-        changes = np.einsum("i,jik,k->j", change, sums, change).clip(min=0.0)
+        changes = np.einsum("ik,jki->j", squares, sums).clip(min=0.0)
         joints = np.arange(len(sums))
-        predicted = len(change) - 3 * len(sums) + joints  # the columns of the motor constants
+        predicted = len(squares) - 3 * len(sums) + joints  # the columns of the motor constants
         torques = sums[joints, predicted, predicted]
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.sqrt(changes / torques))

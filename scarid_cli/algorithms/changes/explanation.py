@@ -47,8 +47,8 @@ class Change:
 
     `p_value` is the smallest of all tests, multiplied by their number `tests` (Bonferroni).
     `explained` is the share of the difference that the explanations account for, and `left` the
-    p-value of the rest. `whole` (columns) is the change of all columns that fits best, and `gain`
-    twice the gain in log-likelihood by the explanations, less a penalty for their amounts.
+    p-value of the rest. `whole` is the test of any change of all columns, and `gain` twice the gain
+    in log-likelihood by the explanations, less a penalty for their amounts.
     """
 
     p_value: float
@@ -56,14 +56,14 @@ class Change:
     explanations: tuple[Explanation, ...] = ()
     explained: float = 0.0
     left: float = 0.0
-    whole: tuple[float, ...] = ()
+    whole: Test | None = None
     gain: float = 0.0
 
     @property
     def amounts(self) -> Array:
         """How far all columns changed (columns): as explained, or in whatever way."""
-        if not self.complete:
-            return np.array(self.whole)
+        if not self.complete and self.whole:
+            return self.whole.amounts
         parts = [e.hypothesis.directions @ np.array(e.amounts) for e in self.explanations]
         return np.asarray(np.sum(parts, axis=0))
 
@@ -79,30 +79,36 @@ class Change:
 
 
 def change(
-    first: LogEvidence,
-    second: LogEvidence,
-    turned: LogEvidence,
-    possible: list[Hypothesis],
-    biases: Array | None = None,
+    first: LogEvidence, second: LogEvidence, turned: LogEvidence, possible: list[Hypothesis]
 ) -> Change:
     """Test all hypotheses, and anything else whatever; then look for explanations.
-
-    What the model may lack moves the estimates of both logs by such `biases` (k, columns).
 
     The zeros of the joints are taken to be known, unless another zero explains the difference
     better: `turned` is the evidence of the second log if its zeros are in question. To leave them
     open in all tests would hide some changes of motor constants.
     """
-    moves = np.zeros((0, len(first.score))) if biases is None else biases
-    known = Difference.between(first.without_zeros(), second.without_zeros()).allowing(moves)
     others = [h for h in possible if h.kind != ZERO]
-    found = found_in(known, others)
+    found = _change(first.without_zeros(), second.without_zeros(), others)
     if len(others) == len(possible):
         return found
-    open_zeros = Difference.between(first, turned).allowing(moves)
-    other = found_in(open_zeros, possible, searches=2)
+    other = _change(first, turned, possible, searches=2)
     zero = any(e.hypothesis.kind == ZERO for e in other.explanations)
     return other if zero and other.gain > found.gain else found
+
+
+def _change(
+    first: LogEvidence, second: LogEvidence, possible: list[Hypothesis], searches: int = 1
+) -> Change:
+    """What one of so many searches finds.
+
+    A difference that no change with a name explains has to be larger than what the model may lack,
+    which another motion shows otherwise. One with a name need not be.
+    """
+    difference = Difference.between(first, second)
+    found = found_in(difference, possible, searches)
+    if first.biases is None or not found.changed or found.complete:
+        return found
+    return found_in(difference.allowing(first.biases), possible, searches)
 
 
 def found_in(difference: Difference, possible: list[Hypothesis], searches: int = 1) -> Change:
@@ -112,17 +118,16 @@ def found_in(difference: Difference, possible: list[Hypothesis], searches: int =
     log_p = min(min(log_ps) + log(searches * len(log_ps)), 0.0)
     if not log_p < log(FALSE_ALARMS):
         return Change(exp(log_p), len(log_ps))
-    amounts = tuple(whole.amounts.tolist())
     chosen, rivals = _chosen(difference, possible, whole)
     if not chosen:
-        return Change(exp(log_p), len(log_ps), whole=amounts)
+        return Change(exp(log_p), len(log_ps), whole=whole)
     found = tested(difference, chosen)
     rest, rank = max(whole.raw - found.raw, 0.0), max(whole.rank - found.rank, 1)
     left = log_tail_f(rest / whole.excess / rank, rank, difference.freedom)
     share = found.beyond_noise / (found.beyond_noise + max(rest - rank * whole.excess, 0.0))
     explanations = _described(chosen, rivals, found)
     gain = found.raw - found.excess * penalty(difference, found.rank)
-    return Change(exp(log_p), len(log_ps), explanations, share, exp(left), amounts, gain)
+    return Change(exp(log_p), len(log_ps), explanations, share, exp(left), whole, gain)
 
 
 def _chosen(
