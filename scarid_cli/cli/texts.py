@@ -106,6 +106,8 @@ def _in_words(
     if not found:
         return {}, []
     job.notes.append(f"columns by the words in their names: {in_short(found)}")
+    if found.left_out and not joints:
+        job.notes.append(f"left alone, as there is no torque of them: {', '.join(found.left_out)}")
     if found.joints and not joints:
         job.notes.append("joints in the order of their columns (another: --joints)")
     _tell_of_currents(job, found.columns)

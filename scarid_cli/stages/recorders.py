@@ -72,12 +72,16 @@ PLACES = {"{k}": r"(?P<k>\d+)", "{joint}": r"(?P<joint>[^/]+)", "*": ".*"}
 
 @dataclass(frozen=True)
 class Recognised:
-    """The recorder of a table: the old name of each new column, and the joints by their names."""
+    """The recorder of a table: the old name of each new column, and the joints by their names.
+
+    `left_out` are positions of what has no torque.
+    """
 
     name: str
     columns: dict[str, str]
     units: tuple[tuple[str, str], ...]
     joints: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
 
 
 def recognised(

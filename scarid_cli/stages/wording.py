@@ -15,7 +15,7 @@ POSITION, VELOCITY, TORQUE = "q{i}", "dq{i}_measured", "tau{i}"
 QUANTITIES = {
     POSITION: {"angle", "angles", "pos", "position", "positions", "q", "qpos", "theta"},
     VELOCITY: {"dq", "qd", "qdot", "qvel", "speed", "speeds", "vel", "velocities", "velocity"},
-    TORQUE: {"effort", "efforts", "tau", "torque", "torques", "trq"},
+    TORQUE: {"effort", "efforts", "force", "forces", "tau", "torque", "torques", "trq"},
     CURRENT: {"current", "currents"},
 }
 CLOCK = {
@@ -81,7 +81,8 @@ def in_words(
         return None  # no log of a robot
     if found.get(TORQUE) or "tau1" in known:
         found.pop(CURRENT, None)
-    order = _order([found[new] for new in (POSITION, TORQUE) if found.get(new)], joints)
+    measured = [found[new] for new in (POSITION, TORQUE, CURRENT) if found.get(new)]
+    order = _order(measured, joints)
     if "q1" in known and not _numbers(order):
         order = []  # nothing says which joint is the first one
     pairs = [] if "t" in known else _clock(columns)
@@ -91,7 +92,9 @@ def in_words(
     units = tuple((new, column.unit) for new, column in pairs if column.unit)
     by_name = () if _numbers(order) else tuple(" ".join(key) for key in order)
     renamed = {new: column.name for new, column in pairs}
-    return Recognised("", renamed, units, by_name) if renamed else None
+    positions = found.get(POSITION, {})
+    left_out = tuple(own.name for key, own in positions.items() if key not in order)
+    return Recognised("", renamed, units, by_name, left_out) if renamed else None
 
 
 def renamable(columns: Sequence[str]) -> bool:
@@ -176,6 +179,11 @@ def _order(found: Sequence[dict[Key, _Column]], joints: Sequence[str]) -> list[K
         first, second = (next(iter(own.values())).name for own in found)
         raise Unclear(f"{first} and {second} seem to be of different joints")
     wanted = [tuple(word for word in _read(joint).words if word not in PLAIN) for joint in joints]
+    for own in found:
+        lacking = [joint for joint, key in zip(joints, wanted, strict=True) if key not in own]
+        if len(lacking) < len(joints) and lacking:
+            names = ", ".join(column.name for column in own.values())
+            raise Unclear(f"{names} lack that of {', '.join(lacking)}")
     if wanted and all(key in common for key in wanted):
         return wanted
     numbers = _numbers(common)

@@ -15,6 +15,7 @@ from stages.tables import SCARA
 from unit.support import adjusted
 
 from scarid_cli.algorithms.changes.evidence import Products
+from scarid_cli.algorithms.changes.likelihood import Difference
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.rows import rows_of
@@ -136,10 +137,36 @@ def test_the_torque_that_a_change_makes_is_relative_to_that_of_each_joint() -> N
     torques, moved = rows.W @ theta, rows.W[:, :, 3] * 0.2
     expected = np.sqrt((moved**2).sum(axis=0) / (torques**2).sum(axis=0))
     sums = Products.of(rows, theta)
-    np.testing.assert_allclose(sums.torque_shares(changed), expected, rtol=1e-9)
+    np.testing.assert_allclose(sums.torque_shares(np.outer(changed, changed)), expected, rtol=1e-9)
     changed = np.zeros(8 + 1 + 3 * 2)
     changed[8 + 1 + 1] = 0.05  # the motor constant of joint 2
-    np.testing.assert_allclose(sums.torque_shares(changed), [0.0, 0.05], atol=1e-12)
+    squares = np.outer(changed, changed)
+    np.testing.assert_allclose(sums.torque_shares(squares), [0.0, 0.05], atol=1e-12)
+
+
+def test_columns_that_are_no_parameters_are_fitted_to_each_log() -> None:
+    """The information about the rest is that of all columns less what these share with them."""
+    rng = np.random.default_rng(4)
+    rows = rows_of(SCARA, rng.standard_normal((4, 2, 400)), np.arange(400), 0.01)
+    rows = replace(rows, y=rows.W @ SCARA.apriori + rng.standard_normal(rows.y.shape))
+    nuisance = np.zeros((*rows.y.shape, 1))
+    nuisance[:, 1, 0] = rows.W[:, 1, 4] + 0.1 * rng.standard_normal(400)
+    wide = replace(rows, W=np.concatenate((rows.W, nuisance), axis=2))
+    found = Products.of(wide, SCARA.apriori).values[1].sum(axis=0)[:8, :8]
+    W, c = rows.W[:, 1], nuisance[:, 1, 0]
+    expected = W.T @ W - np.outer(W.T @ c, c @ W) / (c @ c)
+    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
+
+
+def test_biases_add_to_the_covariance_of_a_difference() -> None:
+    rng = np.random.default_rng(5)
+    root, biases = rng.standard_normal((6, 6)), rng.standard_normal((2, 6))
+    information, amounts = root @ root.T, rng.standard_normal(6)
+    difference = Difference(information, information @ amounts, root, information, 20)
+    found = difference.allowing(biases)
+    expected = np.linalg.inv(np.linalg.inv(information) + biases.T @ biases)
+    np.testing.assert_allclose(found.information, expected, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(found.gradient, expected @ amounts, rtol=1e-9, atol=1e-9)
 
 
 def test_a_change_within_the_stated_intervals_is_named_but_is_none() -> None:

@@ -49,6 +49,10 @@ HEADERS = {
         "t pos_2 pos_10 pos_1 pos_3 pos_4 pos_5 pos_6 pos_7 pos_8 pos_9",
         " ".join(f"pos_{i}" for i in range(1, 11)),
     ),
+    "forces and torques": (
+        "t rail_pos_mm a1_pos_deg rail_force_N a1_torque_Nm",
+        "rail_pos_mm a1_pos_deg rail_force_N a1_torque_Nm",
+    ),
     "one joint": ("time position torque", "time position torque"),
     "torques only": ("t q1 q2 effort_1 effort_2", "effort_1 effort_2"),
     "motors as well": (
@@ -106,6 +110,7 @@ def test_joints_with_names_are_in_the_order_of_the_robot() -> None:
         ("t position_1 position_3", (), "their joints are numbered 1, 3"),
         ("t left_position right_torque", (), "seem to be of different joints"),
         ("t left_position right_position", ("shoulder", "elbow"), "none of the joints shoulder"),
+        ("t rail_pos a_pos b_pos a_tau b_tau", ("rail", "a", "b"), "b_tau lack that of rail"),
     ],
 )
 def test_what_is_unclear_is_not_guessed(header: str, joints: tuple[str, ...], why: str) -> None:
@@ -133,6 +138,12 @@ def test_names_that_are_given_are_not_looked_for() -> None:
     found = in_words(["time", "encoder", "torque_1"], {"q1"}, ())
     assert found is not None
     assert found.columns == {"t": "time", "tau1": "torque_1"}
+
+
+def test_positions_of_what_has_no_torque_are_told() -> None:
+    found = in_words(["t", "pos_1", "pos_2", "gripper_pos", "tau_1", "tau_2"], (), ())
+    assert found is not None
+    assert found.left_out == ("gripper_pos",)
 
 
 def test_many_columns_are_told_in_short() -> None:
