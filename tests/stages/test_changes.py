@@ -15,7 +15,7 @@ from stages.tables import SCARA
 from unit.support import adjusted
 
 from scarid_cli.algorithms.changes.evidence import Products
-from scarid_cli.algorithms.changes.likelihood import Difference
+from scarid_cli.algorithms.changes.likelihood import Difference, along
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.rows import rows_of
@@ -244,3 +244,13 @@ def test_a_table_without_metadata_is_tested_with_its_errors() -> None:
     assert change(before, *LOGS[12])["verdict"] == "unchanged"
     before = replace(parameters(), meta=Metadata(kind="parameters"))
     assert kinds(change(before, *scaled(2, 1.1)(*LOGS[12]))) == [("motor constant", [2])]
+
+
+def test_amounts_of_which_only_a_combination_is_known_have_no_error() -> None:
+    """Two directions with the same effect, and one of its own."""
+    effects = np.array([[1.0, 0.0], [0.5, 0.0], [0.0, 2.0]])
+    difference = Difference(np.eye(2), np.array([0.3, 0.4]), np.eye(2), np.eye(2), 20)
+    found = along(difference, effects.T)
+    assert found.rank == 2
+    np.testing.assert_array_equal(np.isfinite(found.errors), [False, False, True])
+    assert found.amounts @ effects == pytest.approx([0.3, 0.4])

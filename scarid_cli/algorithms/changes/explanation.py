@@ -169,11 +169,10 @@ def _significant(
 def _described(
     chosen: list[Hypothesis], rivals: list[tuple[Hypothesis, ...]], found: Test
 ) -> tuple[Explanation, ...]:
-    errors = np.sqrt(np.maximum(np.diag(found.covariance), 0.0))
     explanations, start = [], 0
     for hypothesis, near in zip(chosen, rivals, strict=True):
         own = slice(start, start + hypothesis.directions.shape[1])
-        amounts, own_errors = (tuple(x[own].tolist()) for x in (found.amounts, errors))
+        amounts, own_errors = (tuple(x[own].tolist()) for x in (found.amounts, found.errors))
         explanations.append(Explanation(hypothesis, amounts, own_errors, near))
         start = own.stop
     return tuple(explanations)

@@ -15,6 +15,7 @@ from scarid_cli.arrays import Array
 
 JOINED = (1, 2, 4)  # blocks
 RANK = 1e-9  # of the largest eigenvalue of normalised information: a direction that was not moved
+ALONE = 1e-6  # of the square of a direction: what lies outside those that were moved
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ class Test:
 
     `raw`, twice the gain in log-likelihood, is chi-square with `rank` degrees of freedom times
     `excess` if nothing changed; `log_p` is the logarithm of its p-value. `amounts` (k) are the
-    estimated changes and `covariance` (k, k) is theirs.
+    estimated changes and `errors` (k) theirs, infinite where only combinations of them are known.
     """
 
     raw: float
@@ -82,7 +83,7 @@ class Test:
     rank: int
     log_p: float
     amounts: Array
-    covariance: Array
+    errors: Array
 
     @property
     def beyond_noise(self) -> float:
@@ -92,7 +93,7 @@ class Test:
     @classmethod
     def nothing(cls, k: int = 0) -> Test:
         """The test of no directions, or of directions that no log says anything about."""
-        return cls(0.0, 1.0, 0, 0.0, np.zeros(k), np.full((k, k), np.inf))
+        return cls(0.0, 1.0, 0, 0.0, np.zeros(k), np.full(k, np.inf))
 
 
 def everything(difference: Difference) -> Test:
@@ -120,7 +121,9 @@ def along(difference: Difference, Z: Array) -> Test:
     whitened = root.T @ (Z.T @ difference.gradient)
     raw = float(whitened @ whitened)
     log_p = log_tail_f(raw / excess / rank, rank, difference.freedom)
-    return Test(raw, excess, rank, log_p, root @ whitened, excess * root @ root.T)
+    errors = np.sqrt(excess * np.sum(root**2, axis=1))
+    errors[np.sum(vectors[:, kept] ** 2, axis=1) < 1.0 - ALONE] = np.inf
+    return Test(raw, excess, rank, log_p, root @ whitened, errors)
 
 
 def _excess(difference: Difference, whitening: Array) -> float:

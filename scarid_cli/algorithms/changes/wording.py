@@ -147,6 +147,8 @@ def _amounts(e: Explanation, values: dict[str, float]) -> str:
         size = "large" if e.amounts[0] < 0.0 else "small"
         amount = f"{abs(e.amounts[0]):.3g} +- {e.errors[0]:.2g} {hypothesis.units[0]}"
         return f"its positions are {amount} too {size}"
+    if not np.isfinite(e.errors).any():
+        return "amounts that the motion does not tell apart"
     clarity = np.abs(e.amounts) / np.maximum(e.errors, 1e-300)
     order = np.argsort(-clarity)
     clear = [int(i) for i in order if clarity[i] > CLEAR] or [int(order[0])]
