@@ -120,6 +120,27 @@ def test_torques_in_another_unit_are_told_from_the_a_priori_parameters(
     assert told == ([unit] if unit else [])
 
 
+@pytest.mark.parametrize(
+    ("factors", "told"),
+    [
+        ((1e3, 1.0, 1.0, 1.0), "to be in mm: `scarid convert --unit q1=mm`"),
+        ((1.0, 1.0, 57.3, 1.0), "degrees: `scarid convert --unit q3=deg`, or `--unit q2=deg --uni"),
+        ((1.0, 57.3, 57.3, 57.3), "degrees: `scarid convert --unit q2=deg --unit q3=deg --unit q4"),
+        ((1e3, 57.3, 57.3, 57.3), "mm and degrees: `scarid convert --unit q1=mm --unit q2=deg --"),
+    ],
+)
+def test_joints_have_units_of_their_type(factors: tuple[float, ...], told: str) -> None:
+    """A rail that carries an arm of three joints."""
+    arm = load("scara2")
+    turn = replace(arm.joints[0], lower=-2.0, upper=2.0, velocity_limit=3.0)
+    rail = replace(turn, type="prismatic")
+    robot = replace(arm, joints=(rail, turn, turn, turn))
+    q = np.array([1.5, 1.5, 1.2, 1.8])[:, None] * np.array(factors)[:, None] * [[-1.0, 1.0]]
+    (found,) = of_extremes(q, np.ones((4, 2)), robot, 0.005)
+    assert (found.name, found.status) == ("positions", FAILED)
+    assert told in found.advice
+
+
 def test_joints_without_limits_may_turn_many_times() -> None:
     """The pendulum of the gauntlet whirls: positions in degrees are only suspected."""
     turns = np.array([[-1.0, 53.0], [-50.0, 2.0]])

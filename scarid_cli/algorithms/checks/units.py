@@ -11,7 +11,8 @@ from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 
-DEGREE = pi / 180.0
+# By the type of a joint: another unit than ours, its factor, and its name.
+OTHER_UNITS = {"revolute": ("deg", pi / 180.0, "degrees"), "prismatic": ("mm", 1e-3, "mm")}
 TURNS = 4.0 * pi  # rad: joints without limits turn twice; arms with cables do not turn further
 FAST = 20.0  # rad/s: no joint of an arm is faster, where the description has no limit
 SPARE = 1.05  # of a limit: a controller overshoots by a few percent
@@ -26,7 +27,7 @@ GEAR = 6.0  # times a limit: less is a limit of the cell or of an older descript
 def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
     """Positions and `speeds` (joints) [per s], the highest that are not noise, against the limits.
 
-    Also the factors (joints) that bring positions that are in degrees to rad.
+    Also the factors (joints) that bring positions that are in degrees to rad, and in mm to m.
     """
     factors = np.ones(log.joints)
     reach = np.nanmax(np.abs(log.q), axis=1)
@@ -35,23 +36,53 @@ def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
         within = ", ".join(f"{x:.3g}" for x in reach)
         return ok("positions", f"up to {within} {_units(robot)}, within the limits"), factors
     names = joints_text(i + 1 for i in outside)
-    degrees = [i for i in outside if _in_degrees(log.q[i], robot, i, speeds[i])]
-    if len(degrees) == len(outside):
-        # A log has one unit, and joints that move little are within their limits in any.
-        revolute = [i for i, joint in enumerate(robot.joints) if joint.type == "revolute"]
-        factors[revolute] = DEGREE
-        figure = f"{names} up to {reach[outside].max():.3g}, far outside the limits in rad"
-        advice = "positions seem to be in degrees: `scarid convert --unit 'q*=deg'`"
-        if len(degrees) < len(revolute):
-            single = " ".join(f"--unit q{i + 1}=deg" for i in degrees)
-            advice += f", or `{single}` if all others are in rad"
-        return failed("positions", figure, advice), factors
+    if all(_in_other_unit(log.q[i], robot, i, speeds[i]) for i in outside):
+        figure = f"{names} up to {reach[outside].max():.3g}, far outside the limits"
+        likely = _alike(robot, outside)
+        for i in likely:
+            factors[i] = OTHER_UNITS[robot.joints[i].type][1]
+        return failed("positions", figure, _converted(robot, outside, likely)), factors
     excess = max(_excess(log.q[i], robot, i, speeds[i]) for i in outside)
     resting = max(_excess(log.q[i], robot, i, 0.0) for i in outside)
     what = "limits" if resting > SPARE else "velocity limit"
     figure = f"{names} at {excess:.3g} times the {what} of {robot.short_name}"
-    advice = "is this the robot, and is a position that of the motor (gear_ratio, zero, unit)?"
-    return (failed if excess > GEAR else warning)("positions", figure, advice), factors
+    question = "is this the robot, and is a position that of the motor (gear_ratio, zero, unit)?"
+    return (failed if excess > GEAR else warning)("positions", figure, question), factors
+
+
+def _alike(robot: Robot, outside: list[int]) -> list[int]:
+    """The joints whose positions are likely to be in the other unit of those far outside.
+
+    A log has one unit for a type of joint, and joints that move little are within their limits in
+    any; but if most are within, only those outside are in another one.
+    """
+    found = []
+    for kind in OTHER_UNITS:
+        own = [i for i in outside if robot.joints[i].type == kind]
+        every = [i for i, joint in enumerate(robot.joints) if joint.type == kind]
+        found += every if 2 * len(own) > len(every) else own
+    return sorted(found)
+
+
+def _converted(robot: Robot, outside: list[int], likely: list[int]) -> str:
+    """What to type for positions in another unit, of these joints or of those outside limits."""
+    kinds = dict.fromkeys(robot.joints[i].type for i in outside)
+    names = " and ".join(OTHER_UNITS[kind][2] for kind in kinds)
+    text = f"positions seem to be in {names}: `scarid convert {_options(robot, likely)}`"
+    every = [i for i, joint in enumerate(robot.joints) if joint.type in kinds]
+    if likely != outside:
+        return f"{text}, or `{_options(robot, outside)}` if only these are"
+    if len(every) > len(likely):
+        return f"{text}, or `{_options(robot, every)}` if all are"
+    return text
+
+
+def _options(robot: Robot, joints: list[int]) -> str:
+    """The options that convert the positions of these joints (from 0)."""
+    units = [OTHER_UNITS[robot.joints[i].type][0] for i in joints]
+    if len(joints) == len(robot.joints) and len({*units}) == 1:
+        return f"--unit 'q*={units[0]}'"
+    return " ".join(f"--unit q{i + 1}={unit}" for i, unit in zip(joints, units, strict=True))
 
 
 def _units(robot: Robot) -> str:
@@ -74,12 +105,11 @@ def _excess(q: Array, robot: Robot, i: int, speed: float) -> float:
     return float(max(reach, speed / limit))
 
 
-def _in_degrees(q: Array, robot: Robot, i: int, speed: float) -> bool:
-    """Whether joint i is within its limits if its position is in degrees, and far out otherwise."""
-    if robot.joints[i].type != "revolute":
-        return False
+def _in_other_unit(q: Array, robot: Robot, i: int, speed: float) -> bool:
+    """Whether joint i is within its limits if its position is in degrees or mm, else far out."""
+    _, factor, _ = OTHER_UNITS[robot.joints[i].type]
     excess = _excess(q, robot, i, speed)
-    return excess > FAR and _excess(DEGREE * q, robot, i, DEGREE * speed) <= 1.0 + 1.0 / FAR
+    return excess > FAR and _excess(factor * q, robot, i, factor * speed) <= 1.0 + 1.0 / FAR
 
 
 def torques(log: Log, robot: Robot, ratios: Array) -> Finding:
