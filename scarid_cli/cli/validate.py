@@ -42,8 +42,9 @@ def command() -> None:
     The verdict, on standard error and in the metadata, says whether the robot has changed since the
     identification: `unchanged`, `changed` with the cause (another payload or set-up, the friction,
     the motor constant or the offset of a joint, another delay, reversed or swapped joints), or
-    `unexplained`. Of an unchanged robot, at most one comparison in a hundred has another verdict by
-    chance. A change of the torques within the intervals that the identification
-    states, and within 10 %, is named, but counts as `unchanged`. Parameters in a CSV file lack what
+    `unexplained`. Of an unchanged robot that moves alike, at most one comparison in a hundred has
+    another verdict by chance; on another kind of motion more may, as no model is exact. A change of
+    the torques within the intervals that the identification states, and within 10 %, is named, but
+    counts as `unchanged`. Parameters in a CSV file lack what
     the tests of delay and offsets need: write them as Parquet or Arrow.
     """
