@@ -76,11 +76,9 @@ def delay(seconds: float, error: float, motion: Motion) -> Finding:
     """The delay [s] of the torques of a motion, and its error."""
     rows = seconds / motion.h
     phase = 2.0 * pi * motion.bandwidths.max() * abs(seconds)
-    late = "behind" if seconds >= 0.0 else "before"
+    how = "lag" if seconds >= 0.0 else "lead"
     known = float(f"{1e3 * error:.1g}")
-    figure = (
-        f"torques {1e3 * abs(seconds):.3g} +- {known:g} ms ({abs(rows):.2g} rows) {late} the motion"
-    )
+    figure = f"torques {how} by {1e3 * abs(seconds):.3g} +- {known:g} ms ({abs(rows):.2g} rows)"
     if abs(rows) <= LATE or abs(seconds) <= DEVIATIONS * error or phase <= PHASE:
         return ok("delay", figure)
     advice = "positions and torques are not of one instant: `scarid identify --align` fits it"
