@@ -244,8 +244,8 @@ SPOILED = {
     "standstill three quarters of the time": Spoiled(
         "scara", mostly_still, "standstill", "cut the log"
     ),
-    "torques 6 rows late": Spoiled("scara", late(6), "delay", "behind"),
-    "torques 10 rows late, six joints": Spoiled("ur10", late(10), "delay", "behind"),
+    "torques 6 rows late": Spoiled("scara", late(6), "delay", "lag by"),
+    "torques 10 rows late, six joints": Spoiled("ur10", late(10), "delay", "lag by"),
     "encoder of 9 bits": Spoiled("scara", coarse(2 * np.pi / 512), "resolution", "coarse"),
     "joint 2 braked": Spoiled("scara", frozen(2), "motion", "joint 2 hardly moves"),
     "small torques of joint 2 not measured": Spoiled(
