@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.changes.wording import UNEXPLAINED
 from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
@@ -29,13 +31,15 @@ def validate(
     treatment: Treatment | None = None,
     predictions: Sink | None = None,
     before: Known | None = None,
+    failed: Callable[[], Sequence[str]] = tuple,
 ) -> Table:
     """The metrics of the torques that identified parameters predict for a motion, a row per joint.
 
     The predicted torques lead the motion by the delay that was fitted with the parameters.
     `predictions` receives the measured and predicted torques of every sample (Fig. 7-8). With
     `before`, what is known of the log of the identification, the metadata say whether the robot
-    has changed since then.
+    has changed since then. What `failed` among the checks of the log, told at its end, is then the
+    likelier cause.
     """
     robot = model.robot
     sums = [empty() for _ in robot.joints]
@@ -60,7 +64,10 @@ def validate(
     qualities = [Quality.of(joint) for joint in sums]
     if before:
         residuals = np.array([quality.relative_error / 100.0 for quality in qualities])
-        extra["change"] = verdict(subsample.rows(), model, before, residuals, times).extra
+        judged = verdict(subsample.rows(), model, before, residuals, times)
+        if causes := failed():
+            judged = replace(judged, grade=UNEXPLAINED, reason="; ".join(causes))
+        extra["change"] = judged.extra
     return _metrics(table, robot, qualities, extra)
 
 

@@ -172,17 +172,16 @@ def test_torques_in_kilonewton_metres_are_told(torque: float, status: str | None
         ({"q1": 1000.0}, "is this the robot, and is a position that of the motor"),
     ],
 )
-def test_validate_warns_of_another_unit(
+def test_another_unit_is_the_verdict_of_validate(
     factors: dict[str, float], told: str | None, samples: Path, tmp_path: Path, scarid: Run
 ) -> None:
     """Of an arm with other inertias, as it would otherwise seem."""
     log, found = samples / "scara2.csv", tmp_path / "parameters.parquet"
     scarid("identify", "-q", "--robot", "scara2", log, "-o", found)
     other = spoiled(log, tmp_path / "log.csv", factors)
-    err = scarid("validate", "--parameters", found, other).err
-    warnings = [line for line in err.splitlines() if "warning: " in line]
-    assert len(warnings) == (told is not None)
-    assert told is None or told in warnings[0]
+    verdict = scarid("validate", "--parameters", found, other).err.splitlines()[-1]
+    assert ("unexplained: positions: " in verdict) == (told is not None)
+    assert told is None or told in verdict
 
 
 @pytest.mark.parametrize(

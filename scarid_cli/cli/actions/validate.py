@@ -63,15 +63,22 @@ def run(
         treatment=treatment,
         predictions=side,
         before=before if before.testable else None,
+        failed=lambda: _failed(reach, arm, table),
     )
     job.write(result)
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
     if len(tables) > 1:
         job.say(f"pooled the parameters of {len(tables)} identifications, by their information")
-    for finding in reach.findings(arm, table.period):
-        if finding.status == FAILED:
-            job.say(f"warning: {finding.text}")
+    if not before.testable:
+        for text in _failed(reach, arm, table):
+            job.say(f"warning: {text}")
     _tell(job, model, before, result.meta.extra)
+
+
+def _failed(reach: Reach, robot: Robot, table: Table) -> list[str]:
+    """What is wrong with the extremes of the log, such as positions in another unit."""
+    found = reach.findings(robot, table.period)
+    return [finding.text for finding in found if finding.status == FAILED]
 
 
 def _tell(job: Job, model: Identified, before: Known, extra: dict[str, Any]) -> None:
