@@ -198,19 +198,19 @@ SPOILED = {
         "arm", torques_times(-1.0, -1.0), "signs", "the torques' sign seems reversed"
     ),
     "torque of joint 2 reversed": Spoiled(
-        "scara", torques_times(1.0, -1.0), "signs", "torque of joint 2 seems reversed"
+        "scara", torques_times(1.0, -1.0), "signs", "multiply the torque of joint 2 by -1"
     ),
     "torque of joint 3 of 6 reversed": Spoiled(
-        "ur10", torques_times(1, 1, -1, 1, 1, 1), "signs", "torque of joint 3 seems reversed"
+        "ur10", torques_times(1, 1, -1, 1, 1, 1), "signs", "multiply the torque of joint 3 by -1"
     ),
     "torques of joints 4 to 6 of 6 reversed": Spoiled(
         "ur10",
         torques_times(1, 1, 1, -1, -1, -1),
         "signs",
-        "torque of joints 4, 5, 6 seems reversed",
+        "multiply the torque of joints 4, 5, 6 by -1",
     ),
     "position of joint 1 reversed": Spoiled(
-        "arm", positions_times(-1.0, 1.0), "signs", "position of joint 1 seems reversed"
+        "arm", positions_times(-1.0, 1.0), "signs", "multiply the position of joint 1 by -1"
     ),
     "joints 1 and 2 exchanged": Spoiled(
         "scara", joints_swapped(1, 2), "order of joints", "joints 1, 2 exchanged"

@@ -93,7 +93,7 @@ CHECKS: dict[str, Check] = {
     "biased": truth,
     "evidence": _or_none(_evidence),
     "torque_constants": _or_none(_rows_of_joints),
-    "joints": lambda x: _list(text)(x) or _list(_of({"deviation": _size}))(x),
+    "joints": lambda x: _list(text)(x) or _list(_of({"deviation": _or_none(_size)}))(x),
 }
 
 

@@ -111,8 +111,8 @@ def known(table: Table, robot: Robot, errors: Array) -> Known:
 
 def _sizes(table: Table, joints: int) -> Array | float:
     """The root mean square of the torque of each joint (joints), nan where it is not known."""
-    facts = table.meta.extra.get("joints", [])
-    return np.array([x.get("torque", np.nan) for x in facts]) if len(facts) == joints else np.nan
+    sizes = np.array([x.get("torque") for x in table.meta.extra.get("joints", [])], np.float64)
+    return sizes if len(sizes) == joints else np.nan
 
 
 def _torques(table: Table, joints: int, blocks: int) -> Array:

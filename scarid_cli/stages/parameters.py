@@ -168,9 +168,10 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         "effects": _effects(found.diagnostics),
         "widened": _widened(found.diagnostics),
         "torque_constants": _torque_constants(found, labels),
-        EVIDENCE: stored(found.evidence, labels.names) | {BIASES: _biases(found, labels)},
         **found.found.extra,
     }
+    if np.isfinite(found.evidence.score).all():
+        extra[EVIDENCE] = stored(found.evidence, labels.names) | {BIASES: _biases(found, labels)}
     if found.thin > 1:
         extra["thinned"] = found.thin
     if np.isfinite(found.covariance).all():

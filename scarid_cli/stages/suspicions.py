@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from scarid_cli.algorithms.checks import mounting, units
+from scarid_cli.algorithms.checks import mounting, units, wiring
 from scarid_cli.algorithms.checks.finding import FAILED, WARNING, Finding
 from scarid_cli.algorithms.checks.fit import ratios
 from scarid_cli.algorithms.checks.log import Log
@@ -18,11 +18,31 @@ FEWEST = 100  # rows of each joint with which the description is put to the test
 
 
 def of_model(rows: Rows, robot: Robot) -> list[Finding]:
-    """Axes, zeros and gravity unlike in the description, and torques in another unit."""
+    """Axes, zeros, gravity and signs unlike in the description, and torques in another unit.
+
+    A torque that never changes, as of a joint without a motor, says nothing about them.
+    """
     if rows.samples < FEWEST or not np.all(np.count_nonzero(rows.scales, axis=0) >= FEWEST):
         return []
     samples = Samples.of_rows(rows, enough(robot))
-    return [*mounting.findings(mounting.mounted(robot, samples).case), *_torques(samples, robot)]
+    driven = np.all(np.ptp(samples.motion[3], axis=1) > 0.0)
+    return [*(_described(samples, robot) if driven else []), *_torques(samples, robot)]
+
+
+def _described(samples: Samples, robot: Robot) -> list[Finding]:
+    """What is unlike in the description, by what explains the torques best.
+
+    Single signs are tried where the model leaves what a wrong one would leave. That all friction is
+    negative, as with all torques reversed, is a reason of the verdict by itself.
+    """
+    mounted = mounting.mounted(robot, samples)
+    if mounted.fit.residuals.max() > mounting.TURNED:
+        signed = wiring.signed(robot, samples)
+        some = len(set(signed.case.signs[1])) > 1
+        explained = signed.fit.residuals.max() <= mounting.UNEXPLAINED
+        if some and explained and signed.fit.misfit < mounted.fit.misfit:
+            return [wiring.signs(signed)]
+    return mounting.findings(mounted.case)
 
 
 def _torques(samples: Samples, robot: Robot) -> list[Finding]:

@@ -7,10 +7,12 @@ import io
 from collections.abc import Callable
 from pathlib import Path
 
+import pyarrow.parquet as pq
 import pytest
 from conftest import Result, refused
 
 from scarid_cli.cli.actions.identify import summary_lines
+from scarid_cli.io.table import METADATA_KEY, Metadata
 
 Shell = Callable[..., Result]
 HALVES = (
@@ -214,12 +216,17 @@ def test_the_friction_of_separable_is_no_initial_value_of_others(shell: Shell) -
     refused(result, 2, "p.csv has friction that fades with speed (separable)")
 
 
-def test_an_error_of_the_delay_that_is_unknown_is_said_to_be(shell: Shell) -> None:
+def test_a_delay_that_the_log_does_not_show_is_said_to_be_none(
+    shell: Shell, tmp_path: Path
+) -> None:
     """Without the rows of joint 1, none of its parameters is known, and so no error is."""
-    result = shell("scarid identify --align --drop-slow 100,0 motion.csv")
+    result = shell("scarid identify --align --drop-slow 100,0 motion.csv -o none.parquet")
     assert result.status == 0, result.err
-    assert "(error unknown)" in result.err
+    assert "taken as in step with the motion, because the log does not show a delay" in result.err
     assert "nan" not in result.err
+    stored = pq.read_schema(tmp_path / "none.parquet").metadata[METADATA_KEY]
+    extra = Metadata.from_json(stored).extra
+    assert extra["delay"] is extra["delay_error"] is None
 
 
 @pytest.mark.parametrize(("thin", "words"), [(2, "every 2nd"), (4, "every 4th")])

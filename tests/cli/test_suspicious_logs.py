@@ -49,6 +49,11 @@ def spoiled(log: Path, path: Path, factors: dict[str, float]) -> Path:
             {"q2": -1.0, "tau2": -1.0},
             "doubtful: axes: the model fits far better with the position and the torque of joint ",
         ),
+        (
+            {"tau2": -1.0},
+            "doubtful: signs: the model fits far better with the torque of joint 2 reversed; "
+            "multiply the torque of joint 2 by -1; ",
+        ),
         ({"q1": 57.3, "q2": 57.3}, "doubtful: positions: joints 1, 2 up to 8"),
         ({"q1": 1000.0}, "doubtful: positions: joint 1 at "),
     ],
@@ -58,6 +63,20 @@ def test_a_check_that_fails_makes_the_verdict_doubtful(
 ) -> None:
     log = spoiled(samples / "scara2.csv", tmp_path / "log.csv", factors)
     assert verdict(scarid("identify", "--robot", "scara2", log)).startswith(told)
+
+
+def test_a_reversed_torque_of_a_joint_that_moves_no_other_is_told(
+    tmp_path: Path, scarid: Run
+) -> None:
+    """The model fits as well with an inertia and friction below 0."""
+    pytest.importorskip("pinocchio")
+    robot, reference, log = (tmp_path / name for name in ("l.urdf", "r.csv", "l.csv"))
+    robot.write_text(LIFT)
+    scarid("trajgen", "--robot", robot, "--ddq-max", "10,3", "--duration", 10, "-o", reference)
+    scarid("simulate", "--robot", robot, reference, "-o", log)
+    spoiled(log, log, {"tau1": -1.0})
+    told = verdict(scarid("identify", "--robot", robot, log))
+    assert told.startswith("doubtful: the inertia of joint 1 is negative")
 
 
 LIFT = """<robot name="lift"><link name="base"/>

@@ -56,7 +56,7 @@ def test_the_page_shows_the_faults_that_were_found() -> None:
 def test_a_reversed_torque_is_named_where_the_model_still_explains_most(joint: int) -> None:
     """In this log the inertia of joint 2 hardly shows in the torque of joint 1."""
     spoil = torques_times(*(-1.0 if i == joint else 1.0 for i in (1, 2)))
-    fault = Spoiled("scara", spoil, "signs", f"torque of joint {joint} seems reversed")
+    fault = Spoiled("scara", spoil, "signs", f"multiply the torque of joint {joint} by -1")
     found = list(check(spoil(clean("scara", 3)), load(ROBOTS["scara"])))
     assert named(fault, found), bad(found)
 

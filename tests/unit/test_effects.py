@@ -341,13 +341,56 @@ def test_estimates_are_uncertain_where_a_low_pass_and_a_delay_cannot_be_told_apa
     Which part of the lead has which form is as uncertain, and may add the whole difference.
     """
     rows, logged = behind("delay", 0.004)
-    noise = 5.0 * np.random.default_rng(7).standard_normal(len(logged))
+    noise = 0.3 * np.random.default_rng(7).standard_normal(len(logged))
     rows = replace(rows, y=rows.y + noise[:, None])
     found = aligned_by_least_squares(forward(rows))
     assert found.lead.doubt is not None
     mean_square = sum((a * w) ** 2 for a, w in WAVES) / sum(a**2 for a, _ in WAVES)
     difference = 0.5 * found.delay**2 * mean_square
     assert 0.95 * np.sqrt(0.5) < abs(found.lead.doubt[0]) / difference < 1.05 * np.sqrt(1.5)
+
+
+def test_a_lead_that_the_log_does_not_show_is_taken_as_none() -> None:
+    """Its error would be 32 ms. The doubt is what a lead of 10 ms does, here by its slope."""
+    rows, logged = behind("delay", 0.004)
+    noise = 5.0 * np.random.default_rng(7).standard_normal(len(logged))
+    rows = forward(replace(rows, y=rows.y + noise[:, None]))
+    found = aligned_by_least_squares(rows)
+    plain_fit = estimated(ls.Estimator(), rows).fit.estimates
+    assert not found.lead.shown
+    assert found.delay == 0.0
+    np.testing.assert_array_equal(found.found.fit.estimates, plain_fit)
+    late = estimated(ls.Estimator(), shifted(rows, 2.0)).fit.estimates
+    assert found.lead.doubt is not None
+    assert found.lead.doubt[0] == pytest.approx((late - plain_fit)[0], rel=1e-6)
+
+
+def servo(seed: int) -> Rows:
+    """An axis whose torque is mostly viscous, 4 s of it, with noise of 2 % in its acceleration."""
+    rng = np.random.default_rng(seed)
+    true = moved(800)
+    torque = SERVO @ np.concatenate((true[2], true[1], np.sign(true[1]), np.ones_like(true[0])))
+    seen = true.copy()
+    seen[2] += 0.02 * np.std(true[2]) * rng.standard_normal(true[2].shape)
+    noise = 0.02 * np.std(torque) * rng.standard_normal(torque.shape)
+    return rows_of(AXIS, np.stack((*seen, (torque + noise)[None])), np.arange(800), H)
+
+
+SERVO = np.array([0.02, 0.9, 0.08, 0.0])  # kg, N s/m, N and N: 22 ms of delay are like the mass
+
+
+def test_a_delay_does_not_take_the_place_of_an_inertia() -> None:
+    """A delay of 2 M / Fv and a mass of -M predict the same torques, to second order."""
+    errors = []
+    for seed in range(40):
+        rows = servo(seed)
+        estimates = estimated(ls.Estimator(), rows).fit.estimates
+        found = aligned(
+            ls.Estimator(), np.zeros(5), rows, estimates, 4, lambda theta: bool(theta[0] >= 0.0)
+        )
+        assert abs(found.delay) < 0.01
+        errors.append(found.found.fit.estimates[0] - SERVO[0])
+    assert np.sqrt(np.mean(np.square(errors))) < 0.2 * SERVO[0]
 
 
 def test_torques_are_shifted_within_runs_only() -> None:

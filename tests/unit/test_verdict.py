@@ -27,9 +27,11 @@ KNOWN = Consequences(
     np.ones(2),
     np.array([0.001, 0.002]),
     np.full(2, 0.001),
+    np.array([3.5, 0.06]),
     np.array([0.003, 0.004]),
     np.full(8, 0.5),
 )
+LOUD, VERY_LOUD = (replace(GOOD, relative_error=x, torque=0.5) for x in (5.0, 20.0))
 BLOCKS = 40
 
 
@@ -164,9 +166,37 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             "torque of joint 2 is known only within 40 %",
         ),
         (
-            consequence(held_out=np.array([1.0, 2.5])),
+            {"joints": (GOOD, LOUD), **consequence(held_out=np.array([1.0, 2.4]))},
             "doubtful",
-            "predicted with 2.5 times the error of the fit at joint 2",
+            "predicted with an error of 12 % of the torque of joint 2, those of the fit with 5 %",
+        ),
+        (
+            {"joints": (GOOD, LOUD), **consequence(held_out=np.array([9.0, 1.4]))},
+            "good",  # 0.9 % and 4.9 % more
+            "8 of 8 parameters",
+        ),
+        (
+            {"joints": (GOOD, VERY_LOUD), **consequence(held_out=np.array([1.0, 1.4]))},
+            "good",  # 20 % more, which is little for this joint
+            "8 of 8 parameters",
+        ),
+        (
+            consequence(held_out=np.array([1.0, np.inf])),
+            "doubtful",
+            "some part of the motion occurs only once",
+        ),
+        (
+            consequence(diagonal=np.array([3.5, -0.06])),
+            "doubtful",
+            "the inertia of joint 2 is negative (-0.06), which is impossible",
+        ),
+        (
+            {
+                "estimates": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0]),
+                **consequence(diagonal=np.array([3.5, -0.06])),
+            },
+            "doubtful",
+            "friction and inertia of joint 2 are negative: the torque's sign seems reversed",
         ),
         (
             {"halves": halves(ZZ1R=0.3)},

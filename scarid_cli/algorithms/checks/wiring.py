@@ -10,6 +10,7 @@ tells it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -27,12 +28,26 @@ EXPLAINED = 0.02  # of the mean square torque of each joint: exchanged joints le
 def wired(robot: Robot, samples: Samples) -> Explained[Wiring]:
     """The wiring that explains the log, which is the log's own unless another is far better."""
 
-    def fit_of(wiring: Wiring) -> Fit:
-        return fitted(robot, samples.wired(wiring))
-
-    same = Wiring.same(len(robot.joints))
-    found = _signed(Explained(same, fit_of(same)), torque_signs(robot, samples), fit_of)
+    fit_of = partial(_fit, robot, samples)
+    found = _signed(as_logged(robot, samples), torque_signs(robot, samples), fit_of)
     return _braking(searched(found, fit_of, _neighbours), fit_of)
+
+
+def signed(robot: Robot, samples: Samples) -> Explained[Wiring]:
+    """The same, but only signs of the torques are tried."""
+    fit_of = partial(_fit, robot, samples)
+    found = _signed(as_logged(robot, samples), torque_signs(robot, samples), fit_of)
+    return _braking(found, fit_of)
+
+
+def as_logged(robot: Robot, samples: Samples) -> Explained[Wiring]:
+    """The wiring of the log itself."""
+    same = Wiring.same(len(robot.joints))
+    return Explained(same, _fit(robot, samples, same))
+
+
+def _fit(robot: Robot, samples: Samples, wiring: Wiring) -> Fit:
+    return fitted(robot, samples.wired(wiring))
 
 
 def _neighbours(found: Explained[Wiring]) -> list[Wiring]:
@@ -91,10 +106,11 @@ def _braking(found: Explained[Wiring], fit_of: Callable[[Wiring], Fit]) -> Expla
 
 def findings(found: Explained[Wiring]) -> list[Finding]:
     """Findings on the signs of torques and positions, and on the order of the joints."""
-    return [_signs(found), _order(found.case)]
+    return [signs(found), _order(found.case)]
 
 
-def _signs(found: Explained[Wiring]) -> Finding:
+def signs(found: Explained[Wiring]) -> Finding:
+    """What is found on the signs of torques and positions."""
     positions, torques = ([j for j, s in enumerate(k) if s < 0] for k in found.case.signs)
     if len(torques) == len(found.fit.powers) and not positions:
         figure = "the friction of every joint would drive it"
@@ -112,7 +128,7 @@ def _signs(found: Explained[Wiring]) -> Finding:
             if joints
         ]
         figure = f"the model fits far better with {' and '.join(texts)} reversed"
-        return failed("signs", figure, f"the sign of {' and '.join(texts)} seems reversed")
+        return failed("signs", figure, f"multiply {' and '.join(texts)} by -1")
     if found.fit.driving:
         figure = f"the friction of {joints_text(j + 1 for j in found.fit.driving)} is negative"
         return warning("signs", figure, "look at the sign of its torque, and at delays")

@@ -44,6 +44,17 @@ class Model:
         """W of the kept columns (samples, joints, parameters)."""
         return self.robot.regressor(q, dq, ddq)[:, :, self.kept]
 
+    def inertias(self, q: Array) -> Array:
+        """The rows (joints, samples, parameters) of the diagonal of the inertia matrix at q.
+
+        q (joints, samples).
+        """
+        rest = np.zeros_like(q)
+        still = self.regressor(q, rest, rest)
+        units = np.broadcast_to(np.eye(len(q))[:, :, None], (len(q), *q.shape))
+        moved = (self.regressor(q, rest, np.ascontiguousarray(ddq)) for ddq in units)
+        return np.stack([(x - still)[:, j] for j, x in enumerate(moved)])
+
     @property
     def transmits(self) -> Marks:
         """Which of the kept parameters are of torques that a joint transmits: all but friction."""

@@ -28,15 +28,16 @@ class Consequences:
     `held_out` is the root-mean-square residual of parts of the record that were left out of the
     fit, divided by that of the fit itself. `torque` is the standard error of the predicted torque,
     divided by the root-mean-square torque, and `noise` the part of it that is due to noise alone,
-    which a longer log would reduce. `inertia` is the standard error of the diagonal of the
-    inertia matrix, divided by its value, as a median over poses of the record. `parts` (own
-    parameters) is the part of the torque that each parameter has per unit, at the joint where it is
-    greatest.
+    which a longer log would reduce. `diagonal` is the diagonal of the inertia matrix [kg m2 or kg],
+    and `inertia` its standard error, divided by it, as medians over poses of the record. `parts`
+    (own parameters) is the part of the torque that each parameter has per unit, at the joint where
+    it is greatest.
     """
 
     held_out: Array
     torque: Array
     noise: Array
+    diagonal: Array
     inertia: Array
     parts: Array
 
@@ -75,12 +76,13 @@ def consequences(
     `fitted` has the rows as they were fitted, those of `record` or these whitened in time.
     """
     torque, noise = (_torque(record.total, x) for x in (uncertainty.torque, uncertainty.noise))
-    inertia = np.full(len(weights), np.nan)
+    diagonal, inertia = np.full((2, len(weights)), np.nan)
     if model is not None and poses.size:
-        inertia = _inertia(model, estimates[: len(uncertainty.torque)], uncertainty, poses)
+        own = estimates[: len(uncertainty.torque)]
+        diagonal, inertia = _inertia(model, own, uncertainty, poses)
     held_out = _held_out(record, fitted, weights, estimates)
     parts = _parts(record.total, len(uncertainty.torque))
-    return Consequences(held_out, torque, noise, inertia, parts)
+    return Consequences(held_out, torque, noise, diagonal, inertia, parts)
 
 
 def _held_out(record: Blocks, fitted: Blocks, weights: Array, estimates: Array) -> Array:
@@ -120,24 +122,27 @@ def _parts(products: Array, own: int) -> Array:
     return np.asarray(np.max(np.nan_to_num(parts, nan=0.0), axis=0))
 
 
-def _inertia(model: Model, estimates: Array, uncertainty: Uncertainty, poses: Array) -> Array:
-    """The error of the diagonal of the inertia matrix, relative to it (joints).
+def _inertia(
+    model: Model, estimates: Array, uncertainty: Uncertainty, poses: Array
+) -> tuple[Array, Array]:
+    """The diagonal of the inertia matrix, and its error relative to it (joints).
 
     The largest of the biases counts, as for the errors of the estimates.
     """
-    q = np.ascontiguousarray(poses[:, :: max(1, poses.shape[1] // POSES)])
-    rest, found = np.zeros_like(q), []
-    still = model.regressor(q, rest, rest)
-    for j in range(len(q)):
-        ddq = np.zeros_like(q)
-        ddq[j] = 1.0
-        rows = (model.regressor(q, rest, ddq) - still)[:, j]
+    values, found = [], []
+    for rows in model.inertias(few(poses)):
         squares = np.maximum(np.einsum("si,ik,sk->s", rows, uncertainty.torque, rows), 0.0)
         largest = np.max((uncertainty.biases @ rows.T) ** 2, axis=0, initial=0.0)
-        errors = np.sqrt(squares + largest)
+        errors, value = np.sqrt(squares + largest), rows @ estimates
         with np.errstate(divide="ignore", invalid="ignore"):
-            found.append(median(errors / np.abs(rows @ estimates)))
-    return np.array(found)
+            found.append(median(errors / np.abs(value)))
+        values.append(median(value))
+    return np.array(values), np.array(found)
+
+
+def few(poses: Array) -> Array:
+    """Some of the poses (joints, samples) of a record, all along it."""
+    return np.ascontiguousarray(poses[:, :: max(1, poses.shape[1] // POSES)])
 
 
 def gain_sensitivities(total: Array, weights: Array) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
+from scarid_cli.algorithms.statistics.consequences import few
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
 from scarid_cli.algorithms.statistics.ringing import with_ringing
@@ -29,7 +31,7 @@ class Problem:
     The first `own` columns of W belong to the robot's parameters, the others to nuisance
     parameters. `record` has the blocks of all rows if `rows` are a subsample. `model` is None if
     the columns of W are not those of the robot's regressor. `lead` is that of the torques, None if
-    it was not fitted; what remains of it is the last parameter.
+    it was not fitted; what remains of it is the last parameter, if the log shows it.
     """
 
     rows: Rows
@@ -40,15 +42,20 @@ class Problem:
     lead: Lead | None = None
 
     @property
+    def delayed(self) -> bool:
+        """Whether the last column is that of the delay."""
+        return self.lead is not None and self.lead.shown
+
+    @property
     def rest(self) -> float:
         """What remains of the delay [s] in these rows."""
-        return float(self.found.fit.estimates[-1]) if self.lead else 0.0
+        return float(self.found.fit.estimates[-1]) if self.delayed else 0.0
 
     @property
     def modelled(self) -> Array:
         """The estimates without nuisance parameters, but for the delay: what predicts torques."""
         estimates = self.found.fit.estimates.copy()
-        estimates[self.own : -1 if self.lead else None] = 0.0
+        estimates[self.own : -1 if self.delayed else None] = 0.0
         return estimates
 
     def diagnostics(self, gain_error: float) -> Diagnostics:
@@ -89,10 +96,11 @@ class Outcome:
     `found` and `diagnostics` refer to the parameters with the indices `kept`; `reduction` is set if
     the model was reduced to essential parameters. `full` is the fit of all parameters, before any
     were dropped, and `covariance` their covariance, nan if it is not known. `delay` is the fitted
-    delay of the torques and its standard error [s], `low_pass` whether they lead as behind a
-    low-pass. `excitation` (parameters) is the root-mean-square torque that one unit of each
-    parameter causes on this motion. `samples` is the number of samples, of which every `thin`-th is
-    fitted. `evidence` is that of the rows, at these estimates, which later logs are compared with.
+    delay of the torques and its standard error [s], nan if the log does not show it, `low_pass`
+    whether they lead as behind a low-pass. `excitation` (parameters) is the root-mean-square torque
+    that one unit of each parameter causes on this motion. `samples` is the number of samples, of
+    which every `thin`-th is fitted. `evidence` is that of the rows, at these estimates, which later
+    logs are compared with.
     """
 
     found: Estimation
@@ -134,7 +142,8 @@ def outcome(
     kept = (reduction.kept if reduction else list(range(own)))[:own]
     lead, delay = problem.lead, None
     if lead:
-        delay = lead.seconds + problem.rest, float(diagnostics.scatter[-1])
+        error = float(diagnostics.scatter[-1])
+        delay = (lead.seconds + problem.rest, error) if lead.shown else (np.nan, np.nan)
     return Outcome(
         found=replace(problem.found, fit=fit.part(slice(own))),
         diagnostics=diagnostics,
@@ -158,8 +167,7 @@ def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -
     """
     theta = np.zeros(whole.own)
     theta[kept] = estimates
-    further = whole.lead is not None  # the last column is that of the delay
-    W = whole.rows.W[:, :, :-1] if further else whole.rows.W
+    W = whole.rows.W[:, :, :-1] if whole.delayed else whole.rows.W
     return Products.of(replace(whole.rows, W=W), theta, delay, whole.model).evidence()
 
 
@@ -188,18 +196,31 @@ def _problem(
 def _aligned(estimator: BaseEstimator, initial: Array, rows: Rows, robot: Robot) -> Aligned:
     """The estimation with the delay of the torques, and with the ringing of friction if it can."""
     try:
-        return _with_delay(estimator, initial, with_ringing(rows, robot))
+        return _with_delay(estimator, initial, with_ringing(rows, robot), robot)
     except NotIdentifiableError:
-        return _with_delay(estimator, initial, rows)
+        return _with_delay(estimator, initial, rows, robot)
 
 
-def _with_delay(estimator: BaseEstimator, initial: Array, rows: Rows) -> Aligned:
+def _with_delay(estimator: BaseEstimator, initial: Array, rows: Rows, robot: Robot) -> Aligned:
     """The estimation with the delay of the torques, and with nuisance parameters from 0."""
     further = rows.W.shape[2] - len(initial)
     start = np.append(initial, np.zeros(further))
     found = estimator.widened(further).quick().of_rows(thinned(rows), start)
     wide, theta = estimator.widened(further + 1), found.fit.estimates
-    return aligned(wide, np.append(start, 0.0), rows, theta, len(initial))
+    own = len(initial)
+    possible = partial(_possible, _diagonals(robot, rows)) if own == len(robot.parameters) else None
+    return aligned(wide, np.append(start, 0.0), rows, theta, own, possible)
+
+
+def _diagonals(robot: Robot, rows: Rows) -> Array:
+    """The rows (joints, parameters) of the mean diagonal of the inertia matrix along the record."""
+    model = Model(robot, list(range(len(robot.parameters))))
+    return np.asarray(model.inertias(few(rows.motion[0])).mean(axis=1))
+
+
+def _possible(diagonals: Array, theta: Array) -> bool:
+    """Whether estimates have no inertia below 0."""
+    return bool(np.all(diagonals @ theta >= 0.0))
 
 
 def _noise(problem: Problem, diagnostics: Diagnostics, counted: int) -> Noise:

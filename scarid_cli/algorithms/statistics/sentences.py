@@ -107,8 +107,7 @@ def _amounts(effect: Effect, robot: Robot, threshold: float) -> dict[str, str]:
         return {"gravity": _vector(tilted(np.array(robot.body.gravity), effect.amounts))}
     count = len(robot.joints)
     found = sorted({k % count for k in np.flatnonzero(effect.ratios > threshold).tolist()})
-    joint = "joint" if len(found) == 1 else "joints"
-    texts = {"joints": f"{joint} {listed([str(j + 1) for j in found])}" if found else ""}
+    texts = {"joints": joints_named(j + 1 for j in found) if found else ""}
     if effect.name == ZEROS:
         texts["zeros"] = listed([f"joint {j + 1} is at {_zero(effect, robot, j)}" for j in found])
     return texts
@@ -138,6 +137,12 @@ def percents(parts: Iterable[float]) -> str:
 
 def _two_digits(x: float) -> str:
     return f"{x:.2g}" if x < 99.5 else f"{x:.0f}"
+
+
+def joints_named(numbers: Iterable[int]) -> str:
+    """`joint 2`, or `joints 1 and 3`: joints by their numbers from 1."""
+    names = [str(number) for number in numbers]
+    return f"joint{'s' if len(names) > 1 else ''} {listed(names)}"
 
 
 def listed(names: Sequence[str], most: int = 8) -> str:

@@ -18,6 +18,7 @@ from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.algorithms.statistics.sentences import (
     changed,
     errors_in,
+    joints_named,
     listed,
     notes_of,
     percents,
@@ -102,7 +103,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
         *_vague(evidence),
         *_impossible(evidence, robot),
     ]
-    if wrong and evidence.unexplained:
+    if wrong and evidence.unexplained and not evidence.failed:
         wrong = [evidence.unexplained, *wrong]
     notes = notes_of(evidence.names, evidence.diagnostics, robot)
     notes = [*_inertia_unknown(evidence), *notes]
@@ -210,28 +211,46 @@ def _vague(evidence: Evidence) -> list[str]:
         for i, (noise, whole) in enumerate(intervals, start=1)
         if not (noise <= VAGUE and whole <= UNKNOWN)
     ]
-    advice = "" if evidence.unexplained else ": use a longer log, or fewer parameters"
-    reasons += [
-        f"parts of the log that were left out of the fit are predicted with {ratio:.2g} times the "
-        f"error of the fit at joint {i}{advice}"
-        for i, ratio in enumerate(found.held_out, start=1)
-        if not ratio <= HELD_OUT
-    ]
+    reasons += _unpredicted(evidence)
     explained = not _poor(evidence.diagnostics.joints) and not evidence.unexplained
     if not reasons or evidence.treatment.essential or not explained:
         return reasons
     return [*reasons, "try --essential, which leaves out the parameters that are not known"]
 
 
+def _unpredicted(evidence: Evidence) -> list[str]:
+    """Joints whose torque is not known where the parameters were not fitted.
+
+    The error of held-out parts must be far beyond that of the fit, by as much of the torque as an
+    interval may have: with good sensors, hardly any error may still be several times that of a fit.
+    """
+    ratios, joints = evidence.diagnostics.consequences.held_out, evidence.diagnostics.joints
+    fitted = np.array([0.01 * joint.relative_error for joint in joints])
+    if not np.isfinite(ratios).all():
+        return [
+            "some part of the motion occurs only once, and without it the parameters are not "
+            "determined: use a log that repeats it"
+        ]
+    beyond = fitted * np.sqrt(np.maximum(ratios**2 - 1.0, 0.0))
+    advice = "" if evidence.unexplained else ": use a longer log, or fewer parameters"
+    return [
+        f"parts of the log that were left out of the fit are predicted with an error of "
+        f"{percents([fit * ratio])} of the torque of joint {i}, those of the fit with "
+        f"{percents([fit])}{advice}"
+        for i, (fit, ratio, more) in enumerate(zip(fitted, ratios, beyond, strict=True), start=1)
+        if ratio > HELD_OUT and 2.0 * more > VAGUE
+    ]
+
+
 def _inertia_unknown(evidence: Evidence) -> list[str]:
     """A note on joints whose inertia may be zero: friction or gravity makes their torque."""
     within = _width(evidence) * evidence.diagnostics.consequences.inertia
-    unknown = [str(i) for i, part in enumerate(within, start=1) if part > 1.0]
+    unknown = [i for i, part in enumerate(within, start=1) if part > 1.0]
     if not unknown:
         return []
     return [
-        f"the inertia of joint{'s' if len(unknown) > 1 else ''} {listed(unknown)} is not known: do "
-        "not predict the torques of faster motions"
+        f"the inertia of {joints_named(unknown)} is not known: do not predict the torques of "
+        "faster motions"
     ]
 
 
@@ -253,18 +272,51 @@ def _poor(joints: Sequence[JointResidual]) -> list[str]:
 
 
 def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
-    """Friction parameters that are significantly negative, which would drive the robot."""
-    friction = {p.name for p in robot.parameters if p.term.NEVER_NEGATIVE}
+    """Friction parameters that are significantly negative, and inertias that are negative at all.
+
+    Such friction would drive the robot, and no controller or simulator can use such an inertia.
+    """
+    inertias = _inertia_negative(evidence)
+    rows = _friction_known(evidence, robot)
+    negative = [row for row in rows if row[2] < 0.0]
+    if 1 < len(negative) == len(rows):
+        return ["all friction that is known is negative: the torques' sign seems reversed"]
+    driven = {j for j, _, x in rows if x < 0.0} - {j for j, _, x in rows if x > 0.0}
+    backwards = [j for j in inertias if (j,) in driven]
+    reasons = [
+        f"the friction parameter {name} is negative ({x:.3g})"
+        for of, name, x in negative
+        if not set(of) <= set(backwards)
+    ]
+    if backwards:
+        reasons.append(
+            f"friction and inertia of {joints_named(backwards)} are negative: the torque's sign "
+            "seems reversed"
+        )
+    if rest := [j for j in inertias if j not in backwards]:
+        values = ", ".join(f"{inertias[j]:.2g}" for j in rest)
+        reasons.append(
+            f"the inertia of {joints_named(rest)} is negative ({values}), which is impossible: use "
+            "a log with larger accelerations"
+        )
+    return reasons
+
+
+def _inertia_negative(evidence: Evidence) -> dict[int, float]:
+    """The diagonal of the inertia matrix, of the joints (from 1) at which it is negative."""
+    diagonal = evidence.diagnostics.consequences.diagonal
+    return {j: float(x) for j, x in enumerate(diagonal, start=1) if x < 0.0}
+
+
+def _friction_known(evidence: Evidence, robot: Robot) -> list[tuple[tuple[int, ...], str, float]]:
+    """The joints, name and estimate of each friction parameter that is significantly not 0."""
+    friction = {p.name: p.term.joints for p in robot.parameters if p.term.NEVER_NEGATIVE}
     errors = evidence.diagnostics.errors
-    rows = [
-        (name, estimate)
+    return [
+        (friction[name], name, float(estimate))
         for name, estimate, error in zip(evidence.names, evidence.estimates, errors, strict=True)
         if name in friction and abs(estimate) > DEVIATIONS * error
     ]
-    negative = [(name, estimate) for name, estimate in rows if estimate < 0.0]
-    if 1 < len(negative) == len(rows):
-        return ["all friction that is known is negative: the torques' sign seems reversed"]
-    return [f"the friction parameter {name} is negative ({x:.3g})" for name, x in negative]
 
 
 def _unknown(evidence: Evidence) -> list[str]:

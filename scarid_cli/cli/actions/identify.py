@@ -280,15 +280,25 @@ def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[st
     if extra.get("whitened"):
         line += ", whitened, as the residuals are correlated in time"
     if "delay" in extra:
-        error = extra["delay_error"]
-        known = "error unknown" if error is None else f"+- {1e3 * error:.2g}"
-        line += f", {lead(extra['delay'])} ({known})"
-        line += behind_low_pass(extra["delay"]) if extra["low_pass"] else ""
-        if error is not None and extra["delay"] < -CLEAR * error:
-            line += ", as if logged late, or as if the positions were commands"
+        line += f", {_led(extra)}"
     if "dropped" in extra:
         names = ", ".join(extra["dropped"])
         line += f", dropped {names} (residual {100 * extra['dropped_cost']:.2g} % greater)"
     if "durbin_wu_hausman" in extra:
         line += f", Durbin-Wu-Hausman p {extra['durbin_wu_hausman']['p_value']:.2g}"
     return line, f"{extra['verdict']}: {'; '.join(extra['reasons'])}"
+
+
+def _led(extra: dict[str, Any]) -> str:
+    """By what time the torques lead the motion, and what the cause may be."""
+    delay, error = extra["delay"], extra["delay_error"]
+    if delay is None:
+        return (
+            "torques taken as in step with the motion, because the log does not show a delay "
+            "(--no-align if there is none)"
+        )
+    text = f"{lead(delay)} ({'error unknown' if error is None else f'+- {1e3 * error:.2g}'})"
+    text += behind_low_pass(delay) if extra["low_pass"] else ""
+    if error is not None and delay < -CLEAR * error:
+        text += ", as if logged late, or as if the positions were commands"
+    return text
