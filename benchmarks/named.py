@@ -37,6 +37,7 @@ LACKING = {
     "torque offset": (OFFSET,),
     "eccentric encoder": (ENCODERS,),
 }
+FITTED = "offsets of the torques"  # which are not alternatives, but fitted with the parameters
 KNOWN = {condition.name: condition for condition in (*CONDITIONS, *UNSEEN)}
 LOGS = {"scara2": 40, "planar2-gravity": 40, "ur10": 10}
 SEED = 30_000
@@ -48,7 +49,8 @@ def named(job: tuple[str, str, int]) -> list[str]:
     result, _ = blind(name, log(robot_named(name), KNOWN[condition], seed))
     reasons = "; ".join(result.meta.extra["reasons"])
     words = {one: max(re.split(r"{\w+}", advice), key=len) for one, advice in ADVICE.items()}
-    return [one for one, text in words.items() if text in reasons]
+    fitted = [OFFSET] if FITTED in reasons else []
+    return [*fitted, *(one for one, text in words.items() if text in reasons)]
 
 
 def main() -> None:

@@ -111,18 +111,45 @@ def test_a_measurement_is_identified_by_the_recommended_procedure(log: Path, sca
 
 
 def test_rows_are_whitened_where_the_torque_has_a_part_that_lasts(shell: Run) -> None:
-    """An offset, which the robot has no parameter for, moves the friction by half as much."""
+    """Noise with a correlation time of 2 s moves the friction by half as much."""
     result = shell(
-        "scarid trajgen -q --seed 3 --duration 20 |"
-        " scarid simulate -q --seed 3 --with torque-offset=0.3,0.05 -o log.csv;"
+        "scarid trajgen -q --seed 3 --duration 20 | scarid simulate -q --seed 3"
+        " --with coloured-torque-noise=0.3,0.05 --with torque-noise-time=2 -o log.csv;"
         " for options in '--estimator wls' '' --essential; do"
-        " scarid identify $options log.csv | grep ^Fv1 | cut -d, -f3; done"
+        " scarid identify $options log.csv | grep ^F.1 | cut -d, -f3; done"
     )
     assert result.status == 0, result.err
     assert result.err.count("samples, whitened, as the residuals are correlated in time") == 2
-    weighted, whitened, dropped = (float(x) for x in result.out.split())
-    assert abs(whitened - 0.07) < 0.5 * abs(weighted - 0.07)
-    assert dropped == 0.0  # it is not essential
+    _, weighted, _, whitened, dropped, _ = (float(x) for x in result.out.split())
+    assert abs(whitened - 0.58) < 0.5 * abs(weighted - 0.58)
+    assert dropped == 0.0  # Fv1 is not essential
+
+
+def test_offsets_of_the_torques_are_fitted_and_a_new_one_is_a_change(
+    shell: Run, tmp_path: Path
+) -> None:
+    """The robot has no term for them. Without them Fs1 would be off by 16 % (seed 3)."""
+    once = shell(
+        "scarid trajgen -q --seed 3 -o r.parquet && scarid simulate --with torque-offset=0.3,0.1"
+        " r.parquet --format arrow | scarid identify -o p.parquet"
+    )
+    assert re.search(
+        r": good: .*; offsets of the torques, for which the robot has no term, were fitted as well:"
+        r" 0\.\d+ N m at joint 1 and 0\.\d+ N m at joint 2 \(add the term offset",
+        once.err,
+    ), once.err
+    found = {row["parameter"]: row for row in pq.read_table(tmp_path / "p.parquet").to_pylist()}
+    assert found["Fs1"]["low"] < 0.58 < found["Fs1"]["high"]
+    assert found["Fs1"]["robust_error"] < 0.01
+    same, other = (
+        shell(
+            f"scarid simulate -q --seed 7 --with torque-offset={offset} r.parquet --format arrow"
+            " | scarid validate --parameters p.parquet"
+        ).err
+        for offset in ("0.3,0.1", "0.3,0.2")
+    )
+    assert "scarid validate: unchanged: " in same
+    assert re.search(r"changed: offset of joint 2 \(offset 2 \+0\.(09|10)", other), other
 
 
 @pytest.mark.parametrize(("torque", "told"), [("0", "not identifiable"), ("0.3", "doubtful")])

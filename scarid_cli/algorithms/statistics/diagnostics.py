@@ -6,7 +6,7 @@ everything else from a subsample if the record is long.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -48,7 +48,8 @@ class Diagnostics:
     effective number of blocks. `gains` (joints, own) is how far the estimates move per relative
     change of the torque constant of a joint. `bursts` are the intervals that the model does not
     explain, counted from sample 0 of a record that is known as a whole. `halves` are the estimates
-    of its halves, None if these do not determine them.
+    of its halves, None if these do not determine them. `offsets` [N m or N] are those of the
+    torques of joints (from 0) that were fitted beside the parameters.
     """
 
     covariance: RobustCovariance | None
@@ -62,6 +63,7 @@ class Diagnostics:
     consequences: Consequences
     bursts: tuple[Interval, ...] = ()
     halves: Halves | None = None
+    offsets: dict[int, float] = field(default_factory=dict)
 
 
 def diagnose(

@@ -20,6 +20,7 @@ from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.consequences import few
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
+from scarid_cli.algorithms.statistics.offsets import offsets, with_offsets
 from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.arrays import Array, median
 
@@ -30,8 +31,9 @@ class Problem:
 
     The first `own` columns of W belong to the robot's parameters, the others to nuisance
     parameters. `record` has the blocks of all rows if `rows` are a subsample. `model` is None if
-    the columns of W are not those of the robot's regressor. `lead` is that of the torques, None if
-    it was not fitted; what remains of it is the last parameter, if the log shows it.
+    the columns of W are not those of the robot's regressor. The first nuisance parameters are the
+    offsets of the torques of some joints, `offsets` (from 0). `lead` is that of the torques, None
+    if it was not fitted; what remains of it is the last parameter, if the log shows it.
     """
 
     rows: Rows
@@ -40,6 +42,7 @@ class Problem:
     record: Blocks | None
     model: Model | None
     lead: Lead | None = None
+    offsets: tuple[int, ...] = ()
 
     @property
     def delayed(self) -> bool:
@@ -60,7 +63,7 @@ class Problem:
 
     def diagnostics(self, gain_error: float) -> Diagnostics:
         doubt = self.lead.doubt if self.lead else None
-        return diagnose(
+        found = diagnose(
             self.rows,
             self.found,
             self.own,
@@ -70,6 +73,15 @@ class Problem:
             doubt=None if doubt is None else doubt[: self.own],
             gain_error=gain_error,
         )
+        sizes = self.found.fit.estimates[self.own :].tolist()
+        return replace(found, offsets=dict(zip(self.offsets, sizes, strict=False)))
+
+    @property
+    def compared(self) -> Rows:
+        """The rows without the columns that a comparison with other logs has by itself."""
+        own = self.own + len(self.offsets)
+        kept = [*range(self.own), *range(own, self.rows.W.shape[2] - self.delayed)]
+        return replace(self.rows, W=np.ascontiguousarray(self.rows.W[:, :, kept]))
 
     def reduced(self, to: Essential) -> Problem:
         """The problem with only the essential parameters."""
@@ -167,16 +179,16 @@ def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -
     """
     theta = np.zeros(whole.own)
     theta[kept] = estimates
-    W = whole.rows.W[:, :, :-1] if whole.delayed else whole.rows.W
-    return Products.of(replace(whole.rows, W=W), theta, delay, whole.model).evidence()
+    return Products.of(whole.compared, theta, delay, whole.model).evidence()
 
 
 def _problem(
     estimator: BaseEstimator, initial: Array, end: Checkpoint, robot: Robot, *, align: bool
 ) -> Problem:
-    rows, lead = end.subsample.rows(), None
+    rows, lead, joints = end.subsample.rows(), None, tuple[int, ...]()
     if align:
-        fitted = _aligned(estimator, initial, rows, robot)
+        joints = offsets(rows, robot)
+        fitted = _aligned(estimator, initial, with_offsets(rows, joints), robot)
         rows, found, own, lead = fitted.rows, fitted.found, len(initial), fitted.lead
     else:
         found = estimator.fit(end.state)
@@ -190,7 +202,7 @@ def _problem(
         per_row = factor**end.subsample.thin
         rows, record = faded(rows, per_row), record and record.faded(factor)
         found = replace(found, scores=replace(found.scores, forgetting=per_row))
-    return Problem(rows, found, own, record, model, lead)
+    return Problem(rows, found, own, record, model, lead, joints)
 
 
 def _aligned(estimator: BaseEstimator, initial: Array, rows: Rows, robot: Robot) -> Aligned:

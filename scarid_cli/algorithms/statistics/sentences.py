@@ -76,6 +76,20 @@ def errors_in(size: float) -> str:
     return f"{size:.2g} standard errors" if size < 1000.0 else "over 1000 standard errors"
 
 
+def offsets_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
+    """The offsets that were fitted beside the parameters."""
+    found = [
+        f"{x:.3g} {robot.joints[j].torque_unit} at joint {j + 1}"
+        for j, x in diagnostics.offsets.items()
+    ]
+    if not found:
+        return []
+    return [
+        "offsets of the torques, for which the robot has no term, were fitted as well: "
+        f"{listed(found)} (add the term offset to the robot)"
+    ]
+
+
 def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> list[str]:
     """What the model lacks most clearly, and the parameters whose intervals are wider for it.
 

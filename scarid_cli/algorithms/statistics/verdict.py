@@ -21,6 +21,7 @@ from scarid_cli.algorithms.statistics.sentences import (
     joints_named,
     listed,
     notes_of,
+    offsets_of,
     percents,
 )
 from scarid_cli.arrays import Array
@@ -106,7 +107,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     if wrong and evidence.unexplained and not evidence.failed:
         wrong = [evidence.unexplained, *wrong]
     notes = notes_of(evidence.names, evidence.diagnostics, robot)
-    notes = [*_inertia_unknown(evidence), *notes]
+    notes = [*_inertia_unknown(evidence), *offsets_of(evidence.diagnostics, robot), *notes]
     return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes), bool(bias))
 
 
