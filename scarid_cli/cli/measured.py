@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import shlex
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 from click import get_current_context
@@ -16,9 +17,13 @@ from scarid_cli.cli.job import Job
 from scarid_cli.cli.options import SELECTION
 from scarid_cli.cli.progress import steps
 from scarid_cli.cli.resampled import Resampled
-from scarid_cli.errors import BadData
+from scarid_cli.errors import BadData, TooShort
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
+
+NOISIER = (
+    1.5  # times the noise of the velocities at identification, which is known to a few percent
+)
 
 
 def read(
@@ -48,32 +53,72 @@ def motion(
     added: list[str],
     rates: dict[str, str],
     *,
-    hertz: float | None = None,
+    before: Passed | None = None,
 ) -> Table:
     """The motion of a measurement; reports its bandwidth, and the pipe that does the same.
 
     `added` are the options that the command uses with a measurement and that a pipe must state, and
-    `rates` those at which files were resampled. The bandwidth is chosen unless it is given as
-    `hertz`.
+    `rates` those at which files were resampled. The bandwidth is that of the identification
+    `before`; it is chosen if that is not known, or if it lets through more noise than then.
     """
-    from scarid_cli.algorithms.tuning.lowpassed import TWO_SIDED
     from scarid_cli.stages.glance import of_measurement
     from scarid_cli.stages.recommended import motion_of, motion_passing  # needed only here
 
     batches = list(measurement.batches)
-    for finding in of_measurement(replace(measurement, batches=iter(batches)), robot):
+
+    def again() -> Table:
+        return replace(measurement, batches=iter(batches))
+
+    for finding in of_measurement(again(), robot):
         job.say(f"warning: {finding.text}")
-    measurement = replace(measurement, batches=iter(batches))
     with steps(quiet=job.quiet) as progress, explained(measurement):
-        if hertz:
-            found, smoother = motion_passing(measurement, robot, hertz, job.left_out)
-            text = f"cut-off {hertz / TWO_SIDED:.3g} Hz for all joints, as at the identification"
-        else:
-            found, bandwidth, smoother = motion_of(measurement, robot, progress, job.left_out)
-            text = bandwidth.text
+        left_out: list[TooShort] = []
+        text = ""
+        if before:
+            found, smoother = motion_passing(again(), robot, before.hertz, left_out)
+            text = f"cut-off {before.cutoff:.3g} Hz for all joints, as at the identification"
+        if not before or before.quieter(found):
+            left: list[TooShort] = []
+            other, bandwidth, own = motion_of(again(), robot, progress, left)
+            if not before or bandwidth.cutoff < before.cutoff:
+                found, smoother, left_out, text = other, own, left, bandwidth.text
+                text += ", and positions are noisier than at the identification" if before else ""
+        job.left_out += left_out
     job.say(f"velocities and accelerations are estimated from the positions: {text}")
     job.say(f"the same as: {_pipe(smoother, added, rates)}")
     return found
+
+
+@dataclass(frozen=True)
+class Passed:
+    """What the positions passed at an identification: the bandwidth [Hz], and what noise was left.
+
+    `noise` is that of the velocities [rad/s or m/s], inf if it is not known.
+    """
+
+    hertz: float
+    noise: float = inf
+
+    @classmethod
+    def of(cls, tables: Sequence[Table]) -> Passed | None:
+        """The lowest bandwidth of these parameters, and the largest noise; None if none has one."""
+        facts = [table.meta.extra for table in tables if table.meta.extra.get("bandwidth")]
+        if not facts:
+            return None
+        noise = [max(fact.get("velocity_noise") or [inf]) for fact in facts]
+        return cls(min(float(fact["bandwidth"]) for fact in facts), max(noise))
+
+    @property
+    def cutoff(self) -> float:
+        """The cut-off of the low-pass that is run both ways [Hz]."""
+        from scarid_cli.algorithms.tuning.lowpassed import TWO_SIDED
+
+        return self.hertz / TWO_SIDED
+
+    def quieter(self, motion: Table) -> bool:
+        """Whether this motion, behind the same low-pass, is clearly noisier."""
+        noise = float(max(motion.meta.extra.get("velocity_noise") or [0.0]))
+        return noise > NOISIER * self.noise
 
 
 @contextlib.contextmanager

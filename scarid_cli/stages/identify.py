@@ -81,8 +81,8 @@ def identify(
         failed=[finding.text for finding in findings if finding.status == FAILED],
     )
     extra = dict(result.meta.extra)
-    if bandwidth := table.meta.extra.get("bandwidth"):
-        extra["bandwidth"] = bandwidth
+    kept = ("bandwidth", "velocity_noise")  # by which validate takes a later log
+    extra |= {fact: value for fact in kept if (value := table.meta.extra.get(fact))}
     if treatment.counting:
         extra["left_out"] = checkpoint.left_out.counts
     return replace(result, meta=replace(result.meta, extra=extra))

@@ -12,7 +12,7 @@ from scarid_cli.algorithms.checks.finding import FAILED
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
-from scarid_cli.cli.measured import is_motion, motion, read
+from scarid_cli.cli.measured import Passed, is_motion, motion, read
 from scarid_cli.cli.resampled import Resampled
 from scarid_cli.cli.treatment import (
     behind_low_pass,
@@ -53,7 +53,7 @@ def run(
     table, arm = read_logs(job, files, stated, partial(read, job, resampled), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
     if not is_motion(table):
-        table = motion(job, table, arm, [], resampled.rates, hertz=_bandwidth(tables))
+        table = motion(job, table, arm, [], resampled.rates, before=Passed.of(tables))
     treatment = for_motion(table.meta, treatment, given)
     model, before = pooled_identifications([_stored(table, arm) for table in tables])
     reach = Reach(len(arm.joints))
@@ -98,9 +98,3 @@ def _stored(table: Table, robot: Robot) -> Entry:
     batches = list(table.batches)
     model = identified(replace(table, batches=iter(batches)), robot)
     return table.name, model, known(table, model.robot, errors_of(pa.Table.from_batches(batches)))
-
-
-def _bandwidth(parameters: list[Table]) -> float | None:
-    """The lowest bandwidth [Hz] of the motions of these identifications, if it is known."""
-    known = [float(hertz) for table in parameters if (hertz := table.meta.extra.get("bandwidth"))]
-    return min(known, default=None)
