@@ -63,8 +63,8 @@ def _evidence(x: Any) -> bool:
         return False
     q, alone = len(x["score"]), len(x["columns"]) + 1
     joints = len(x["deviations"])
-    # Older tables have nothing about the zeros of the joints.
-    known = q in (alone + 2 * joints, alone + 3 * joints)
+    # Older tables have nothing about zeros of the joints, or about tilts and low-passes.
+    known = q in (alone + 2 * joints, alone + 3 * joints, alone + 3 * joints + 3)
     moves = x.get("biases", [])  # of each parameter by what the model may lack
     known = known and _list(_list(number))(moves) and all(len(m) == alone - 1 for m in moves)
     return known and len(x["information"]) == q * (q + 1) // 2

@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from scarid_cli.algorithms.changes.columns import Columns
 from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
 from scarid_cli.algorithms.changes.explanation import Change, change
-from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, ZERO, hypotheses
+from scarid_cli.algorithms.changes.hypotheses import DELAY, OFFSET, SEARCHED, columns_of, hypotheses
 from scarid_cli.algorithms.changes.wiring import rewired
 from scarid_cli.algorithms.changes.wording import (
     UNCHANGED,
@@ -65,6 +66,12 @@ class Known:
             return np.asarray(ratios * np.fmin(self.sizes / np.sqrt(powers), 1.0))
 
     @property
+    def fitted(self) -> Array | float:
+        """The residuals at identification, relative to the torques (joints); nan if not known."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.evidence.deviations / self.sizes if self.evidence else np.nan
+
+    @property
     def remark(self) -> str:
         """What the verdict lacks, to be reported; empty if it lacks nothing."""
         if self.evidence:
@@ -93,7 +100,8 @@ def known(table: Table, robot: Robot, errors: Array) -> Known:
     p = len(stored["columns"])
     if stored["columns"][: len(names)] != names or len(stored["deviations"]) != joints:
         return Known(None, errors)
-    q, there = p + 1 + 3 * joints, len(stored["score"])  # older tables have nothing about the zeros
+    # Older tables have less columns.
+    q, there = Columns(p, joints).count, len(stored["score"])
     lower, score = np.zeros((q, q)), np.zeros(q)
     lower[np.tril_indices(there)], score[:there] = stored["information"], stored["score"]
     kept = np.array([*range(len(names)), *range(p, q)])
@@ -141,11 +149,11 @@ def verdict(
     possible = hypotheses(robot)
     ratios = before.ratios(now, sums.powers)
     if before.evidence is None:
-        possible = [h for h in possible if h.kind not in (DELAY, OFFSET, ZERO)]
+        possible = [h for h in possible if h.kind not in (DELAY, OFFSET, *SEARCHED)]
     values = dict(zip(robot.names, theta.tolist(), strict=True))
-    found = change(first, now, sums.evidence(zeros=True), possible)
+    found = change(first, sums, possible)
     slight = _slight(found, sums, first, now, before)
-    judged = of_change(found, values, ratios, residuals, slight)
+    judged = of_change(found, values, ratios, residuals, before.fitted, slight)
     as_before = judged.grade == UNCHANGED and ratios is not None
     return judged if as_before else _with_times(judged, rows, theta, times)
 
@@ -164,8 +172,8 @@ def _slight(
     shares = sums.torque_shares(np.outer(found.amounts, found.amounts))
     intervals = before.torques
     if not found.complete:
-        joints, columns = len(now.deviations), len(now.score)
-        own = slice(columns - 3 * joints - 1)  # the columns of the parameters
+        columns = len(now.score)
+        own = slice(now.columns.parameters)
         covariance = np.zeros((columns, columns))
         covariance[own, own] = sum(inverse(log.information[own, own]) for log in (first, now))
         if first.biases is not None:
@@ -188,14 +196,15 @@ def _with_times(judged: Verdict, rows: Rows, theta: Array, times: Times) -> Verd
 def _alike(now: LogEvidence, errors: Array, robot: Robot) -> LogEvidence:
     """LogEvidence of the shape of this log's and of the size that the errors imply.
 
-    It says nothing about the delay, the zeros, and offsets that are not parameters.
+    It says nothing about the delay, offsets that are not parameters, and all that is searched for.
     """
-    p, joints = len(errors), len(robot.joints)
+    p = len(errors)
     own = np.diag(inverse(now.information[:p, :p]))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = own / errors**2
     size = median(ratios[np.isfinite(ratios) & (ratios > 0.0)])
     information = size * now.information
-    unknown = [p, *range(p + 1 + joints, p + 1 + 3 * joints)]
+    columns = columns_of(robot)
+    unknown = [columns.delay, *range(columns.offsets.start, columns.count)]
     information[unknown] = information[:, unknown] = 0.0
     return replace(now, information=information, score=np.zeros_like(now.score))

@@ -14,6 +14,7 @@ from crossvalidation import COMMON, log
 from stages.tables import SCARA
 from unit.support import adjusted
 
+from scarid_cli.algorithms.changes.columns import Columns
 from scarid_cli.algorithms.changes.evidence import Products
 from scarid_cli.algorithms.changes.likelihood import Difference, along
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
@@ -33,6 +34,7 @@ from scarid_cli.stages.validate import validate
 PERIOD = 0.005
 KALMAN = DIFFERENTIATORS.load("kalman")()
 SLOW = Treatment(slow=(0.1, 0.1))
+COLUMNS = Columns(8, 2)
 Edit = Callable[[Array, Array], tuple[Array, Array]]
 
 
@@ -103,6 +105,16 @@ def test_a_motor_constant_that_is_off(joint: int) -> None:
     assert amount == pytest.approx(0.05, abs=4.0 * error)
 
 
+def test_all_torques_are_measured_too_large() -> None:
+    """As by another factor between currents and torques; it is no payload with more friction."""
+    q, tau = LOGS[12]
+    found = change(parameters(), q, 1.05 * tau)
+    assert (found["verdict"], kinds(found)) == ("changed", [("scale", [])])
+    (amount,), (error,) = (found["explanations"][0][key].values() for key in ("amounts", "errors"))
+    assert amount == pytest.approx(0.05, abs=4.0 * error)
+    assert found["reason"].startswith("scale of all torques (torques +")
+
+
 def test_another_zero_of_a_joint() -> None:
     """The positions of joint 2 are 0.03 rad too large."""
     q, tau = LOGS[12]
@@ -114,11 +126,12 @@ def test_another_zero_of_a_joint() -> None:
     assert "rad too large)" in found["reason"]
 
 
-def test_a_table_of_an_earlier_version_says_nothing_about_zeros() -> None:
-    """Its evidence ends with the offsets."""
+@pytest.mark.parametrize("missing", [3, 5])
+def test_a_table_of_an_earlier_version_says_less(missing: int) -> None:
+    """Its evidence ends with the zeros of the joints, or with the offsets."""
     before, gain = parameters(), scaled(1, 1.05)(*LOGS[12])
     stored = before.meta.extra[EVIDENCE]
-    count = len(stored["score"]) - 2
+    count = len(stored["score"]) - missing
     older = {
         **stored,
         "score": stored["score"][:count],
@@ -132,14 +145,14 @@ def test_a_table_of_an_earlier_version_says_nothing_about_zeros() -> None:
 
 def test_the_torque_that_a_change_makes_is_relative_to_that_of_each_joint() -> None:
     rows = rows_of(SCARA, np.random.default_rng(1).standard_normal((4, 2, 50)), np.arange(50), 0.01)
-    theta, changed = SCARA.apriori, np.zeros(8 + 1 + 3 * 2)
+    theta, changed = SCARA.apriori, np.zeros(COLUMNS.count)
     changed[3] = 0.2
     torques, moved = rows.W @ theta, rows.W[:, :, 3] * 0.2
     expected = np.sqrt((moved**2).sum(axis=0) / (torques**2).sum(axis=0))
     sums = Products.of(rows, theta)
     np.testing.assert_allclose(sums.torque_shares(np.outer(changed, changed)), expected, rtol=1e-9)
-    changed = np.zeros(8 + 1 + 3 * 2)
-    changed[8 + 1 + 1] = 0.05  # the motor constant of joint 2
+    changed = np.zeros(COLUMNS.count)
+    changed[COLUMNS.motors[1]] = 0.05  # of joint 2
     squares = np.outer(changed, changed)
     np.testing.assert_allclose(sums.torque_shares(squares), [0.0, 0.05], atol=1e-12)
 

@@ -6,9 +6,16 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from scarid_cli.algorithms.changes.columns import Columns
 from scarid_cli.algorithms.changes.evidence import LogEvidence
-from scarid_cli.algorithms.changes.explanation import Change, Explanation, found_in
-from scarid_cli.algorithms.changes.hypotheses import MOTOR, OFFSET, Hypothesis, hypotheses
+from scarid_cli.algorithms.changes.explanation import Change, Explanation, _of_search, found_in
+from scarid_cli.algorithms.changes.hypotheses import (
+    LOW_PASS,
+    MOTOR,
+    OFFSET,
+    Hypothesis,
+    hypotheses,
+)
 from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
 from scarid_cli.algorithms.robots.reading import load
 
@@ -77,6 +84,30 @@ def test_explanations_are_complete_if_they_leave_little_or_nothing_but_noise(
     assert Change(1e-9, 3, (own,) * explanations, explained, left).complete is complete
 
 
+def test_the_columns_follow_each_other() -> None:
+    columns = Columns(8, 2)
+    places = [columns.delay, *columns.motors, *columns.offsets, *columns.zeros, *columns.tilts]
+    assert [*places, columns.bend] == list(range(8, columns.count))
+    assert Columns.among(columns.count, 2) == columns
+    assert columns.usual == columns.zeros[0]
+
+
+@pytest.mark.parametrize(
+    ("delay", "bend", "error", "there"),
+    [
+        (-0.01, 1e-4, 0.001, True),  # 1 / (1 + 0.01 s) to second order
+        (-0.01, 0.5e-4, 0.001, False),  # a delay
+        (-0.01, 2e-4, 0.001, False),  # noise of accelerations
+        (-0.01, 1e-4, 0.005, False),  # no delay that noise would not be
+    ],
+)
+def test_a_low_pass_has_a_second_derivative_that_belongs_to_its_delay(
+    delay: float, bend: float, error: float, *, there: bool
+) -> None:
+    hypothesis = next(h for h in hypotheses(load("scara2")) if h.kind == LOW_PASS)
+    assert _of_search(Explanation(hypothesis, (delay, bend), (error, 1e-6))) is there
+
+
 @pytest.mark.parametrize("name", ["scara2", "emps"])
 def test_another_offset_is_a_constant_torque_of_its_joint_alone(name: str) -> None:
     """Whether the robot has a parameter for it, as emps has, or not."""
@@ -85,8 +116,8 @@ def test_another_offset_is_a_constant_torque_of_its_joint_alone(name: str) -> No
     W = robot.regressor(*RNG.standard_normal((3, joints, 20)))
     others = np.zeros((20, joints, 1 + joints))  # the delay and the motor constants
     offsets = np.broadcast_to(np.eye(joints), (20, joints, joints))
-    zeros = np.zeros((20, joints, joints))
-    columns = np.concatenate((W, others, offsets, zeros), axis=2)
+    further = np.zeros((20, joints, joints + 3))  # zeros, tilts, and the second derivative
+    columns = np.concatenate((W, others, offsets, further), axis=2)
     found = [h for h in hypotheses(robot) if h.kind == OFFSET]
     torques = np.concatenate([columns @ h.directions for h in found], axis=2)
     assert np.array_equal(torques, offsets)

@@ -1,19 +1,20 @@
 """What a log says about the parameters of a robot, and about all else that may have changed.
 
-Beside the columns of W there are columns for what the parameters cannot express: a delay of all
-torques, and of each joint the motor constant, the offset and the zero. Two logs are compared
-through their information matrices and scores over all of these columns.
+Beside the columns of W there are columns for what the parameters cannot express (columns.py). Two
+logs are compared through their information matrices and scores over all of these columns.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
+from scarid_cli.algorithms.changes.columns import TILTS, Columns
 from scarid_cli.algorithms.regression.normal_equations import roots, solved
-from scarid_cli.algorithms.regression.rows import Rows, delay_column
+from scarid_cli.algorithms.regression.rows import Rows, curvature, delay_column
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
 from scarid_cli.algorithms.statistics.positions import Sensitivities, zero_columns
@@ -31,13 +32,10 @@ class LogEvidence:
 
     `information` (columns, columns) is W'W with joints weighted by the inverse variances of their
     residuals, which account for autocorrelation; `score` (columns) is W' times the residual,
-    weighted alike. The columns are those of W, then the delay [s], then the relative error of the
-    motor constant of each joint, then the offset of each joint [N m or N], then the position of
-    each joint where the log has 0 [rad or m]. `deviations` (joints) are the standard deviations of
-    the residual after all columns, with or without those of the zeros, have been fitted, and
-    `scores` (blocks, columns) those of blocks of half a second with this residual. `biases`
-    (alternatives, columns) are how far what the model may lack moves the estimates beyond noise,
-    if this is known.
+    weighted alike. `deviations` (joints) are the standard deviations of the residual after all
+    columns in question have been fitted, and `scores` (blocks, columns) those of blocks of
+    half a second with this residual. `biases` (alternatives, columns) are how far what the model
+    may lack moves the estimates beyond noise, if this is known.
     """
 
     information: Array
@@ -51,11 +49,15 @@ class LogEvidence:
         """The number of blocks with samples."""
         return len(self.scores)
 
-    def without_zeros(self) -> LogEvidence:
-        """The evidence about all else, if the zeros of the joints are known."""
-        last = slice(len(self.score) - len(self.deviations), None)
+    @property
+    def columns(self) -> Columns:
+        return Columns.among(len(self.score), len(self.deviations))
+
+    def about(self, further: Sequence[int]) -> LogEvidence:
+        """The evidence about the usual columns and those in `further` places, all others known."""
+        rest = [k for k in range(self.columns.usual, len(self.score)) if k not in further]
         information, score, scores = (x.copy() for x in (self.information, self.score, self.scores))
-        information[last] = information[:, last] = score[last] = scores[:, last] = 0.0
+        information[rest] = information[:, rest] = score[rest] = scores[:, rest] = 0.0
         return replace(self, information=information, score=score, scores=scores)
 
 
@@ -80,23 +82,23 @@ class Products:
 
         Columns of W beyond those of `theta`, such as the ringing of friction, are fitted to each
         log and left out of the comparison. Without the `model` of the rows there is nothing about
-        the zeros of the joints.
+        the zeros of the joints and the tilt of the base.
         """
         p = len(theta)
         nuisances = rows.W[:, :, p:]
         rows = replace(rows, W=np.ascontiguousarray(rows.W[:, :, :p]))
         counts = np.maximum(np.count_nonzero(rows.scales, axis=0), 1)
         powers = np.sum((rows.y * (rows.scales > 0.0)) ** 2, axis=0) / counts
-        zeros = _zeros(rows, theta, model)
-        return cls(_products(rows, theta, delay, zeros, nuisances), counts, powers)
+        further = _further(rows, theta, model)
+        return cls(_products(rows, theta, delay, further, nuisances), counts, powers)
 
-    def evidence(self, *, zeros: bool = False) -> LogEvidence:
+    def evidence(self, further: Sequence[int] = ()) -> LogEvidence:
         """What the log says about all columns.
 
-        Unless the `zeros` of the joints are in question, the residual is that without others.
+        The residual is that after the usual ones and those in `further` places have been fitted.
         """
-        joints, columns = len(self.values), self.values.shape[2] - 1
-        first = np.arange(columns if zeros else columns - joints)
+        columns = self.values.shape[2] - 1
+        first = [*range(Columns.among(columns, len(self.values)).usual), *further]
         alone = self.values[:, :, [*first, columns]][:, :, :, [*first, columns]]
         whole = alone.sum(axis=1)
         least = LEAST**2 * self.powers + TINY
@@ -126,9 +128,8 @@ class Products:
         """
         sums = self.values.sum(axis=1)[:, :-1, :-1]
         changes = np.einsum("ik,jki->j", squares, sums).clip(min=0.0)
-        joints = np.arange(len(sums))
-        predicted = len(squares) - 3 * len(sums) + joints  # the columns of the motor constants
-        torques = sums[joints, predicted, predicted]
+        predicted = Columns.among(len(squares), len(sums)).motors
+        torques = sums[range(len(sums)), predicted, predicted]
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.sqrt(changes / torques))
 
@@ -162,31 +163,39 @@ def _inflations(scores: Array, whole: Array, variances: Array) -> Array:
     return np.maximum(ratios, 1.0)
 
 
-def _zeros(rows: Rows, theta: Array, model: Model | None) -> Array:
-    """The change of the torques (samples, joints, joints) by another zero of each joint."""
+def _further(rows: Rows, theta: Array, model: Model | None) -> Array:
+    """The change of the torques (samples, joints, columns) by all that is not always in question.
+
+    It is that by another zero of each joint, a tilted base, and a low-pass.
+    """
     joints = rows.y.shape[1]
+    found = np.zeros((rows.samples, joints, joints + TILTS + 1))
+    found[:, :, -1] = curvature(rows, rows.W @ theta)
     if model is None:
-        return np.zeros((rows.samples, joints, joints))
-    return zero_columns(Sensitivities.of(model, theta, rows.motion[:3], orders=1))
+        return found
+    found[:, :, :joints] = zero_columns(Sensitivities.of(model, theta, rows.motion[:3], orders=1))
+    tilt = model.tilted(rows.motion[0], theta)
+    if tilt is not None:
+        found[:, :, joints:-1] = tilt
+    return found
 
 
-def _products(rows: Rows, theta: Array, delay: float, zeros: Array, nuisances: Array) -> Array:
+def _products(rows: Rows, theta: Array, delay: float, further: Array, nuisances: Array) -> Array:
     """A'A of each joint and block, where A = [all columns, residual] without the `nuisances`."""
     predicted = rows.W @ theta
     column = delay_column(rows, predicted)
     residual = rows.y - predicted - delay * column
-    joints, p = rows.y.shape[1], len(theta)
-    starts = _blocks(rows)
-    columns = p + 1 + 3 * joints
-    found = np.zeros((joints, len(starts), columns + 1, columns + 1))
+    joints, starts = rows.y.shape[1], _blocks(rows)
+    columns = Columns(len(theta), joints)
+    found = np.zeros((joints, len(starts), columns.count + 1, columns.count + 1))
     ones = np.ones(rows.samples)
     for j in range(joints):
         counted = (rows.scales[:, j : j + 1] > 0.0).astype(np.float64)
         narrow = np.column_stack(
-            (rows.W[:, j], column[:, j], predicted[:, j], ones, zeros[:, j], residual[:, j])
+            (rows.W[:, j], column[:, j], predicted[:, j], ones, further[:, j], residual[:, j])
         )
-        own = [p + 1 + j, p + 1 + joints + j]
-        at = np.array([*range(p + 1), *own, *range(columns - joints, columns + 1)])
+        own = [*range(columns.motors.start), columns.motors[j], columns.offsets[j]]
+        at = np.array([*own, *range(columns.usual, columns.count + 1)])
         narrow = _without(counted * nuisances[:, j], counted * narrow)
         for b, (start, stop) in enumerate(starts):
             part = narrow[start:stop]

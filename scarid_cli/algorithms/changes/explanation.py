@@ -7,8 +7,8 @@ from math import exp, log
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.evidence import LogEvidence
-from scarid_cli.algorithms.changes.hypotheses import ZERO, Hypothesis
+from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
+from scarid_cli.algorithms.changes.hypotheses import LOW_PASS, SEARCHED, Hypothesis, searches
 from scarid_cli.algorithms.changes.likelihood import (
     Difference,
     Test,
@@ -24,6 +24,9 @@ MOST = 3  # changes that are named
 WORTH = 0.003  # of the whole difference: a further change that explains less is not named
 MOST_RANK = 0.5  # of all directions: several changes that span more would explain anything
 LEFT = 0.2  # of the whole difference: if more is left, the changes do not explain it
+BENT = (0.75, 1.5)  # of T^2: from halfway between a delay and a low-pass
+CLEAR = 3.0  # errors of the delay of a low-pass
+SEARCHES = 4  # of all, with the usual columns and with others
 CLOSE = 6.0  # twice the logarithm of 20: another change is then 20 times less likely
 
 
@@ -78,44 +81,59 @@ class Change:
         return bool(self.explanations) and enough
 
 
-def change(
-    first: LogEvidence, second: LogEvidence, turned: LogEvidence, possible: list[Hypothesis]
-) -> Change:
+def change(first: LogEvidence, sums: Products, possible: list[Hypothesis]) -> Change:
     """Test all hypotheses, and anything else whatever; then look for explanations.
 
-    The zeros of the joints are taken to be known, unless another zero explains the difference
-    better: `turned` is the evidence of the second log if its zeros are in question. To leave them
-    open in all tests would hide some changes of motor constants.
+    `sums` are those of the second log. Zeros of the joints, the direction of gravity and a low-pass
+    of the torques are taken to be known, unless one of them explains the difference better than all
+    else. To leave them open in all tests would hide some changes of motor constants.
     """
-    others = [h for h in possible if h.kind != ZERO]
-    found = _change(first.without_zeros(), second.without_zeros(), others)
-    if len(others) == len(possible):
-        return found
-    other = _change(first, turned, possible, searches=2)
-    zero = any(e.hypothesis.kind == ZERO for e in other.explanations)
-    return other if zero and other.gain > found.gain else found
+    usual = [h for h in possible if h.kind not in SEARCHED]
+    found = _change(first.about(()), sums.evidence().about(()), usual)
+    for kind, places in searches(first.columns):
+        more = [h for h in possible if h.kind == kind]
+        if not more:
+            continue
+        second = sums.evidence(places).about(places)
+        other = _change(first.about(places), second, [*usual, *more], SEARCHES)
+        there = any(_of_search(e) for e in other.explanations if e.hypothesis.kind == kind)
+        found = other if there and other.gain > found.gain else found
+    return found
+
+
+def _of_search(explanation: Explanation) -> bool:
+    """Whether this is what the search of its own is for.
+
+    Of a delay T the second derivative of the torques has T^2 / 2, of a low-pass twice as much. Of
+    noise in the accelerations it has some, too.
+    """
+    if explanation.hypothesis.kind != LOW_PASS:
+        return True
+    (delay, bend), (error, _) = explanation.amounts, explanation.errors
+    low, high = (share * delay**2 for share in BENT)
+    return abs(delay) > CLEAR * error and low < bend < high
 
 
 def _change(
-    first: LogEvidence, second: LogEvidence, possible: list[Hypothesis], searches: int = 1
+    first: LogEvidence, second: LogEvidence, possible: list[Hypothesis], of: int = 1
 ) -> Change:
-    """What one of so many searches finds.
+    """What one `of` so many searches finds.
 
     A difference that no change with a name explains has to be larger than what the model may lack,
     which another motion shows otherwise. One with a name need not be.
     """
     difference = Difference.between(first, second)
-    found = found_in(difference, possible, searches)
+    found = found_in(difference, possible, of)
     if first.biases is None or not found.changed or found.complete:
         return found
-    return found_in(difference.allowing(first.biases), possible, searches)
+    return found_in(difference.allowing(first.biases), possible, of)
 
 
-def found_in(difference: Difference, possible: list[Hypothesis], searches: int = 1) -> Change:
-    """What one of so many searches finds."""
+def found_in(difference: Difference, possible: list[Hypothesis], of: int = 1) -> Change:
+    """What one `of` so many searches finds."""
     whole = everything(difference)
     log_ps = [whole.log_p, *(tested(difference, [h]).log_p for h in possible)]
-    log_p = min(min(log_ps) + log(searches * len(log_ps)), 0.0)
+    log_p = min(min(log_ps) + log(of * len(log_ps)), 0.0)
     if not log_p < log(FALSE_ALARMS):
         return Change(exp(log_p), len(log_ps))
     chosen, rivals = _chosen(difference, possible, whole)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.changes.columns import Columns
 from scarid_cli.algorithms.robots.coupled import CoupledCoulomb, CoupledViscous
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.rigid import STANDARD_UNITS, SYMBOLS
@@ -33,7 +34,9 @@ FRICTION = (
     CoupledCoulomb,
 )
 PAYLOAD, DELAY, MOTOR, DRIFT = "payload", "delay", "motor constant", "friction"
-OFFSET, ZERO = "offset", "zero"
+OFFSET, ZERO, SCALE = "offset", "zero", "scale"
+TILT, LOW_PASS = "tilt", "low-pass"
+SEARCHED = (ZERO, TILT, LOW_PASS)  # in searches of their own, as their columns are not the usual
 
 
 @dataclass(frozen=True)
@@ -54,21 +57,34 @@ class Hypothesis:
 def hypotheses(robot: Robot) -> list[Hypothesis]:
     """The changes that are tested for this robot."""
     joints = range(1, len(robot.joints) + 1)
+    several = len(joints) > 1
     found = [_payload(robot), _delay(robot), *(_motor(robot, j) for j in joints)]
+    found += [_scale(robot)] if several else []
     found += [_friction(robot, (j,)) for j in joints]
-    found += [_friction(robot, tuple(joints))] if len(joints) > 1 else []
+    found += [_friction(robot, tuple(joints))] if several else []
     found += [_offset(robot, j) for j in joints]
     found += [_zero(robot, j) for j in joints]
+    found += [_tilt(robot)] if robot.body and any(robot.body.gravity) else []
+    found += [_low_pass(robot)]
     return [h for h in found if h.directions.shape[1]]
 
 
-def width(robot: Robot) -> int:
-    """The number of all columns."""
-    return len(robot.parameters) + 1 + 3 * len(robot.joints)
+def searches(columns: Columns) -> list[tuple[str, tuple[int, ...]]]:
+    """What is searched for by itself, and the places of its columns."""
+    return [
+        (ZERO, tuple(columns.zeros)),
+        (TILT, tuple(columns.tilts)),
+        (LOW_PASS, (columns.bend,)),
+    ]
+
+
+def columns_of(robot: Robot) -> Columns:
+    """The columns by which logs of this robot are compared."""
+    return Columns(len(robot.parameters), len(robot.joints))
 
 
 def _of_parameters(robot: Robot, chosen: list[int]) -> Array:
-    directions = np.zeros((width(robot), len(chosen)))
+    directions = np.zeros((columns_of(robot).count, len(chosen)))
     directions[chosen, range(len(chosen))] = 1.0
     return directions
 
@@ -82,7 +98,7 @@ def _payload(robot: Robot) -> Hypothesis:
         ]
         return Hypothesis(PAYLOAD, _of_parameters(robot, inertial), *_labels(parameters, inertial))
     last = len(robot.joints)
-    directions = np.zeros((width(robot), len(SYMBOLS)))
+    directions = np.zeros((columns_of(robot).count, len(SYMBOLS)))
     for row, parameter in enumerate(parameters):
         parts = dict(parameter.parts)
         for column, symbol in enumerate(SYMBOLS):
@@ -99,13 +115,32 @@ def _labels(
 
 def _delay(robot: Robot) -> Hypothesis:
     """Another delay of all torques."""
-    return Hypothesis(DELAY, _single(robot, len(robot.parameters)), ("delay",), ("s",))
+    return Hypothesis(DELAY, _along(robot, columns_of(robot).delay), ("delay",), ("s",))
+
+
+def _low_pass(robot: Robot) -> Hypothesis:
+    """Another low-pass of all torques: to second order a delay, and their second derivative."""
+    at = columns_of(robot)
+    names, units = ("delay", "second derivative"), ("s", "s2")
+    return Hypothesis(LOW_PASS, _along(robot, at.delay, at.bend), names, units)
+
+
+def _tilt(robot: Robot) -> Hypothesis:
+    """Gravity in another direction."""
+    at = columns_of(robot).tilts
+    return Hypothesis(TILT, _along(robot, *at), ("tilt 1", "tilt 2"), ("rad", "rad"))
 
 
 def _motor(robot: Robot, joint: int) -> Hypothesis:
     """Another motor constant, so that all torques of a joint are measured too large or small."""
-    at = len(robot.parameters) + joint
-    return Hypothesis(MOTOR, _single(robot, at), (f"motor constant {joint}",), ("",), (joint,))
+    at = columns_of(robot).motors[joint - 1]
+    return Hypothesis(MOTOR, _along(robot, at), (f"motor constant {joint}",), ("",), (joint,))
+
+
+def _scale(robot: Robot) -> Hypothesis:
+    """All torques are measured too large or too small, by the same factor."""
+    every = _along(robot, *columns_of(robot).motors).sum(axis=1, keepdims=True)
+    return Hypothesis(SCALE, every, ("scale",), ("",))
 
 
 def _friction(robot: Robot, joints: tuple[int, ...]) -> Hypothesis:
@@ -126,20 +161,17 @@ def _offset(robot: Robot, joint: int) -> Hypothesis:
         for i, p in enumerate(robot.parameters)
         if isinstance(p.term, Offset) and p.term.joints == (joint,)
     ]
-    extra = len(robot.parameters) + len(robot.joints) + joint
     unit = robot.joints[joint - 1].torque_unit
-    at = own[0] if own else extra
-    return Hypothesis(OFFSET, _single(robot, at), (f"offset {joint}",), (unit,), (joint,))
+    at = own[0] if own else columns_of(robot).offsets[joint - 1]
+    return Hypothesis(OFFSET, _along(robot, at), (f"offset {joint}",), (unit,), (joint,))
 
 
 def _zero(robot: Robot, joint: int) -> Hypothesis:
     """Another zero of the positions of a joint."""
-    at = len(robot.parameters) + 2 * len(robot.joints) + joint
-    unit = robot.joints[joint - 1].unit
-    return Hypothesis(ZERO, _single(robot, at), (f"zero {joint}",), (unit,), (joint,))
+    at, unit = columns_of(robot).zeros[joint - 1], robot.joints[joint - 1].unit
+    return Hypothesis(ZERO, _along(robot, at), (f"zero {joint}",), (unit,), (joint,))
 
 
-def _single(robot: Robot, at: int) -> Array:
-    direction = np.zeros((width(robot), 1))
-    direction[at] = 1.0
-    return direction
+def _along(robot: Robot, *places: int) -> Array:
+    """A direction along each of the columns in these places."""
+    return np.eye(columns_of(robot).count)[:, list(places)]

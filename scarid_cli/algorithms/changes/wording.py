@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,21 +12,33 @@ from scarid_cli.algorithms.changes.explanation import Change, Explanation
 from scarid_cli.algorithms.changes.hypotheses import (
     DELAY,
     DRIFT,
+    LOW_PASS,
     MOTOR,
     PAYLOAD,
+    SCALE,
+    TILT,
     ZERO,
     Hypothesis,
 )
-from scarid_cli.algorithms.statistics.sentences import percents
+from scarid_cli.algorithms.statistics.sentences import joints_named, percents
 from scarid_cli.arrays import Array
 
 SHOWN = 4  # amounts that a message names at most
 CLEAR = 3.0  # errors: a smaller amount is not named
 NOISIER = 2.0  # times the residual at identification
+LOST = 0.45  # of a torque that varies about 0: an error with which R2 is 0.8
 
 UNCHANGED, CHANGED, UNEXPLAINED = "unchanged", "changed", "unexplained"
 LARGER = "larger than at the identification"
 DISTURBED = "noise, vibration, friction that the model lacks, or another soft sensor"
+# What concerns no single joint, in a few words.
+OF_ALL = {
+    PAYLOAD: "another payload or set-up",
+    DELAY: "another delay",
+    SCALE: "scale of all torques",
+    TILT: "gravity in another direction, as on a tilted base",
+    LOW_PASS: "another low-pass of the torques",
+}
 
 
 @dataclass(frozen=True)
@@ -55,14 +68,16 @@ def of_change(
     values: dict[str, float],
     ratios: Array | None,
     residuals: Array,
+    fitted: Array | float = np.nan,
     slight: float | None = None,
 ) -> Verdict:
     """The verdict of the tests.
 
     `values` are the parameters at identification; `ratios` (joints) the deviations of the residual,
-    divided by those at identification, if these are known, and `residuals` (joints) its rms,
-    relative to that of the torques. A change of the torques by this part is `slight`, because it is
-    within the intervals of the identification.
+    divided by those at identification, if these are known, `residuals` (joints) its rms, relative
+    to that of the torques, and `fitted` (joints) the same at identification, nan if not known. A
+    change of the torques by this part is `slight`, because it is within the intervals of the
+    identification.
     """
     noisy = [] if ratios is None else np.flatnonzero(ratios > NOISIER).tolist()
     noise = "; ".join(f"joint {j + 1} {ratios[j]:.2g} times" for j in noisy if ratios is not None)
@@ -71,6 +86,11 @@ def of_change(
         tests = f"{change.tests} tests find no change (smallest p-value {change.p_value:.2g})"
         if ratios is None:
             return Verdict(UNCHANGED, f"{tests}, residual {percents(residuals)}", facts)
+        lost = np.flatnonzero(residuals > np.maximum(NOISIER * fitted, LOST)).tolist()
+        if lost:
+            why = "but the parameters are known too little to say why"
+            reason = f"{_lost(lost, residuals)}, {why}: {tests}"
+            return Verdict(UNEXPLAINED, reason, facts)
         if not noise:
             return Verdict(
                 UNCHANGED, f"the residuals are those of the identification; {tests}", facts
@@ -91,6 +111,14 @@ def of_change(
     )
     best = f"; most likely {found}, but this explains only {100.0 * change.explained:.2g} %"
     return Verdict(UNEXPLAINED, reason + (best if found else ""), facts)
+
+
+def _lost(joints: Sequence[int], residuals: Array) -> str:
+    """That the parameters do not predict the torques of these joints (from 0)."""
+    sizes = percents(residuals[list(joints)])
+    return (
+        f"the torque of {joints_named(j + 1 for j in joints)} is predicted with an error of {sizes}"
+    )
 
 
 def _facts(change: Change, ratios: Array | None) -> dict[str, Any]:
@@ -119,7 +147,7 @@ def short(hypothesis: Hypothesis) -> str:
     """A hypothesis in a few words."""
     joints = hypothesis.joints
     if not joints:
-        return "another payload or set-up" if hypothesis.kind == PAYLOAD else "another delay"
+        return OF_ALL[hypothesis.kind]
     which = f"joint {joints[0]}" if len(joints) == 1 else "all joints"
     return f"{hypothesis.kind} of {which}"
 
@@ -137,12 +165,18 @@ def _sentence_of(values: dict[str, float]) -> Any:
 def _amounts(e: Explanation, values: dict[str, float]) -> str:
     """The clearest amounts with their errors."""
     hypothesis = e.hypothesis
-    if hypothesis.kind == MOTOR:
+    if hypothesis.kind in (MOTOR, SCALE):
         return f"torques {100.0 * e.amounts[0]:+.3g} +- {100.0 * e.errors[0]:.2g} %"
     if hypothesis.kind == DELAY:
         when = "earlier" if e.amounts[0] > 0.0 else "later"
         amount = f"{1e3 * abs(e.amounts[0]):.3g} +- {1e3 * e.errors[0]:.2g} ms"
         return f"torques {amount} {when} than at the identification"
+    if hypothesis.kind == LOW_PASS:
+        lag, error = 1e3 * abs(e.amounts[0]), 1e3 * e.errors[0]
+        return f"torques {'lead' if e.amounts[0] > 0.0 else 'lag'} by {lag:.3g} +- {error:.2g} ms"
+    if hypothesis.kind == TILT:
+        tilt = np.degrees(np.linalg.norm(e.amounts))
+        return f"by {tilt:.2g} +- {np.degrees(np.max(e.errors)):.1g} degrees"
     if hypothesis.kind == ZERO:
         size = "large" if e.amounts[0] < 0.0 else "small"
         amount = f"{abs(e.amounts[0]):.3g} +- {e.errors[0]:.2g} {hypothesis.units[0]}"

@@ -89,12 +89,13 @@ def _first(robot: Robot, segments: Sequence[Segment], h: float) -> float:
     """The lowest cut-off: with ten independent rows for each parameter, and above the motion.
 
     Below the bandwidth of the motion the parameters may scatter little, and are wrong nevertheless.
-    It is at most that of the torques, which positions in steps do not increase.
+    It is at most that of the torques, which positions in steps do not increase. A short log has
+    less rows, so that an octave is left to choose from.
     """
     rows = sum(s.q.size for s in segments)
     motion = OF_MOTION * min(float(x.max()) for x in bandwidths(segments, h))
     independent = ROWS_PER_PARAMETER * len(robot.parameters) / (2.0 * rows * h)
-    return max(LOWEST, independent, min(motion, 0.5 * HIGHEST / h))
+    return max(LOWEST, min(max(independent, motion), 0.5 * HIGHEST / h))
 
 
 def _scatter(robot: Robot, parts: Sequence[Lowpassed], cutoff: float) -> Scatter:
