@@ -84,6 +84,7 @@ def columns_of(
     left = [column for column in table.columns if column not in taken]
     worded, known = _in_words(job, table, left, {*names, *described}, order)
     worded = _with_torques(worded, robot)
+    _tell_of_currents(job, worded)
     known = [(new, unit) for new, unit in known if new in worded]
     inside = units_in_names(
         [c for c in left if c not in worded.values()] + [*names.values()], names
@@ -110,7 +111,6 @@ def _in_words(
         job.notes.append(f"left alone, as there is no torque of them: {', '.join(found.left_out)}")
     if found.joints and not joints:
         job.notes.append("joints in the order of their columns (another: --joints)")
-    _tell_of_currents(job, found.columns)
     return found.columns, [*found.units]
 
 

@@ -183,7 +183,7 @@ def _order(found: Sequence[dict[Key, _Column]], joints: Sequence[str]) -> list[K
         lacking = [joint for joint, key in zip(joints, wanted, strict=True) if key not in own]
         if len(lacking) < len(joints) and lacking:
             names = ", ".join(column.name for column in own.values())
-            raise Unclear(f"{names} lack that of {', '.join(lacking)}")
+            raise Unclear(f"there is {names}, but none of {', '.join(lacking)}")
     if wanted and all(key in common for key in wanted):
         return wanted
     numbers = _numbers(common)

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 from conftest import ROOT, Result
 
+from scarid_cli.algorithms.checks import units
 from scarid_cli.algorithms.checks.finding import FAILED, WARNING
+from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.stages.glance import of_extremes
 from scarid_cli.stages.reach import Reach
@@ -158,6 +160,29 @@ def test_joints_have_units_of_their_type(factors: tuple[float, ...], told: str) 
     (found,) = of_extremes(q, np.ones((4, 2)), robot, 0.005)
     assert (found.name, found.status) == ("positions", FAILED)
     assert told in found.advice
+
+
+@pytest.mark.parametrize(
+    ("q", "speed", "told"),
+    [
+        ((-0.1, 2.9), 2.0, ""),
+        ((-0.1, 2.9), 30.0, "joint 1 at 10 times the velocity limit"),  # a placeholder in a URDF
+        ((-2.9, 0.1), 2.0, "joint 1 at 2.81 times the limits"),  # an axis that points the other way
+        ((-5.7, 170.0), 100.0, "joint 1 up to 170, far outside the limits"),
+    ],
+)
+def test_positions_as_large_as_their_limits_are_in_no_other_unit(
+    q: tuple[float, float], speed: float, told: str
+) -> None:
+    arm = load("scara2")
+    one = replace(arm.joints[0], lower=-0.1, upper=3.0, velocity_limit=3.0)
+    robot = replace(arm, joints=(one, replace(one, lower=-2.0)))
+    log = Log(np.zeros(2), np.array([q, (-1.0, 1.0)]), np.ones((2, 2)))
+    found, factors = units.positions(log, robot, np.array([speed, 1.0]))
+    degrees = "far outside" in told
+    assert found.status == (FAILED if degrees else WARNING if told else "ok")
+    assert found.figure.startswith(told)
+    assert ("scarid convert" in found.advice) == (factors[0] != 1.0) == degrees
 
 
 def test_joints_without_limits_may_turn_many_times() -> None:

@@ -110,7 +110,11 @@ def test_joints_with_names_are_in_the_order_of_the_robot() -> None:
         ("t position_1 position_3", (), "their joints are numbered 1, 3"),
         ("t left_position right_torque", (), "seem to be of different joints"),
         ("t left_position right_position", ("shoulder", "elbow"), "none of the joints shoulder"),
-        ("t rail_pos a_pos b_pos a_tau b_tau", ("rail", "a", "b"), "b_tau lack that of rail"),
+        (
+            "t rail_pos a_pos b_pos a_tau b_tau",
+            ("rail", "a", "b"),
+            "there is a_tau, b_tau, but none of rail",
+        ),
     ],
 )
 def test_what_is_unclear_is_not_guessed(header: str, joints: tuple[str, ...], why: str) -> None:

@@ -11,6 +11,7 @@ from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.alternatives import STRIBECK, tilted
+from scarid_cli.algorithms.statistics.bursts import Interval
 from scarid_cli.algorithms.statistics.consequences import Consequences
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
@@ -32,6 +33,7 @@ KNOWN = Consequences(
     np.full(8, 0.5),
 )
 LOUD, VERY_LOUD = (replace(GOOD, relative_error=x, torque=0.5) for x in (5.0, 20.0))
+PUSHED = "the torques at 2 to 2.3 s cannot be explained"
 BLOCKS = 40
 
 
@@ -185,6 +187,14 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             "doubtful",
             "some part of the motion occurs only once",
         ),
+        (
+            {"joints": (GOOD, LOUD), **consequence(held_out=np.array([1.0, 21.0]))},
+            "doubtful",  # 105 % of the torque
+            "some part of the motion occurs only once",
+        ),
+        ({"unexplained": PUSHED, "bursts": (Interval(2.0, 2.1),)}, "good", "8 of 8 parameters"),
+        ({"unexplained": PUSHED, "bursts": (Interval(2.0, 2.3),)}, "good", PUSHED),
+        ({"unexplained": PUSHED, "blocks": 3.2}, "doubtful", PUSHED),
         (
             consequence(diagonal=np.array([3.5, -0.06])),
             "doubtful",

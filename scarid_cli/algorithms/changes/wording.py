@@ -87,7 +87,7 @@ def of_change(
         if ratios is None:
             return Verdict(UNCHANGED, f"{tests}, residual {percents(residuals)}", facts)
         lost = np.flatnonzero(residuals > np.maximum(NOISIER * fitted, LOST)).tolist()
-        if lost:
+        if lost and not noise:
             why = "but the parameters are known too little to say why"
             reason = f"{_lost(lost, residuals)}, {why}: {tests}"
             return Verdict(UNEXPLAINED, reason, facts)

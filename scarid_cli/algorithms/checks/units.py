@@ -44,10 +44,13 @@ def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
         return failed("positions", figure, _converted(robot, outside, likely)), factors
     excess = max(_excess(log.q[i], robot, i, speeds[i]) for i in outside)
     resting = max(_excess(log.q[i], robot, i, 0.0) for i in outside)
-    what = "limits" if resting > SPARE else "velocity limit"
-    figure = f"{names} at {excess:.3g} times the {what} of {robot.short_name}"
+    inside = resting <= SPARE
+    figure = f"{names} at {excess:.3g} times the {'velocity limit' if inside else 'limits'}"
+    figure += f" of {robot.short_name}"
     question = "is this the robot, and is a position that of the motor (gear_ratio, zero, unit)?"
-    return (failed if excess > GEAR else warning)("positions", figure, question), factors
+    limited = all(np.isfinite(robot.joints[i].upper - robot.joints[i].lower) for i in outside)
+    far = excess > GEAR and not (inside and limited)
+    return (failed if far else warning)("positions", figure, question), factors
 
 
 def _alike(robot: Robot, outside: list[int]) -> list[int]:
@@ -106,9 +109,17 @@ def _excess(q: Array, robot: Robot, i: int, speed: float) -> float:
 
 
 def _in_other_unit(q: Array, robot: Robot, i: int, speed: float) -> bool:
-    """Whether joint i is within its limits if its position is in degrees or mm, else far out."""
-    _, factor, _ = OTHER_UNITS[robot.joints[i].type]
+    """Whether joint i is within its limits if its position is in degrees or mm, else far out.
+
+    A position that is no larger than its limits is in their unit, however fast it changes: many a
+    velocity limit in a URDF is a placeholder, and an axis may point the other way.
+    """
+    joint = robot.joints[i]
+    _, factor, _ = OTHER_UNITS[joint.type]
+    limits = [abs(x) for x in (joint.lower, joint.upper) if np.isfinite(x)]
     excess = _excess(q, robot, i, speed)
+    if limits and not np.nanmax(np.abs(q)) > FAR * max(limits):
+        return False
     return excess > FAR and _excess(factor * q, robot, i, factor * speed) <= 1.0 + 1.0 / FAR
 
 
@@ -147,7 +158,9 @@ def torques(log: Log, robot: Robot, ratios: Array) -> Finding:
 
 def _prefixed(prefix: str, robot: Robot) -> str:
     unit = prefix + robot.joints[0].torque_unit
-    return f"torques seem to be in {unit}: `scarid convert --unit 'tau*={unit}'`"
+    text = f"torques seem to be in {unit}: `scarid convert --unit 'tau*={unit}'`"
+    motors = ', unless they are those of the motors (torques = "motor" in [log] of the TOML file)'
+    return text + (motors if prefix == "k" else "")
 
 
 def _torque_units(robot: Robot) -> str:

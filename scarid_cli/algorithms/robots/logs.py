@@ -88,12 +88,18 @@ def log_of(document: dict[str, Any], joints: int) -> LogFormat | None:
     rate = values.number("rate", entry["rate"]) if "rate" in entry else None
     if rate is not None and rate <= 0.0:
         raise ValueError("rate is not positive")
+    torques = values.choice("torques", entry.get("torques", JOINT), (JOINT, MOTOR, CURRENT))
+    lacking = [j for j, axis in enumerate(axes, start=1) if "torque_constant" not in axis]
+    if torques == CURRENT and lacking:
+        raise ValueError(
+            f'joint {lacking[0]} has no torque_constant, which torques = "current" needs'
+        )
     return LogFormat(
         columns={new: values.text(new, old) for new, old in columns.items()},
         units=tuple((pattern, values.text(pattern, unit)) for pattern, unit in units.items()),
         rate=rate,
         positions=values.choice("positions", entry.get("positions", JOINT), (JOINT, MOTOR)),
-        torques=values.choice("torques", entry.get("torques", JOINT), (JOINT, MOTOR, CURRENT)),
+        torques=torques,
         ratios=_ratios(axes, couplings),
         constants=_numbers(axes, "torque_constant", 1.0),
         zero=_numbers(axes, "zero", 0.0),

@@ -39,6 +39,7 @@ VAGUE = 0.1  # of the torque: half the interval from noise above which it counts
 UNKNOWN = 0.3  # of the torque: the same, of the interval that allows for all alternatives
 UNMATCHED = " (if the motion was not matched, use scarid differentiate --match)"
 CAUSE = "`scarid check LOG` looks for the cause (units, signs, order of joints)"
+LASTING = 0.2  # s: what friction makes that the model lacks at a reversal is shorter
 FEW = 3  # unknown parameters that are named
 
 
@@ -108,6 +109,8 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
         wrong = [evidence.unexplained, *wrong]
     notes = notes_of(evidence.names, evidence.diagnostics, robot)
     notes = [*_inertia_unknown(evidence), *offsets_of(evidence.diagnostics, robot), *notes]
+    if not wrong and any(x.end - x.start >= LASTING for x in evidence.diagnostics.bursts):
+        notes = [*([evidence.unexplained] if evidence.unexplained else []), *notes]
     return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes), bool(bias))
 
 
@@ -227,7 +230,7 @@ def _unpredicted(evidence: Evidence) -> list[str]:
     """
     ratios, joints = evidence.diagnostics.consequences.held_out, evidence.diagnostics.joints
     fitted = np.array([0.01 * joint.relative_error for joint in joints])
-    if not np.isfinite(ratios).all():
+    if not np.all(fitted * ratios <= 1.0):  # an error as large as the torque
         return [
             "some part of the motion occurs only once, and without it the parameters are not "
             "determined: use a log that repeats it"
