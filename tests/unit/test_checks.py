@@ -14,6 +14,7 @@ from scarid_cli.algorithms.checks import clock, values
 from scarid_cli.algorithms.checks.clock import GAP
 from scarid_cli.algorithms.checks.finding import FAILED, OK, STATUSES, WARNING, worst
 from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.algorithms.checks.model import solved
 from scarid_cli.algorithms.checks.motion import Motion
 from scarid_cli.algorithms.checks.movement import repeated_after
 from scarid_cli.algorithms.processes.holding import held_in
@@ -195,3 +196,15 @@ def test_encoders_that_step_one_after_another_are_not_held(joints: int) -> None:
     q = np.array([np.floor(t / 0.005 + i / 5.0) * 1e-4 for i in range(joints)])
     held, _ = held_in(t, q)
     assert not held.any()
+
+
+def test_errors_of_a_first_fit_are_those_of_leaving_out_parts() -> None:
+    """Of a log without a scale of its own: the weights of the joints stay as they are."""
+    rng = np.random.default_rng(5)
+    W, tau = rng.standard_normal((200, 2, 3)), rng.standard_normal((2, 200))
+    found = solved(W, tau, np.ones((2, 200), dtype=bool))
+    y = found.A @ found.theta + found.rest
+    part = np.tile(np.repeat(np.arange(10), 20), 2)
+    without = [np.linalg.lstsq(found.A[part != k], y[part != k])[0] for k in range(10)]
+    expected = np.sqrt(0.9 * np.sum((np.array(without) - found.theta) ** 2, axis=0))
+    assert found.scatter(2) == pytest.approx(expected, rel=1e-6)

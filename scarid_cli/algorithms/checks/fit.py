@@ -68,8 +68,7 @@ def _rest(robot: Robot, samples: Samples) -> tuple[float, float]:
     q, dq, ddq, tau, slope = samples.motion
     W = np.concatenate((robot.regressor(q, dq, ddq), slope.T[:, :, None]), axis=2)
     found = solved(W, tau, samples.counts)
-    variance = found.inverse[-1, -1] / samples.independent
-    return -float(found.theta[-1]), float(np.sqrt(variance))
+    return -float(found.theta[-1]), float(found.scatter(len(tau))[-1])
 
 
 def delay(seconds: float, error: float, motion: Motion) -> Finding:

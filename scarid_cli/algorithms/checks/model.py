@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from scarid_cli.algorithms.changes.wiring import Wiring
-from scarid_cli.algorithms.regression.normal_equations import roots
+from scarid_cli.algorithms.regression.normal_equations import inverse, roots
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array, Marks
@@ -30,6 +30,7 @@ RIDGE = 1e-10  # added to the squares of columns of unit length, so that all is 
 MOST_JOINTS = 12  # whose signs are tried all at once
 EXACT = 1e-9  # of the mean square torque, below which a residual is rounding
 DEVIATIONS = 3.0  # standard errors from which on a sign is known
+PARTS = 10  # of a log, by whose scatter errors are stated
 
 
 @dataclass(frozen=True)
@@ -125,16 +126,29 @@ def columns(robot: Robot, motion: Array) -> Array:
 
 @dataclass(frozen=True)
 class Solution:
-    """Weighted least squares: A (rows, parameters) is the weighted regressor.
+    """Weighted least squares: A (rows, parameters) is the weighted regressor, joint after joint.
 
-    `inverse` (parameters, parameters) is the covariance of theta if rows are independent, and
-    `residuals` (joints) are shares of the mean square torque.
+    `rest` (rows) is what it leaves of the weighted torques, `inverse` (parameters, parameters) the
+    covariance of theta if rows are independent, and `residuals` (joints) are shares of the mean
+    square torque.
     """
 
     A: Array
     theta: Array
+    rest: Array
     inverse: Array
     residuals: Array
+
+    def scatter(self, joints: int) -> Array:
+        """The standard errors (parameters) by leaving out one of PARTS of the log after another."""
+        samples = len(self.A) // joints
+        part = np.tile(np.arange(samples) * PARTS // samples, joints)
+        grams = np.array([self.A[part == k].T @ self.A[part == k] for k in range(PARTS)])
+        scores = np.array([self.A[part == k].T @ self.rest[part == k] for k in range(PARTS)])
+        moved = np.array(
+            [inverse(grams.sum(axis=0) - g) @ s for g, s in zip(grams, scores, strict=True)]
+        )
+        return np.asarray(np.sqrt((PARTS - 1) / PARTS * np.sum(moved**2, axis=0)))
 
 
 def solved(W: Array, tau: Array, counts: Marks) -> Solution:
@@ -151,11 +165,11 @@ def solved(W: Array, tau: Array, counts: Marks) -> Solution:
         size = np.sqrt(np.sum(A**2, axis=0))
         size = np.where(size > 0.0, size, 1.0)
         products = (A.T @ A) / np.outer(size, size) + RIDGE * np.eye(len(size))
-        inverse = np.linalg.inv(products) / np.outer(size, size)
-        theta = inverse @ (A.T @ y)
+        covariance = np.linalg.inv(products) / np.outer(size, size)
+        theta = covariance @ (A.T @ y)
         rest = np.where(counts, tau - np.einsum("sjp,p->js", W, theta), 0.0)
         squares = np.sum(rest**2, axis=1) / np.maximum(counts.sum(axis=1), 1)
-    return Solution(A, theta, inverse, squares / scale**2)
+    return Solution(A, theta, y - A @ theta, covariance, squares / scale**2)
 
 
 def fitted(robot: Robot, samples: Samples) -> Fit:
