@@ -144,7 +144,7 @@ def verdict(
     rows = in_step(rows, theta, model.delay, low_pass=model.low_pass)
     modelled = Model(robot, list(range(len(theta))))
     sums = Products.of(with_ringing(rows, robot), theta, model=modelled)
-    now = sums.evidence()
+    now = sums.usual
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)
     ratios = before.ratios(now, sums.powers)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -74,6 +75,11 @@ class Products:
     counts: Numbers
     powers: Array
 
+    @cached_property
+    def usual(self) -> LogEvidence:
+        """The evidence with the residual after the usual columns."""
+        return self.evidence(())
+
     @classmethod
     def of(
         cls, rows: Rows, theta: Array, delay: float = 0.0, model: Model | None = None
@@ -92,7 +98,7 @@ class Products:
         further = _further(rows, theta, model)
         return cls(_products(rows, theta, delay, further, nuisances), counts, powers)
 
-    def evidence(self, further: Sequence[int] = ()) -> LogEvidence:
+    def evidence(self, further: Sequence[int]) -> LogEvidence:
         """What the log says about all columns.
 
         The residual is that after the usual ones and those in `further` places have been fitted.

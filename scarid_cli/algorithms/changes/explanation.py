@@ -89,7 +89,7 @@ def change(first: LogEvidence, sums: Products, possible: list[Hypothesis]) -> Ch
     else. To leave them open in all tests would hide some changes of motor constants.
     """
     usual = [h for h in possible if h.kind not in SEARCHED]
-    found = _change(first.about(()), sums.evidence().about(()), usual)
+    found = _change(first.about(()), sums.usual.about(()), usual)
     for kind, places in searches(first.columns):
         more = [h for h in possible if h.kind == kind]
         if not more:

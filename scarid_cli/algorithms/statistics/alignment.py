@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
-from scarid_cli.algorithms.regression.normal_equations import solved
 from scarid_cli.algorithms.regression.rows import Rows, predicted, thinned, with_delay
 from scarid_cli.algorithms.regression.shifting import bend, in_step
 from scarid_cli.algorithms.statistics.curvature import form
+from scarid_cli.algorithms.statistics.essential import without
 from scarid_cli.algorithms.statistics.jackknife import jackknife
 from scarid_cli.arrays import Array
 
@@ -93,16 +93,11 @@ def aligned(
 
 @dataclass(frozen=True)
 class _Shift:
-    """A fit to torques that were shifted, with the column of what remains of the delay.
-
-    `alone` (columns) are the estimates without this column: with those of all shifts, the residual
-    shows which shift explains the torques best.
-    """
+    """A fit to torques that were shifted, with the column of what remains of the delay."""
 
     seconds: float
     rows: Rows
     found: Estimation
-    alone: Array
 
     @property
     def theta(self) -> Array:
@@ -113,6 +108,11 @@ class _Shift:
     def residuals(self) -> Array:
         """What the fit with the column of the delay leaves of the torques (samples, joints)."""
         return np.asarray(self.rows.y - self.rows.W @ self.theta)
+
+    @cached_property
+    def alone(self) -> Array:
+        """The estimates without this column, by which shifts are compared."""
+        return without(self.theta, self.found.fit.unit_covariance, len(self.theta) - 1)[0][:-1]
 
     @cached_property
     def misfit(self) -> float:
@@ -198,7 +198,7 @@ class _Search:
         own = theta[: self.own]
         wide = with_delay(in_step(rows, own, seconds, low_pass=low_pass), own)
         found = self.quick.of_rows(wide, self.start)
-        return _Shift(seconds, wide, found, _without_last(wide, found))
+        return _Shift(seconds, wide, found)
 
     def _worse(self, new: _Shift, best: _Shift) -> bool:
         """Whether a shift explains the torques less well, or with parameters that no robot has.
@@ -208,14 +208,3 @@ class _Search:
         there, here = (shift.alone[: self.own] for shift in (new, best))
         lost = self.possible and self.possible(here) and not self.possible(there)
         return new.misfit > (HALF if lost else WORSE) * best.misfit
-
-
-def _without_last(rows: Rows, found: Estimation) -> Array:
-    """The estimates without the last column of W, with the joints weighted as in the fit."""
-    weights = np.ones(rows.y.shape[1])
-    if found.scores and found.scores.whitening is not None:
-        weights = np.diag(found.scores.whitening)
-    A = np.concatenate((rows.W[:, :, :-1], rows.y[:, :, None]), axis=2)
-    A = (A * (rows.scales * weights)[:, :, None]).reshape(-1, A.shape[2])
-    gram = A.T @ A
-    return solved(gram[:-1, :-1], gram[:-1, -1])

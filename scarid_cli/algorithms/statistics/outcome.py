@@ -179,7 +179,7 @@ def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -
     """
     theta = np.zeros(whole.own)
     theta[kept] = estimates
-    return Products.of(whole.compared, theta, delay, whole.model).evidence()
+    return Products.of(whole.compared, theta, delay, whole.model).usual
 
 
 def _problem(
