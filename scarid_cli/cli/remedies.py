@@ -69,7 +69,7 @@ def require_our_names(path: str, table: Table) -> None:
         return
     from scarid_cli.stages.wording import renamable  # which few logs need
 
-    if not renamable(table.columns):
+    if not (renamable(table.columns) or _described(table.columns)):
         return
     pipe = _pipe(path, given_words(["robot"]), WINDOW)
     counted = COUNTED_FROM_0 in table.columns
@@ -80,6 +80,17 @@ def require_our_names(path: str, table: Table) -> None:
         remedy=f"rename them with `{pipe.through('scarid convert')}`",
         column=COUNTED_FROM_0 if counted else "q1" if "t" in table.columns else "t",
     )
+
+
+def _described(columns: Collection[str]) -> bool:
+    """Whether the description of the robot that was given names some of these columns."""
+    robot = click.get_current_context().params.get("robot")
+    if not robot:
+        return False
+    from scarid_cli.algorithms.robots.reading import load  # a log with our names needs no robot
+
+    log = load(robot).log
+    return log is not None and not set(log.columns.values()).isdisjoint(columns)
 
 
 def _pipe(path: str, words: list[str], moved: Collection[str]) -> Pipe:
