@@ -86,7 +86,7 @@ def resolution(q: Array, motion: Motion, parts: list[Lowpassed], robot: Robot) -
     worst = int(np.argmax(shares))
     if not steps.any():
         return ok("resolution", "no steps in the positions")
-    listed = ", ".join(f"{step:.2g}" for step in steps)
+    listed = ", ".join(f"{step:.2g}" if step else "no steps" for step in steps)
     units = " or ".join(dict.fromkeys(joint.unit for joint in robot.joints))
     figure = f"{listed} {units}; noise {100.0 * shares[worst]:.2g} % of the acceleration"
     if shares[worst] <= NOISY:
