@@ -5,29 +5,33 @@
 The gauntlet compares torques of the model alone. If a robot has more than its model, parameters
 that make up for it are then called wrong. Here the prediction is compared with the true torque of
 another log under the same condition, at the true motion: that of the blind procedure (`blind`, a
-median in % of the torque, as a mean over the joints), and divided by that of the former default
+median in % of the torque, as a mean over the joints), with what it fitted beside the parameters,
+and divided by that of the former default
 (`/ default`, a geometric mean). `of the model` is the latter ratio as in the gauntlet.
 """
 
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 
 import numpy as np
 from conditions import CONDITIONS, Condition, log, robot_named, truth_of
 from gauntlet import blind, default, relative_error, torque_error
 
+from scarid_cli.algorithms.regression.rows import Rows, rows_of
+from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import concatenated, matrix
+from scarid_cli.stages.parameters import identified
 
 ROBOTS = ("scara2", "planar2-gravity")
 LACKING = ("load friction", "Stribeck friction", "cable pulls", "motor saturates")
 STEP = 10  # samples between those that are compared
 
 
-def needed(name: str, condition: Condition, seed: int) -> tuple[Array, Array]:
-    """The true regressor of another motion, and the torques (samples, joints) that it takes."""
-    robot = robot_named(name)
+def needed(robot: Robot, condition: Condition, seed: int) -> Rows:
+    """The rows of another motion, with its true derivatives and the torques that it takes."""
     joints = range(1, len(robot.joints) + 1)
     batches = log(robot, condition, seed + 10**6, truth=True).batches
     whole = concatenated(list(batches))
@@ -37,21 +41,20 @@ def needed(name: str, condition: Condition, seed: int) -> tuple[Array, Array]:
     )
     if condition.altered:
         tau = condition.altered(robot, (t[0], q, tau))[2]
-    motion = (np.ascontiguousarray(x[:, ::STEP]) for x in (q, dq, ddq))
-    return robot.regressor(*motion), tau[:, ::STEP].T
+    motion = np.ascontiguousarray(np.stack((q, dq, ddq, tau))[:, :, ::STEP])
+    return rows_of(robot, motion, np.arange(motion.shape[2]), STEP * float(t[0, 1] - t[0, 0]))
 
 
 def errors(name: str, condition: Condition, seed: int) -> Array:
     """The errors of the blind procedure and of the default: of the needed, and of the model's."""
     robot = robot_named(name)
     measured, truth = log(robot, condition, seed), truth_of(robot, condition)
-    W, tau = needed(name, condition, seed)
-    (batch,) = blind(name, measured)[0].batches
-    own = batch.column("estimate").to_numpy(zero_copy_only=False)
+    rows = needed(robot, condition, seed)
+    model = identified(blind(name, measured)[0], robot)
     found = []
-    for theta in (own, default(robot, measured)):
-        needs = relative_error(W @ theta - tau, tau)
-        found.append((needs, torque_error(name, truth, seed, theta)))
+    for one in (model, replace(model, theta=default(robot, measured), additions=())):
+        needs = relative_error(one.torques(rows).T - rows.y, rows.y)
+        found.append((needs, torque_error(name, truth, seed, one.theta)))
     return np.array(found)
 
 

@@ -143,7 +143,8 @@ def verdict(
         return of_wiring(steps)
     rows = in_step(rows, theta, model.delay, low_pass=model.low_pass)
     modelled = Model(robot, list(range(len(theta))))
-    sums = Products.of(with_ringing(rows, robot), theta, model=modelled)
+    wide = model.shapes.beside(rows) if model.additions else rows
+    sums = Products.of(with_ringing(wide, robot), theta, model=modelled)
     now = sums.usual
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)

@@ -10,8 +10,11 @@ import numpy as np
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.regression.information import weakest
+from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.additions import Addition, Shapes
+from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.outcome import Outcome
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
@@ -22,6 +25,7 @@ from scarid_cli.io.table import Metadata, Table, table_of
 
 EVIDENCE = "evidence"  # key of the metadata
 BIASES = "biases"  # key of the evidence
+ADDITIONS = "additions"  # key of the metadata
 
 
 @dataclass(frozen=True)
@@ -29,13 +33,26 @@ class Identified:
     """The content of a parameter table: the robot as it was identified, and its parameters.
 
     `theta` (parameters) are the estimates; `delay` [s] is the time by which the torques led the
-    motion, 0 if it was not fitted, and with `low_pass` they led as behind a low-pass.
+    motion, 0 if it was not fitted, and with `low_pass` they led as behind a low-pass. `additions`
+    are what the torques are beside the model.
     """
 
     robot: Robot
     theta: Array
     delay: float
     low_pass: bool = False
+    additions: tuple[Addition, ...] = ()
+
+    def torques(self, rows: Rows) -> Array:
+        """The predicted torques (joints, samples) of rows, without the delay."""
+        torques = self.robot.torques(rows.W, self.theta)
+        return torques + self.shapes.torques(rows).T if self.additions else torques
+
+    @property
+    def shapes(self) -> Shapes:
+        """The shapes of what the torques are beside the model."""
+        own = Model(self.robot, list(range(len(self.theta))))
+        return Shapes(self.additions, own, self.theta)
 
 
 def identified(table: Table, robot: Robot) -> Identified:
@@ -61,7 +78,8 @@ def identified(table: Table, robot: Robot) -> Identified:
     theta = values[: len(values) - len(velocities)]
     delay = float(table.meta.extra.get("delay") or 0.0)
     low_pass = bool(table.meta.extra.get("low_pass"))
-    return Identified(robot.with_stribeck(velocities), theta, delay, low_pass)
+    additions = tuple(Addition(**addition) for addition in table.meta.extra.get(ADDITIONS, []))
+    return Identified(robot.with_stribeck(velocities), theta, delay, low_pass, additions)
 
 
 @dataclass(frozen=True)
@@ -172,6 +190,8 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
     }
     if np.isfinite(found.evidence.score).all():
         extra[EVIDENCE] = stored(found.evidence, labels.names) | {BIASES: _biases(found, labels)}
+    if found.diagnostics.additions:
+        extra[ADDITIONS] = [asdict(addition) for addition in found.diagnostics.additions]
     if found.thin > 1:
         extra["thinned"] = found.thin
     if np.isfinite(found.covariance).all():

@@ -37,7 +37,7 @@ def predicted(
     parts = treated(table, models[0].robot, treatment, left_out=left_out)
     needed = reach(delay, table.period, low_pass=low_pass)
     for (batch, rows), around, own in _with_context(parts, needed):
-        torques = [model.robot.torques(around.W, model.theta) for model in models]
+        torques = [model.torques(around) for model in models]
         if delay:
             torques = [led(around, tau.T, delay, low_pass=low_pass).T for tau in torques]
         yield batch, rows, [np.ascontiguousarray(tau[:, own]) for tau in torques]

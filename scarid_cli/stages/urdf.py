@@ -69,10 +69,14 @@ def r2_before_and_after(
 
     Rows are treated as in `validate`.
     """
-    models = [
-        Identified(identified.robot, theta, identified.delay, identified.low_pass)
-        for theta in (identified.values, found.base)
-    ]
+    model = Identified(
+        identified.robot,
+        identified.values,
+        identified.delay,
+        identified.low_pass,
+        identified.additions,
+    )
+    models = [model, replace(model, theta=found.base)]
     found_r2 = ([joint.r2 for joint in own] for own in qualities(table, models, treatment))
     before, after = map(np.array, found_r2)
     return before, after

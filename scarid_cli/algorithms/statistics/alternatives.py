@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.regression.rows import Rows, runs
+from scarid_cli.algorithms.regression.rows import Rows, predicted, runs
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.terms import Mass, Term
 from scarid_cli.arrays import Array, Marks
@@ -106,30 +106,61 @@ def transmitted(term: Term) -> bool:
     return not (term.NEVER_NEGATIVE or term.NAME in BESIDE_FRICTION)
 
 
-def torque_columns(rows: Rows, model: Model | None, estimates: Array) -> dict[str, Array]:
-    """Further columns (samples, joints, columns) of each alternative for the torques.
+@dataclass(frozen=True)
+class Signals:
+    """What torques beyond the model depend on, each (samples, joints).
 
-    Friction of gears grows with the torque that they transmit, which only a model can tell.
+    `q`, `v` and `time` [s] from the start; `predicted` are the torques of the model, `transmitted`
+    those of it that pass through the gears, 0 without a model. `usual` (joints) are the speeds
+    by which velocities are scaled.
     """
-    q, v = rows.motion[0].T, rows.motion[1].T
-    time = np.broadcast_to(rows.h * (rows.at - rows.at[0])[:, None], v.shape)
-    predicted = rows.W @ estimates
-    usual = np.sqrt(np.mean(v**2, axis=0)) + 1e-300
-    columns = {
-        OFFSET: diagonal(np.ones_like(v)),
-        ASYMMETRY: diagonal(np.abs(v)),
-        STRIBECK: diagonal(np.sign(v) * np.exp(-((v / (FADED * usual)) ** 2))),
-        CURVATURE: diagonal(np.sign(v) * np.exp(-((v / usual) ** 2))),
-        SPRING: np.concatenate((diagonal(np.ones_like(q)), diagonal(q)), axis=2),
-        SATURATION: diagonal(predicted * np.abs(predicted)),
-        DRIFT: diagonal(time - time.mean(axis=0)),
-    }
-    if model:
-        own = np.flatnonzero(model.transmits)
-        columns[LOAD] = diagonal(np.sign(v) * np.abs(rows.W[:, :, own] @ estimates[own]))
-        tilt = model.tilted(rows.motion[0], estimates[: len(model.kept)])
-        if tilt is not None:
-            columns[TILT] = tilt
+
+    q: Array
+    v: Array
+    time: Array
+    predicted: Array
+    transmitted: Array
+    usual: Array
+
+    @classmethod
+    def of(
+        cls, rows: Rows, model: Model | None, estimates: Array, usual: Array | None = None
+    ) -> Signals:
+        """Those of the rows, at estimates of the first columns of W.
+
+        The usual speeds are by default the root mean squares of these rows.
+        """
+        q, v = rows.motion[0].T, rows.motion[1].T
+        time = np.broadcast_to(rows.h * (rows.at - rows.at[0])[:, None], v.shape)
+        if usual is None:
+            usual = np.sqrt(np.mean(v**2, axis=0)) + 1e-300
+        own = np.flatnonzero(model.transmits) if model else np.empty(0, dtype=np.int64)
+        torques = predicted(rows, estimates), rows.W[:, :, own] @ estimates[own]
+        return cls(q, v, time, *torques, usual)
+
+
+SHAPES: dict[str, Callable[[Signals], Array]] = {
+    OFFSET: lambda x: np.ones_like(x.v),
+    ASYMMETRY: lambda x: np.abs(x.v),
+    STRIBECK: lambda x: np.sign(x.v) * np.exp(-((x.v / (FADED * x.usual)) ** 2)),
+    CURVATURE: lambda x: np.sign(x.v) * np.exp(-((x.v / x.usual) ** 2)),
+    SPRING: lambda x: x.q,
+    SATURATION: lambda x: x.predicted * np.abs(x.predicted),
+    DRIFT: lambda x: x.time - x.time.mean(axis=0),
+    # Friction of gears grows with the torque that they transmit, which only a model can tell.
+    LOAD: lambda x: np.sign(x.v) * np.abs(x.transmitted),
+}
+
+
+def torque_columns(rows: Rows, model: Model | None, estimates: Array) -> dict[str, Array]:
+    """Further columns (samples, joints, columns) of each alternative for the torques."""
+    signals = Signals.of(rows, model, estimates)
+    shapes = {name: shape for name, shape in SHAPES.items() if model or name != LOAD}
+    columns = {name: diagonal(shape(signals)) for name, shape in shapes.items()}
+    columns[SPRING] = np.concatenate((columns[OFFSET], columns[SPRING]), axis=2)
+    tilt = model.tilted(rows.motion[0], estimates[: len(model.kept)]) if model else None
+    if tilt is not None:
+        columns[TILT] = tilt
     return columns
 
 

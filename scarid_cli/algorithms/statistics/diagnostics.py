@@ -13,6 +13,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.estimation import Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.statistics.additions import Addition
 from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.bursts import Interval, bursts_of
@@ -22,7 +23,7 @@ from scarid_cli.algorithms.statistics.consequences import (
     consequences,
     gain_sensitivities,
 )
-from scarid_cli.algorithms.statistics.effects import Effect, Trial, of_low_pass
+from scarid_cli.algorithms.statistics.effects import Effect, Explanation, Trial, of_low_pass
 from scarid_cli.algorithms.statistics.halves import Halves
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
@@ -49,7 +50,8 @@ class Diagnostics:
     change of the torque constant of a joint. `bursts` are the intervals that the model does not
     explain, counted from sample 0 of a record that is known as a whole. `halves` are the estimates
     of its halves, None if these do not determine them. `offsets` [N m or N] are those of the
-    torques of joints (from 0) that were fitted beside the parameters.
+    torques of joints (from 0) that were fitted beside the parameters, and `additions` what else
+    was. Each of the `explanations` alone explains all that the torques are beyond the model.
     """
 
     covariance: RobustCovariance | None
@@ -63,7 +65,9 @@ class Diagnostics:
     consequences: Consequences
     bursts: tuple[Interval, ...] = ()
     halves: Halves | None = None
+    explanations: tuple[Explanation, ...] = ()
     offsets: dict[int, float] = field(default_factory=dict)
+    additions: tuple[Addition, ...] = ()
 
 
 def diagnose(
@@ -76,6 +80,7 @@ def diagnose(
     model: Model | None = None,
     doubt: Array | None = None,
     gain_error: float = 0.0,
+    suspected: frozenset[str] = frozenset(),
 ) -> Diagnostics:
     """Diagnose an estimation from its rows.
 
@@ -84,7 +89,8 @@ def diagnose(
     regressor; the others are nuisance parameters. `modelled` (columns) are the estimates that
     predict torques later, by which the residuals of the joints are stated. `doubt` (own) is how far
     the estimates may be off because torques may lead as behind a low-pass or as behind a delay.
-    `gain_error` is the relative standard error of the torque constants.
+    `gain_error` is the relative standard error of the torque constants. Intervals allow for the
+    alternatives that are `suspected` even where they are not significant.
     """
     noise = found.noise
     white = noise.rows(rows) if noise else rows
@@ -93,7 +99,7 @@ def diagnose(
     weights = _weights(found, rows.y.shape[1])
     covariance, blocks, errors = _noise_errors(white, found, record, fitted)
     estimates = found.fit.estimates
-    trial = Trial.of(rows, own, weights, estimates, model=model, noise=noise)
+    trial = Trial.of(rows, own, weights, estimates, model=model, noise=noise, suspected=suspected)
     longer = trial.longer(white)
     scatter = errors * longer
     effects = trial.effects()
@@ -121,6 +127,7 @@ def diagnose(
         ),
         bursts=() if record else bursts_of(rows, trimmed(whole)),
         halves=trial.halves(longer),
+        explanations=trial.explanations(effects) if model and trial.plain else (),
     )
 
 

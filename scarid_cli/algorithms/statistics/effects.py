@@ -12,6 +12,7 @@ from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
+    SHAPES,
     STRIBECK,
     Model,
     away_from_reversals,
@@ -38,7 +39,8 @@ class Effect:
     `apart` is how far they move because of the alternative alone, on rows that are otherwise
     treated alike. `amounts` are the statistics that show whether there is an effect, with their
     `noise`, from so many `blocks`: the estimates of the further columns of an alternative (nan for
-    those that are not in it), or else how far the parameters move.
+    those that are not in it), or else how far the parameters move. One that is `suspected` counts
+    whether it is significant or not.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Effect:
     amounts: Array
     noise: Array
     blocks: int
+    suspected: bool = False
 
     @cached_property
     def ratios(self) -> Array:
@@ -73,10 +76,15 @@ class Effect:
         """Whether noise would have such an effect with less than this probability."""
         return self.largest > self.threshold(level)
 
+    def joints(self, level: float, count: int) -> list[int]:
+        """The joints (from 0), of so many, of which a column is significant."""
+        there = np.flatnonzero(self.ratios > self.threshold(level))
+        return sorted({k % count for k in there.tolist()})
+
     @property
     def counts(self) -> bool:
         """Whether the intervals allow for it."""
-        return self.name in ALWAYS or self.significant()
+        return self.suspected or self.name in ALWAYS or self.significant()
 
     @property
     def bias(self) -> Array:
@@ -108,12 +116,27 @@ def of_low_pass(moved: Array) -> Effect:
 
 
 @dataclass(frozen=True)
+class Explanation:
+    """The alternative, and the joints (from 0) of whose torques it alone explains what is left."""
+
+    name: str
+    joints: tuple[int, ...]
+
+
+def clear(effects: Sequence[Effect]) -> list[Effect]:
+    """Those that are significant among so many, of which one is by chance more often than alone."""
+    level = CERTAIN / max(1, len(effects))
+    return [effect for effect in effects if effect.significant(level)]
+
+
+@dataclass(frozen=True)
 class Trial:
     """The rows on which alternatives are tried, in so many blocks of these numbers.
 
     The first `own` columns of W belong to the robot, whose `model` is None if they are not those of
     its regressor. Joints are weighted by `weights`, and rows are whitened by the `noise`, if there
-    is one: torques need only those in these `places`.
+    is one: torques need only those in these `places`. The alternatives that are `suspected` count
+    even where they are not significant.
     """
 
     rows: Rows
@@ -125,6 +148,7 @@ class Trial:
     count: int
     noise: ColouredNoise | None
     places: Numbers
+    suspected: frozenset[str] = frozenset()
 
     @classmethod
     def of(
@@ -136,12 +160,13 @@ class Trial:
         *,
         model: Model | None = None,
         noise: ColouredNoise | None = None,
+        suspected: frozenset[str] = frozenset(),
     ) -> Trial:
         """From the rows of an estimation, and its estimates."""
         few = thinned(rows)
         places = noise.kept(few) if noise else np.arange(few.samples)
         numbers = block_numbers(few.at, few.h)
-        return cls(few, own, weights, estimates, model, *numbers, noise, places)
+        return cls(few, own, weights, estimates, model, *numbers, noise, places, suspected)
 
     @cached_property
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
@@ -185,6 +210,25 @@ class Trial:
             same.insert(0, (away, solved))
         return (*found, *self.signals(self.plain, same))
 
+    def explanations(self, effects: Sequence[Effect]) -> tuple[Explanation, ...]:
+        """The effects each of which alone explains all that the torques are beyond the model.
+
+        The clearest one comes first. With its columns, of the joints where it is significant, no
+        other alternative for the torques is significant.
+        """
+        products, places = self.beyond
+        joints, level = self.rows.y.shape[1], CERTAIN / max(1, len(effects))
+        possible = [effect for effect in clear(effects) if effect.name in SHAPES]
+        found = []
+        for effect in sorted(possible, key=lambda x: -x.largest / x.threshold(level)):
+            chosen = effect.joints(level, joints)
+            columns = [c for k, c in enumerate(places[effect.name]) if k % joints in chosen]
+            at = products.independent(columns)
+            wider = products.solved(at)
+            if wider and not clear(self.beside(products, places, wider, wider, at)):
+                found.append(Explanation(effect.name, tuple(chosen)))
+        return tuple(found)
+
     def products(
         self, scales: Array, further: dict[str, Array]
     ) -> tuple[Products, dict[str, list[int]]]:
@@ -212,13 +256,21 @@ class Trial:
         return Products.of(A, self.number[places], self.count, rows.W.shape[2])
 
     def beside(
-        self, products: Products, places: dict[str, list[int]], plain: Solved, same: Solved
+        self,
+        products: Products,
+        places: dict[str, list[int]],
+        plain: Solved,
+        same: Solved,
+        given: Sequence[int] = (),
     ) -> list[Effect]:
-        """The effects of the further columns of each name that are not in the model already."""
+        """The effects of the further columns of each name that are not in the model already.
+
+        The further columns that are `given` are in it.
+        """
         found = []
         for name, columns in places.items():
-            new = products.independent(columns)
-            solved = products.solved(new) if new else None
+            new = [c for c in products.independent([*given, *columns]) if c not in given]
+            solved = products.solved([*given, *new]) if new else None
             if solved:
                 tested = [new.index(c) if c in new else None for c in columns]
                 found.append(self.effect(name, plain, same, solved, tested))
@@ -264,4 +316,5 @@ class Trial:
             there = [k for k, column in enumerate(tested) if column is not None]
             at = [given + column for column in tested if column is not None]
             amounts[there], noise[there] = other.whole[at], jackknifed(other.deviations[:, at])
-        return Effect(name, moved, errors, apart, amounts, noise, self.count)
+        suspected = name in self.suspected
+        return Effect(name, moved, errors, apart, amounts, noise, self.count, suspected)

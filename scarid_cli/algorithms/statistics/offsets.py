@@ -7,6 +7,7 @@ parameter, as the delay of the torques is: a property of the log.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -23,9 +24,17 @@ CERTAIN = 0.01  # probability of calling any of the offsets one that is none
 NOTHING = 1e-4  # of a torque: no sensor shows as little
 
 
-def offsets(rows: Rows, robot: Robot) -> tuple[int, ...]:
-    """The joints (from 0) whose torques clearly have an offset that the robot has not."""
-    known = {p.term.joints[0] - 1 for p in robot.parameters if isinstance(p.term, Offset)}
+def constant_joints(robot: Robot) -> set[int]:
+    """The joints (from 0) for which the robot has an offset."""
+    return {p.term.joints[0] - 1 for p in robot.parameters if isinstance(p.term, Offset)}
+
+
+def offsets(rows: Rows, robot: Robot, others: Collection[int] = ()) -> tuple[int, ...]:
+    """The joints (from 0) whose torques clearly have an offset that the robot has not.
+
+    The `others` have a column for it already.
+    """
+    known = {*constant_joints(robot), *others}
     joints = tuple(j for j in range(rows.y.shape[1]) if j not in known)
     if not joints or not rows.h > 0.0:
         return ()

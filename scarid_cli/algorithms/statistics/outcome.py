@@ -13,14 +13,16 @@ from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableErr
 from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.consequences import few
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
+from scarid_cli.algorithms.statistics.effects import Explanation, clear
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
-from scarid_cli.algorithms.statistics.offsets import offsets, with_offsets
+from scarid_cli.algorithms.statistics.offsets import constant_joints, offsets, with_offsets
 from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.arrays import Array, median
 
@@ -32,8 +34,9 @@ class Problem:
     The first `own` columns of W belong to the robot's parameters, the others to nuisance
     parameters. `record` has the blocks of all rows if `rows` are a subsample. `model` is None if
     the columns of W are not those of the robot's regressor. The first nuisance parameters are the
-    offsets of the torques of some joints, `offsets` (from 0). `lead` is that of the torques, None
-    if it was not fitted; what remains of it is the last parameter, if the log shows it.
+    `additions`, then the offsets of the torques of some joints, `offsets` (from 0). `lead` is that
+    of the torques, None if it was not fitted; what remains of it is the last parameter, if the log
+    shows it.
     """
 
     rows: Rows
@@ -43,6 +46,7 @@ class Problem:
     model: Model | None
     lead: Lead | None = None
     offsets: tuple[int, ...] = ()
+    additions: tuple[Addition, ...] = ()
 
     @property
     def delayed(self) -> bool:
@@ -56,12 +60,16 @@ class Problem:
 
     @property
     def modelled(self) -> Array:
-        """The estimates without nuisance parameters, but for the delay: what predicts torques."""
+        """The estimates that predict torques: of nuisance parameters the delay, and what lasts."""
         estimates = self.found.fit.estimates.copy()
         estimates[self.own : -1 if self.delayed else None] = 0.0
+        for k, addition in enumerate(self.additions, start=self.own):
+            estimates[k] = addition.size if addition.lasts else 0.0
         return estimates
 
-    def diagnostics(self, gain_error: float) -> Diagnostics:
+    def diagnostics(
+        self, gain_error: float, suspected: frozenset[str] = frozenset()
+    ) -> Diagnostics:
         doubt = self.lead.doubt if self.lead else None
         found = diagnose(
             self.rows,
@@ -72,15 +80,18 @@ class Problem:
             model=self.model,
             doubt=None if doubt is None else doubt[: self.own],
             gain_error=gain_error,
+            suspected=suspected,
         )
-        sizes = self.found.fit.estimates[self.own :].tolist()
-        return replace(found, offsets=dict(zip(self.offsets, sizes, strict=False)))
+        sizes = self.found.fit.estimates[self.own + len(self.additions) :].tolist()
+        offsets = dict(zip(self.offsets, sizes, strict=False))
+        return replace(found, offsets=offsets, additions=self.additions)
 
     @property
     def compared(self) -> Rows:
         """The rows without the columns that a comparison with other logs has by itself."""
-        own = self.own + len(self.offsets)
-        kept = [*range(self.own), *range(own, self.rows.W.shape[2] - self.delayed)]
+        start = self.own + len(self.additions)
+        dropped = range(start, start + len(self.offsets))
+        kept = [k for k in range(self.rows.W.shape[2] - self.delayed) if k not in dropped]
         return replace(self.rows, W=np.ascontiguousarray(self.rows.W[:, :, kept]))
 
     def reduced(self, to: Essential) -> Problem:
@@ -140,8 +151,9 @@ def outcome(
 
     The treatment says whether the delay of the torques is fitted too, and parameters are dropped.
     """
-    whole = _problem(estimator, initial, end, robot, align=treatment.align)
-    problem, diagnostics = whole, whole.diagnostics(treatment.gain_error)
+    given = _Given(estimator, initial, end, robot, align=treatment.align)
+    whole, diagnostics = _explained(given, treatment.gain_error)
+    problem = whole
     covariance, reduction = diagnostics.matrix, None
     thin = end.subsample.thin if treatment.align else 1
     if treatment.essential:
@@ -182,12 +194,57 @@ def _evidence(whole: Problem, estimates: Array, kept: list[int], delay: float) -
     return Products.of(whole.compared, theta, delay, whole.model).usual
 
 
-def _problem(
-    estimator: BaseEstimator, initial: Array, end: Checkpoint, robot: Robot, *, align: bool
-) -> Problem:
+@dataclass(frozen=True)
+class _Given:
+    """What a problem is made from."""
+
+    estimator: BaseEstimator
+    initial: Array
+    end: Checkpoint
+    robot: Robot
+    align: bool
+
+
+def _explained(given: _Given, gain_error: float) -> tuple[Problem, Diagnostics]:
+    """The problem with what alone explains all that the model does not, and its diagnostics.
+
+    If nothing does, it is the plain one.
+    """
+    plain = _problem(given)
+    diagnostics = plain.diagnostics(gain_error)
+    if not (given.align and plain.model):
+        return plain, diagnostics
+    suspected = frozenset(effect.name for effect in clear(diagnostics.effects))
+    for explanation in diagnostics.explanations:
+        try:
+            wider = _problem(given, _shapes(given, plain, plain.model, explanation))
+        except NotIdentifiableError:
+            continue
+        found = wider.diagnostics(gain_error, suspected)
+        if all(x.possible for x in wider.additions) and not clear(found.effects):
+            return wider, found
+    return plain, diagnostics
+
+
+def _shapes(given: _Given, plain: Problem, model: Model, explanation: Explanation) -> Shapes:
+    """The shapes of what explains the torques, with the estimates beside it."""
+    rows = thinned(plain.rows)
+    constant = {*constant_joints(given.robot), *plain.offsets}
+    additions = of_explanation(explanation, rows, constant)
+    first = Shapes(additions, model, plain.found.fit.estimates[: plain.own])
+    wide = first.beside(rows)
+    start = np.append(given.initial, np.zeros(wide.W.shape[2] - plain.own))
+    estimator = given.estimator.widened(len(start) - plain.own).quick()
+    return replace(first, theta=estimator.of_rows(wide, start).fit.estimates[: plain.own])
+
+
+def _problem(given: _Given, shapes: Shapes | None = None) -> Problem:
+    """The problem, with these shapes of torques beside the model."""
+    estimator, initial, end, robot = given.estimator, given.initial, given.end, given.robot
     rows, lead, joints = end.subsample.rows(), None, tuple[int, ...]()
-    if align:
-        joints = offsets(rows, robot)
+    if given.align:
+        rows = shapes.beside(rows) if shapes else rows
+        joints = offsets(rows, robot, shapes.constant if shapes else ())
         fitted = _aligned(estimator, initial, with_offsets(rows, joints), robot)
         rows, found, own, lead = fitted.rows, fitted.found, len(initial), fitted.lead
     else:
@@ -202,7 +259,9 @@ def _problem(
         per_row = factor**end.subsample.thin
         rows, record = faded(rows, per_row), record and record.faded(factor)
         found = replace(found, scores=replace(found.scores, forgetting=per_row))
-    return Problem(rows, found, own, record, model, lead, joints)
+    sizes = found.fit.estimates[own:]
+    additions = shapes.sized(sizes) if shapes else ()
+    return Problem(rows, found, own, record, model, lead, joints, additions)
 
 
 def _aligned(estimator: BaseEstimator, initial: Array, rows: Rows, robot: Robot) -> Aligned:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.additions import Addition
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
     CURVATURE,
@@ -76,8 +77,7 @@ def errors_in(size: float) -> str:
     return f"{size:.2g} standard errors" if size < 1000.0 else "over 1000 standard errors"
 
 
-def offsets_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
-    """The offsets that were fitted beside the parameters."""
+def _offsets(diagnostics: Diagnostics, robot: Robot) -> list[str]:
     found = [
         f"{x:.3g} {robot.joints[j].torque_unit} at joint {j + 1}"
         for j, x in diagnostics.offsets.items()
@@ -88,6 +88,33 @@ def offsets_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
         "offsets of the torques, for which the robot has no term, were fitted as well: "
         f"{listed(found)} (add the term offset to the robot)"
     ]
+
+
+def additions_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
+    """What was fitted beside the parameters, with the terms to add."""
+    notes = _offsets(diagnostics, robot)
+    for name in dict.fromkeys(addition.name for addition in diagnostics.additions):
+        if name == OFFSET:  # where a spring is slack
+            continue
+        added = [addition for addition in diagnostics.additions if addition.name == name]
+        joints = joints_named(addition.joint + 1 for addition in added)
+        sizes = listed([_size(addition, robot) for addition in added])
+        notes.append(f"{ADVICE[name].format(joints=joints)}; fitted as well: {sizes}")
+    return notes
+
+
+def _size(addition: Addition, robot: Robot) -> str:
+    """`0.0993 N m/rad`, or `0.02 of this torque`."""
+    joint = robot.joints[addition.joint]
+    torque = joint.torque_unit
+    units = {
+        LOAD: "of this torque",
+        ASYMMETRY: f"{torque} s/{joint.unit}",
+        SPRING: f"{torque}/{joint.unit}",
+        SATURATION: f"per {torque}",
+        DRIFT: f"{torque}/s",
+    }
+    return f"{addition.size:.3g} {units.get(addition.name, torque)}"
 
 
 def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> list[str]:
@@ -111,16 +138,16 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> li
     wide = [name for name, x in zip(names, _wide(best, least), strict=True) if x]
     allow = "interval" if len(wide) == 1 else "intervals"
     verb = "allows" if len(wide) == 1 else "allow"
-    advice = ADVICE[best.name].format_map(_amounts(best, robot, best.threshold(level)))
+    advice = ADVICE[best.name].format_map(_amounts(best, robot, level))
     return [f"{advice}; the {allow} of {listed(wide)} {verb} for it"]
 
 
-def _amounts(effect: Effect, robot: Robot, threshold: float) -> dict[str, str]:
+def _amounts(effect: Effect, robot: Robot, level: float) -> dict[str, str]:
     """What the advice on an alternative names: the joints of it, its zeros or its gravity."""
     if effect.name == TILT and robot.body:
         return {"gravity": _vector(tilted(np.array(robot.body.gravity), effect.amounts))}
     count = len(robot.joints)
-    found = sorted({k % count for k in np.flatnonzero(effect.ratios > threshold).tolist()})
+    found = effect.joints(level, count)
     texts = {"joints": joints_named(j + 1 for j in found) if found else ""}
     if effect.name == ZEROS:
         texts["zeros"] = listed([f"joint {j + 1} is at {_zero(effect, robot, j)}" for j in found])

@@ -16,12 +16,12 @@ from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.parallel import SIGNALS
 from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.algorithms.statistics.sentences import (
+    additions_of,
     changed,
     errors_in,
     joints_named,
     listed,
     notes_of,
-    offsets_of,
     percents,
 )
 from scarid_cli.arrays import Array
@@ -108,7 +108,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     if wrong and evidence.unexplained and not evidence.failed:
         wrong = [evidence.unexplained, *wrong]
     notes = notes_of(evidence.names, evidence.diagnostics, robot)
-    notes = [*_inertia_unknown(evidence), *offsets_of(evidence.diagnostics, robot), *notes]
+    notes = [*_inertia_unknown(evidence), *additions_of(evidence.diagnostics, robot), *notes]
     if not wrong and any(x.end - x.start >= LASTING for x in evidence.diagnostics.bursts):
         notes = [*([evidence.unexplained] if evidence.unexplained else []), *notes]
     return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes), bool(bias))

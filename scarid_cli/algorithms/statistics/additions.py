@@ -1,0 +1,107 @@
+"""What the torques of a log clearly are beyond the model, fitted beside the parameters.
+
+If one alternative (alternatives.py) explains all that the torques are beyond the model, it is
+fitted with it: friction that grows with the load, for example, would otherwise make masses larger.
+It is no parameter, because the robot has no such term, but goes with them where torques are
+predicted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.statistics.alternatives import (
+    DRIFT,
+    LOAD,
+    OFFSET,
+    SHAPES,
+    SPRING,
+    Model,
+    Signals,
+)
+from scarid_cli.algorithms.statistics.effects import Explanation
+from scarid_cli.arrays import Array
+
+
+@dataclass(frozen=True)
+class Addition:
+    """A torque of a joint (from 0): `size` times one of the SHAPES, whose name it has.
+
+    `usual` [rad/s or m/s] is the speed by which the shape scales velocities.
+    """
+
+    name: str
+    joint: int
+    usual: float
+    size: float = np.nan
+
+    @property
+    def lasts(self) -> bool:
+        """Whether it belongs to the robot, and not to one log."""
+        return self.name != DRIFT
+
+    @property
+    def possible(self) -> bool:
+        """Whether there is such a thing: friction takes a part of the load away."""
+        return self.name != LOAD or 0.0 < self.size < 1.0
+
+
+def of_explanation(
+    explanation: Explanation, rows: Rows, constant: Collection[int]
+) -> tuple[Addition, ...]:
+    """The additions of an explanation. The joints that are `constant` have an offset already.
+
+    A spring is slack somewhere, which takes an offset.
+    """
+    names = (OFFSET, SPRING) if explanation.name == SPRING else (explanation.name,)
+    usual = np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
+    return tuple(
+        Addition(name, j, float(usual[j]))
+        for name in names
+        for j in explanation.joints
+        if name != OFFSET or j not in constant
+    )
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """The shapes of additions, as they are with the parameters `theta` of the model."""
+
+    additions: Sequence[Addition]
+    model: Model
+    theta: Array
+
+    @property
+    def constant(self) -> list[int]:
+        """The joints (from 0) that have an offset."""
+        return [addition.joint for addition in self.additions if addition.name == OFFSET]
+
+    def beside(self, rows: Rows) -> Rows:
+        """The rows with the shapes as further columns."""
+        return replace(rows, W=np.concatenate((rows.W, self.columns(rows)), axis=2))
+
+    def columns(self, rows: Rows) -> Array:
+        """The shapes (samples, joints, additions)."""
+        usual = np.ones(rows.y.shape[1])
+        for addition in self.additions:
+            usual[addition.joint] = addition.usual
+        signals = Signals.of(rows, self.model, self.theta, usual)
+        columns = np.zeros((*rows.y.shape, len(self.additions)))
+        for k, addition in enumerate(self.additions):
+            j = addition.joint
+            columns[:, j, k] = SHAPES[addition.name](signals)[:, j]
+        return columns
+
+    def torques(self, rows: Rows) -> Array:
+        """The torques (samples, joints) of the additions that belong to the robot."""
+        sizes = [addition.size if addition.lasts else 0.0 for addition in self.additions]
+        return np.asarray(self.columns(rows) @ np.array(sizes))
+
+    def sized(self, sizes: Array) -> tuple[Addition, ...]:
+        """The additions, with the first of these sizes."""
+        pairs = zip(self.additions, sizes.tolist(), strict=False)
+        return tuple(replace(addition, size=size) for addition, size in pairs)
