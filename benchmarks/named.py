@@ -16,13 +16,12 @@ from conditions import CONDITIONS, UNSEEN, log, robot_named
 from gauntlet import blind
 
 from scarid_cli.algorithms.statistics.alternatives import (
-    CURVATURE,
+    DECAYED,
     DRIFT,
     LOAD,
     OFFSET,
     SATURATION,
     SPRING,
-    STRIBECK,
 )
 from scarid_cli.algorithms.statistics.parallel import ENCODERS
 from scarid_cli.algorithms.statistics.sentences import ADVICE
@@ -30,7 +29,7 @@ from scarid_cli.algorithms.statistics.sentences import ADVICE
 LACKING = {
     "clean": (),
     "load friction": (LOAD,),
-    "Stribeck friction": (STRIBECK, CURVATURE),
+    "Stribeck friction": (*DECAYED,),
     "cable pulls": (SPRING,),
     "motor saturates": (SATURATION,),
     "torque drifts": (DRIFT,),

@@ -23,7 +23,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     Model,
     Signals,
 )
-from scarid_cli.algorithms.statistics.effects import Explanation
+from scarid_cli.algorithms.statistics.explanations import Explanation
 from scarid_cli.arrays import Array
 
 
@@ -55,16 +55,11 @@ def of_explanation(
 ) -> tuple[Addition, ...]:
     """The additions of an explanation. The joints that are `constant` have an offset already.
 
-    A spring is slack somewhere, which takes an offset.
+    A spring is slack somewhere, so that it takes an offset.
     """
-    names = (OFFSET, SPRING) if explanation.name == SPRING else (explanation.name,)
     usual = np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
-    return tuple(
-        Addition(name, j, float(usual[j]))
-        for name in names
-        for j in explanation.joints
-        if name != OFFSET or j not in constant
-    )
+    slack = {(OFFSET, j) for name, j in explanation if name == SPRING and j not in constant}
+    return tuple(Addition(name, j, float(usual[j])) for name, j in sorted(slack | explanation))
 
 
 @dataclass(frozen=True)

@@ -19,11 +19,14 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.terms import Mass, Term
 from scarid_cli.arrays import Array, Marks
 
-OFFSET, ASYMMETRY, STRIBECK, CURVATURE = "offset", "asymmetry", "Stribeck", "curvature"
-LOAD, SPRING, SATURATION, DRIFT, TILT = "load", "spring", "saturation", "drift", "tilt"
-TORQUES = (OFFSET, ASYMMETRY, STRIBECK, CURVATURE, LOAD, SPRING, SATURATION, DRIFT, TILT)
+OFFSET, ASYMMETRY, LOAD, SPRING = "offset", "asymmetry", "load", "spring"
+SATURATION, DRIFT, TILT = "saturation", "drift", "tilt"
+SLOW, STRIBECK, CURVATURE = "slow friction", "Stribeck", "curvature"
+# Of the root-mean-square velocity: where the friction of slow motion has decayed. Together the
+# three are a curve of friction over the speed.
+DECAYED = {SLOW: 0.1, STRIBECK: 0.3, CURVATURE: 1.0}
+TORQUES = (OFFSET, ASYMMETRY, *DECAYED, LOAD, SPRING, SATURATION, DRIFT, TILT)
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
-FADED = 0.3  # of the root-mean-square velocity: where the Stribeck effect has decayed
 BESIDE_FRICTION = ("offset", "stribeck")  # terms that are not friction alone, but go with it
 
 
@@ -138,12 +141,17 @@ class Signals:
         torques = predicted(rows, estimates), rows.W[:, :, own] @ estimates[own]
         return cls(q, v, time, *torques, usual)
 
+    def friction(self, decayed: float) -> Array:
+        """Friction that has decayed at this part of the usual speed."""
+        return np.asarray(np.sign(self.v) * np.exp(-((self.v / (decayed * self.usual)) ** 2)))
+
 
 SHAPES: dict[str, Callable[[Signals], Array]] = {
     OFFSET: lambda x: np.ones_like(x.v),
     ASYMMETRY: lambda x: np.abs(x.v),
-    STRIBECK: lambda x: np.sign(x.v) * np.exp(-((x.v / (FADED * x.usual)) ** 2)),
-    CURVATURE: lambda x: np.sign(x.v) * np.exp(-((x.v / x.usual) ** 2)),
+    SLOW: lambda x: x.friction(DECAYED[SLOW]),
+    STRIBECK: lambda x: x.friction(DECAYED[STRIBECK]),
+    CURVATURE: lambda x: x.friction(DECAYED[CURVATURE]),
     SPRING: lambda x: x.q,
     SATURATION: lambda x: x.predicted * np.abs(x.predicted),
     DRIFT: lambda x: x.time - x.time.mean(axis=0),

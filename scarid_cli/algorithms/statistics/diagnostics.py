@@ -23,7 +23,8 @@ from scarid_cli.algorithms.statistics.consequences import (
     consequences,
     gain_sensitivities,
 )
-from scarid_cli.algorithms.statistics.effects import Effect, Explanation, Trial, of_low_pass
+from scarid_cli.algorithms.statistics.effects import Effect, Trial, of_low_pass
+from scarid_cli.algorithms.statistics.explanations import Explanation, explanations
 from scarid_cli.algorithms.statistics.halves import Halves
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
@@ -127,7 +128,7 @@ def diagnose(
         ),
         bursts=() if record else bursts_of(rows, trimmed(whole)),
         halves=trial.halves(longer),
-        explanations=trial.explanations(effects) if model and trial.plain else (),
+        explanations=explanations(trial, effects) if model and trial.plain else (),
     )
 
 

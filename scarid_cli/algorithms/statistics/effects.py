@@ -12,7 +12,6 @@ from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
-    SHAPES,
     STRIBECK,
     Model,
     away_from_reversals,
@@ -115,14 +114,6 @@ def of_low_pass(moved: Array) -> Effect:
     return Effect(LOW_PASS, moved, none, moved, amounts=none, noise=none, blocks=2)
 
 
-@dataclass(frozen=True)
-class Explanation:
-    """The alternative, and the joints (from 0) of whose torques it alone explains what is left."""
-
-    name: str
-    joints: tuple[int, ...]
-
-
 def clear(effects: Sequence[Effect]) -> list[Effect]:
     """Those that are significant among so many, of which one is by chance more often than alone."""
     level = CERTAIN / max(1, len(effects))
@@ -209,25 +200,6 @@ class Trial:
             found.append(self.effect(REVERSALS, self.plain, self.plain, solved))
             same.insert(0, (away, solved))
         return (*found, *self.signals(self.plain, same))
-
-    def explanations(self, effects: Sequence[Effect]) -> tuple[Explanation, ...]:
-        """The effects each of which alone explains all that the torques are beyond the model.
-
-        The clearest one comes first. With its columns, of the joints where it is significant, no
-        other alternative for the torques is significant.
-        """
-        products, places = self.beyond
-        joints, level = self.rows.y.shape[1], CERTAIN / max(1, len(effects))
-        possible = [effect for effect in clear(effects) if effect.name in SHAPES]
-        found = []
-        for effect in sorted(possible, key=lambda x: -x.largest / x.threshold(level)):
-            chosen = effect.joints(level, joints)
-            columns = [c for k, c in enumerate(places[effect.name]) if k % joints in chosen]
-            at = products.independent(columns)
-            wider = products.solved(at)
-            if wider and not clear(self.beside(products, places, wider, wider, at)):
-                found.append(Explanation(effect.name, tuple(chosen)))
-        return tuple(found)
 
     def products(
         self, scales: Array, further: dict[str, Array]

@@ -15,13 +15,14 @@ from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
-from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.statistics.alternatives import TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.consequences import few
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
-from scarid_cli.algorithms.statistics.effects import Explanation, clear
+from scarid_cli.algorithms.statistics.effects import clear
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
+from scarid_cli.algorithms.statistics.explanations import Explanation
 from scarid_cli.algorithms.statistics.offsets import constant_joints, offsets, with_offsets
 from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.arrays import Array, median
@@ -208,7 +209,8 @@ class _Given:
 def _explained(given: _Given, gain_error: float) -> tuple[Problem, Diagnostics]:
     """The problem with what alone explains all that the model does not, and its diagnostics.
 
-    If nothing does, it is the plain one.
+    If nothing does, it is the plain one. What was significant without it must not be so with it,
+    nor another alternative for the torques.
     """
     plain = _problem(given)
     diagnostics = plain.diagnostics(gain_error)
@@ -221,7 +223,8 @@ def _explained(given: _Given, gain_error: float) -> tuple[Problem, Diagnostics]:
         except NotIdentifiableError:
             continue
         found = wider.diagnostics(gain_error, suspected)
-        if all(x.possible for x in wider.additions) and not clear(found.effects):
+        left = {effect.name for effect in clear(found.effects)}
+        if all(x.possible for x in wider.additions) and not left & {*suspected, *TORQUES}:
             return wider, found
     return plain, diagnostics
 

@@ -11,10 +11,12 @@ from scarid_cli.algorithms.statistics.additions import Addition
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
     CURVATURE,
+    DECAYED,
     DRIFT,
     LOAD,
     OFFSET,
     SATURATION,
+    SLOW,
     SPRING,
     STRIBECK,
     TILT,
@@ -26,13 +28,16 @@ from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, ZERO
 from scarid_cli.arrays import Array, Marks
 
 NAMED = 2  # estimates whose change is written out
+DECREASES = (
+    "friction of {joints} decreases with speed (add Stribeck friction with --estimator separable)"
+)
 ADVICE = {
     OFFSET: "the torque of {joints} has an offset that the model lacks (add the term offset to the "
     "robot)",
     ASYMMETRY: "friction of {joints} differs between the two directions (add the terms "
     "viscous-forward and viscous-backward to the robot)",
-    STRIBECK: "friction of {joints} decreases with speed (add Stribeck friction with --estimator "
-    "separable)",
+    SLOW: DECREASES,
+    STRIBECK: DECREASES,
     CURVATURE: "friction of {joints} is not the sum of Coulomb and viscous friction (try Stribeck "
     "friction with --estimator separable)",
     LOAD: "friction of {joints} grows with the transmitted torque, for which there is no term",
@@ -93,13 +98,14 @@ def _offsets(diagnostics: Diagnostics, robot: Robot) -> list[str]:
 def additions_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
     """What was fitted beside the parameters, with the terms to add."""
     notes = _offsets(diagnostics, robot)
-    for name in dict.fromkeys(addition.name for addition in diagnostics.additions):
-        if name == OFFSET:  # where a spring is slack
-            continue
-        added = [addition for addition in diagnostics.additions if addition.name == name]
-        joints = joints_named(addition.joint + 1 for addition in added)
-        sizes = listed([_size(addition, robot) for addition in added])
-        notes.append(f"{ADVICE[name].format(joints=joints)}; fitted as well: {sizes}")
+    added = [x for x in diagnostics.additions if x.name != OFFSET]  # where a spring is slack
+    if added:
+        kind = CURVATURE if added[0].name in DECAYED else added[0].name
+        joints = joints_named(sorted({addition.joint + 1 for addition in added}))
+        what = "a curve over the speed was fitted as well"
+        if kind != CURVATURE:
+            what = f"fitted as well: {listed([_size(addition, robot) for addition in added])}"
+        notes.append(f"{ADVICE[kind].format(joints=joints)}; {what}")
     return notes
 
 
