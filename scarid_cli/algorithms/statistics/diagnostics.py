@@ -6,6 +6,7 @@ everything else from a subsample if the record is long.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -82,6 +83,7 @@ def diagnose(
     doubt: Array | None = None,
     gain_error: float = 0.0,
     suspected: frozenset[str] = frozenset(),
+    curves: Collection[int] = (),
 ) -> Diagnostics:
     """Diagnose an estimation from its rows.
 
@@ -91,7 +93,8 @@ def diagnose(
     predict torques later, by which the residuals of the joints are stated. `doubt` (own) is how far
     the estimates may be off because torques may lead as behind a low-pass or as behind a delay.
     `gain_error` is the relative standard error of the torque constants. Intervals allow for the
-    alternatives that are `suspected` even where they are not significant.
+    alternatives that are `suspected` even where they are not significant, and for any curve of the
+    friction of the joints (from 0) of `curves`.
     """
     noise = found.noise
     white = noise.rows(rows) if noise else rows
@@ -107,7 +110,10 @@ def diagnose(
     if doubt is not None:
         effects = (*effects, of_low_pass(doubt))
     gains = gain_sensitivities(fitted.total, weights)[:, :own]
-    stated = _stated(found.fit.part(slice(own)), scatter[:own], effects, gain_error * gains)
+    known = scatter[:own]
+    if curves:
+        known = np.maximum(known, trial.errors_with_curves(curves))
+    stated = _stated(found.fit.part(slice(own)), known, effects, gain_error * gains)
     return Diagnostics(
         covariance=covariance and covariance.part(own),
         blocks=blocks,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +11,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
+    DECAYED,
     OFFSET,
     STRIBECK,
     Model,
@@ -200,6 +201,16 @@ class Trial:
             found.append(self.effect(REVERSALS, self.plain, self.plain, solved))
             same.insert(0, (away, solved))
         return (*found, *self.signals(self.plain, same))
+
+    def errors_with_curves(self, joints: Collection[int]) -> Array:
+        """The errors (own) if the friction of these joints (from 0) is any curve of the speed.
+
+        With the shapes that were chosen alone, what friction is beside them looks better known.
+        """
+        products, places = self.beyond
+        columns = [places[name][j] for name in DECAYED for j in joints]
+        solved = products.solved(products.independent(columns))
+        return jackknifed(solved.deviations[:, : self.own]) if solved else np.zeros(self.own)
 
     def products(
         self, scales: Array, further: dict[str, Array]

@@ -15,7 +15,7 @@ from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
-from scarid_cli.algorithms.statistics.alternatives import TORQUES, Model
+from scarid_cli.algorithms.statistics.alternatives import DECAYED, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.consequences import few
@@ -82,6 +82,7 @@ class Problem:
             doubt=None if doubt is None else doubt[: self.own],
             gain_error=gain_error,
             suspected=suspected,
+            curves={x.joint for x in self.additions if x.name in DECAYED},
         )
         sizes = self.found.fit.estimates[self.own + len(self.additions) :].tolist()
         offsets = dict(zip(self.offsets, sizes, strict=False))
