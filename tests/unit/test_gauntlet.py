@@ -40,7 +40,8 @@ def test_the_needed_torques_are_those_of_the_model_and_of_what_it_lacks() -> Non
     truth = truth_of(robot_named("scara2"), clean)
     rest = []
     for condition in (clean, loaded):
-        W, tau = needed("scara2", condition, SEED)
+        rows = needed(robot_named("scara2"), condition, SEED)
+        W, tau = rows.W, rows.y
         away = np.abs(W[:, 0, 2]) > 0.5  # sign(dq1): the joint moves
         rest.append((tau - W @ truth)[away, 0] * W[away, 0, 2])
         torque = tau[away, 0] - W[away, 0, 2] * truth[2]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,11 +11,12 @@ import numpy as np
 from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
-    DECAYED,
     OFFSET,
     STRIBECK,
     Model,
+    Signals,
     away_from_reversals,
+    diagonal,
     torque_columns,
 )
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
@@ -28,6 +29,7 @@ from scarid_cli.arrays import Array, Numbers
 REVERSALS, PARALLEL, LOW_PASS = "reversals", "parallel", "low-pass"
 # Those that widen the intervals whether significant or not.
 ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL, LOW_PASS)
+FINER = (0.1, 0.17, 0.3, 0.55, 1.0)  # speeds of DECAYED, and others between them
 CERTAIN = 0.01  # probability of calling an effect significant that is none
 TRUST = 1.5  # variances of an effect that are subtracted from its square
 
@@ -207,10 +209,16 @@ class Trial:
 
         With the shapes that were chosen alone, what friction is beside them looks better known.
         """
-        products, places = self.beyond
-        columns = [places[name][j] for name in DECAYED for j in joints]
-        solved = products.solved(products.independent(columns))
-        return jackknifed(solved.deviations[:, : self.own]) if solved else np.zeros(self.own)
+        signals, own = Signals.of(self.rows, self.model, self.estimates), list(joints)
+        shapes = [diagonal(signals.friction(speed))[:, :, own] for speed in FINER]
+        further = {"curve": np.concatenate(shapes, axis=2)}
+        products, places = self.products(self.rows.scales, further)
+        solved = products.solved(products.independent(places["curve"]))
+        if solved is None or self.plain is None:
+            return np.zeros(self.own)
+        errors = jackknifed(solved.deviations[:, : self.own])
+        curve = replace(self.effect("curve", self.plain, self.plain, solved), suspected=True)
+        return np.asarray(np.hypot(errors, curve.bias))
 
     def products(
         self, scales: Array, further: dict[str, Array]

@@ -18,6 +18,7 @@ from scarid_cli.arrays import Array, Numbers
 
 SINGULAR = 1e12  # condition number, of columns of unit length, above which a fit is refused
 NEW = 1e-6  # share of a column that must not be a combination of the others
+BLOCKS = 5.0  # effective ones, below which the error of an estimate is not known
 
 
 @dataclass(frozen=True)
@@ -84,14 +85,25 @@ class Products:
         rest = systems[:, p:, p:] - systems[:, p:, :p] @ fits
         return Eliminated(fits, rest)
 
+    @cached_property
+    def spread(self) -> Array:
+        """Of how many blocks the power of each column is, effectively (columns + 1)."""
+        power = np.diagonal(self.blocks, axis1=1, axis2=2)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            effective = power.sum(axis=0) ** 2 / np.sum(power**2, axis=0)
+        return np.asarray(np.nan_to_num(effective))
+
     def independent(self, columns: list[int]) -> list[int]:
-        """Those of the further columns that are no combination of W and of those before them."""
+        """Those of the further columns that are no combination of W and of those before them.
+
+        Of a column with the power of a few blocks, the error would not be known.
+        """
         if self.eliminated is None:
             return []
         rest, kept = self.eliminated.rest[0].copy(), []
         for column in columns:
             i = column - self.parameters
-            if rest[i, i] > NEW:
+            if rest[i, i] > NEW and self.spread[column] >= BLOCKS:
                 kept.append(column)
                 rest -= np.outer(rest[:, i], rest[i]) / rest[i, i]
         return kept
