@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -150,6 +151,35 @@ def test_offsets_of_the_torques_are_fitted_and_a_new_one_is_a_change(
     )
     assert "scarid validate: unchanged: " in same
     assert re.search(r"changed: offset of joint 2 \(offset 2 \+0\.(09|10)", other), other
+
+
+def test_friction_of_the_load_is_fitted_and_predicted(shell: Run, tmp_path: Path) -> None:
+    """The robot has no term for it. Without it MX1R would be 2 % too large."""
+    once = shell(
+        "export SCARID_ROBOT=planar2-gravity; for seed in 3 4; do"
+        " scarid trajgen -q --seed $seed --q-max 2,2 --ddq-max 20,30 --duration 20 |"
+        " scarid simulate -q --seed $seed --with load-friction=0.02 -o log$seed.parquet; done;"
+        " scarid identify log3.parquet -o p.parquet"
+    )
+    assert re.search(
+        r": good: .*; friction of joints 1 and 2 grows with the transmitted torque, for which there"
+        r" is no term; fitted as well: 0\.0(2|19\d+|20\d+) and 0\.0(18|19|2)\d* of this torque",
+        once.err,
+    ), once.err
+    found = {row["parameter"]: row for row in pq.read_table(tmp_path / "p.parquet").to_pylist()}
+    assert found["MX1R"]["estimate"] == pytest.approx(0.1987, rel=5e-3)
+    checked = "scarid validate --robot planar2-gravity log4.parquet --parameters"
+    kept, lost = (
+        shell(f"scarid convert -q p.parquet -o p.csv; {checked} {file}")
+        for file in ("p.parquet", "p.csv")
+    )
+    assert "added the torques that identify fitted beside those of the model" in kept.err
+    assert "scarid validate: unchanged: " in kept.err
+    errors = [
+        [float(row["relative_error"]) for row in csv.DictReader(one.out.splitlines())]
+        for one in (kept, lost)
+    ]
+    assert all(own < 0.9 * other for own, other in zip(*errors, strict=True))
 
 
 @pytest.mark.parametrize(("torque", "told"), [("0", "not identifiable"), ("0.3", "doubtful")])

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.statistics.additions import Addition
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
@@ -104,23 +105,30 @@ def additions_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
         joints = joints_named(sorted({addition.joint + 1 for addition in added}))
         what = "a curve over the speed was fitted as well"
         if kind != CURVATURE:
-            what = f"fitted as well: {listed([_size(addition, robot) for addition in added])}"
+            what = f"fitted as well: {_sizes(added, robot)}"
         notes.append(f"{ADVICE[kind].format(joints=joints)}; {what}")
     return notes
 
 
-def _size(addition: Addition, robot: Robot) -> str:
-    """`0.0993 N m/rad`, or `0.02 of this torque`."""
-    joint = robot.joints[addition.joint]
+def _sizes(added: Sequence[Addition], robot: Robot) -> str:
+    """`0.02 and 0.0185 of this torque`, or `0.0993 N m/rad`."""
+    units = [_unit(addition.name, robot.joints[addition.joint]) for addition in added]
+    sizes = [f"{addition.size:.3g}" for addition in added]
+    if len(set(units)) == 1:
+        return f"{listed(sizes)} {units[0]}"
+    return listed([f"{size} {unit}" for size, unit in zip(sizes, units, strict=True)])
+
+
+def _unit(name: str, joint: Joint) -> str:
+    """The unit of the size of an addition to the torque of this joint."""
     torque = joint.torque_unit
-    units = {
-        LOAD: "of this torque",
+    return {
         ASYMMETRY: f"{torque} s/{joint.unit}",
+        LOAD: "of this torque",
         SPRING: f"{torque}/{joint.unit}",
         SATURATION: f"per {torque}",
         DRIFT: f"{torque}/s",
-    }
-    return f"{addition.size:.3g} {units.get(addition.name, torque)}"
+    }[name]
 
 
 def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> list[str]:

@@ -34,7 +34,7 @@ from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document
 from scarid_cli.stages import identify as stage
-from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.parameters import ADDITIONS, identified
 
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
 FOR_MOTION, FOR_MEASUREMENT = "rls", "gls"  # the estimator if none is given
@@ -150,8 +150,13 @@ def _tell(job: Job, table: Table, robot: str, chosen: Chosen, extra: dict[str, A
     facts, verdict = summary_lines(robot, chosen.name, extra)
     job.say(facts)
     if chosen.treatment.align and job.out.format == "csv":
-        job.say("CSV does not keep the delay: write -o FILE.parquet for validate to apply it")
+        job.say(f"CSV does not keep {_kept(extra)}: write -o FILE.parquet for validate to apply it")
     job.say(verdict, extra["verdict"])
+
+
+def _kept(extra: dict[str, Any]) -> str:
+    """What validate needs beside the parameters."""
+    return "the delay and what was fitted as well" if extra.get(ADDITIONS) else "the delay"
 
 
 def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:

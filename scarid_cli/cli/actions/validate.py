@@ -86,6 +86,8 @@ def _tell(job: Job, model: Identified, before: Known, extra: dict[str, Any]) -> 
     if model.delay:
         how = behind_low_pass(model.delay) if model.low_pass else ""
         job.say(f"applied the delay that identify fitted: {lead(model.delay)}{how}")
+    if model.additions:
+        job.say("added the torques that identify fitted beside those of the model")
     if before.testable:
         change = extra["change"]
         job.say(f"{change['verdict']}: {change['reason']}", change["verdict"])
