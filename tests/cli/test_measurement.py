@@ -154,7 +154,7 @@ def test_offsets_of_the_torques_are_fitted_and_a_new_one_is_a_change(
 
 
 def test_friction_of_the_load_is_fitted_and_predicted(shell: Run, tmp_path: Path) -> None:
-    """The robot has no term for it. Without it MX1R would be 2 % too large."""
+    """The robot has no term for it. Without it Fc1 would be 26 % too large."""
     once = shell(
         "export SCARID_ROBOT=planar2-gravity; for seed in 3 4; do"
         " scarid trajgen -q --seed $seed --q-max 2,2 --ddq-max 20,30 --duration 20 |"
@@ -168,6 +168,7 @@ def test_friction_of_the_load_is_fitted_and_predicted(shell: Run, tmp_path: Path
     ), once.err
     found = {row["parameter"]: row for row in pq.read_table(tmp_path / "p.parquet").to_pylist()}
     assert found["MX1R"]["estimate"] == pytest.approx(0.1987, rel=5e-3)
+    assert found["Fc1"]["estimate"] == pytest.approx(0.166, rel=0.06)
     checked = "scarid validate --robot planar2-gravity log4.parquet --parameters"
     kept, lost = (
         shell(f"scarid convert -q p.parquet -o p.csv; {checked} {file}")

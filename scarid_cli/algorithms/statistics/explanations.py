@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from scarid_cli.algorithms.statistics.alternatives import DECAYED, SHAPES
+from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, SHAPES
 from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial, clear
 
 # The names of alternatives for the torques, with the joints (from 0) to whose torques they belong.
 Explanation = frozenset[tuple[str, int]]
+FITTED = SHAPES.keys() - {OFFSET}  # which offsets.py looks for
 
 
 def explanations(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, ...]:
@@ -21,7 +22,7 @@ def explanations(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, 
     `effects` are those of all alternatives.
     """
     level = CERTAIN / max(1, len(effects))
-    possible = [effect for effect in clear(effects) if effect.name in SHAPES]
+    possible = [effect for effect in clear(effects) if effect.name in FITTED]
     possible.sort(key=lambda effect: -effect.largest / effect.threshold(level))
     found = (_completed(trial, _torques(trial, [effect], level)) for effect in possible)
     return tuple(explanation for explanation in found if explanation)
