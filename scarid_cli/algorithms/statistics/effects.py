@@ -12,6 +12,7 @@ from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
+    SLOW,
     STRIBECK,
     Model,
     Signals,
@@ -30,6 +31,7 @@ REVERSALS, PARALLEL, LOW_PASS = "reversals", "parallel", "low-pass"
 # Those that widen the intervals whether significant or not.
 ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL, LOW_PASS)
 FINER = (0.1, 0.17, 0.3, 0.55, 1.0)  # speeds of DECAYED, and others between them
+BLOCKS = 5.0  # effective ones, below which the error of the size of slow friction is not known
 CERTAIN = 0.01  # probability of calling an effect significant that is none
 TRUST = 1.5  # variances of an effect that are subtracted from its square
 
@@ -261,6 +263,8 @@ class Trial:
         found = []
         for name, columns in places.items():
             new = [c for c in products.independent([*given, *columns]) if c not in given]
+            if name == SLOW:
+                new = [c for c in new if products.spread[c] >= BLOCKS]
             solved = products.solved([*given, *new]) if new else None
             if solved:
                 tested = [new.index(c) if c in new else None for c in columns]

@@ -18,7 +18,6 @@ from scarid_cli.arrays import Array, Numbers
 
 SINGULAR = 1e12  # condition number, of columns of unit length, above which a fit is refused
 NEW = 1e-6  # share of a column that must not be a combination of the others
-BLOCKS = 5.0  # effective ones, below which the error of an estimate is not known
 
 
 @dataclass(frozen=True)
@@ -94,16 +93,13 @@ class Products:
         return np.asarray(np.nan_to_num(effective))
 
     def independent(self, columns: list[int]) -> list[int]:
-        """Those of the further columns that are no combination of W and of those before them.
-
-        Of a column with the power of a few blocks, the error would not be known.
-        """
+        """Those of the further columns that are no combination of W and of those before them."""
         if self.eliminated is None:
             return []
         rest, kept = self.eliminated.rest[0].copy(), []
         for column in columns:
             i = column - self.parameters
-            if rest[i, i] > NEW and self.spread[column] >= BLOCKS:
+            if rest[i, i] > NEW:
                 kept.append(column)
                 rest -= np.outer(rest[:, i], rest[i]) / rest[i, i]
         return kept
