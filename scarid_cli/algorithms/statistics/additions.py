@@ -1,9 +1,9 @@
 """What the torques of a log clearly are beyond the model, fitted beside the parameters.
 
-If one alternative (alternatives.py) explains all that the torques are beyond the model, it is
-fitted with it: friction that grows with the load, for example, would otherwise make masses larger.
-It is no parameter, because the robot has no such term, but goes with them where torques are
-predicted.
+If one alternative (alternatives.py) explains nearly all that the torques are beyond the model, it
+is fitted with it: friction that grows with the load, for example, would otherwise make masses
+larger. It is no parameter, because the robot has no such term, but goes with them where torques
+are predicted.
 """
 
 from __future__ import annotations
@@ -58,8 +58,9 @@ def of_explanation(
     A spring is slack somewhere, so that it takes an offset.
     """
     usual = np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
-    slack = {(OFFSET, j) for name, j in explanation if name == SPRING and j not in constant}
-    return tuple(Addition(name, j, float(usual[j])) for name, j in sorted(slack | explanation))
+    found = explanation.torques
+    slack = {(OFFSET, j) for name, j in found if name == SPRING and j not in constant}
+    return tuple(Addition(name, j, float(usual[j])) for name, j in sorted(slack | found))
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ class Diagnostics:
     explain, counted from sample 0 of a record that is known as a whole. `halves` are the estimates
     of its halves, None if these do not determine them. `offsets` [N m or N] are those of the
     torques of joints (from 0) that were fitted beside the parameters, and `additions` what else
-    was. Each of the `explanations` alone explains all that the torques are beyond the model.
+    was. Each of the `explanations` alone explains nearly all that the torques are beyond the model.
     """
 
     covariance: RobustCovariance | None

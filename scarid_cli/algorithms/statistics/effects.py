@@ -76,6 +76,10 @@ class Effect:
         """The ratio that noise alone exceeds with this probability in any of the tests."""
         return quantile(1.0 - 0.5 * level / max(self.tests, 1), self.blocks - 1)
 
+    def clearness(self, level: float) -> float:
+        """The largest ratio, divided by the one that noise exceeds with this probability."""
+        return self.largest / self.threshold(level)
+
     def significant(self, level: float = CERTAIN) -> bool:
         """Whether noise would have such an effect with less than this probability."""
         return self.largest > self.threshold(level)
@@ -119,10 +123,15 @@ def of_low_pass(moved: Array) -> Effect:
     return Effect(LOW_PASS, moved, none, moved, amounts=none, noise=none, blocks=2)
 
 
-def clear(effects: Sequence[Effect]) -> list[Effect]:
-    """Those that are significant among so many, of which one is by chance more often than alone."""
-    level = CERTAIN / max(1, len(effects))
-    return [effect for effect in effects if effect.significant(level)]
+def level_among(effects: Sequence[Effect]) -> float:
+    """The level of significance of one of so many, of which any is by chance more often."""
+    return CERTAIN / max(1, len(effects))
+
+
+def clear(effects: Sequence[Effect], least: float = 1.0) -> list[Effect]:
+    """Those that are significant among so many, and at least so many times as clear."""
+    level = level_among(effects)
+    return [effect for effect in effects if effect.clearness(level) > least]
 
 
 @dataclass(frozen=True)

@@ -208,9 +208,9 @@ class _Given:
 
 
 def _explained(given: _Given, gain_error: float) -> tuple[Problem, Diagnostics]:
-    """The problem with what alone explains all that the model does not, and its diagnostics.
+    """The problem with what alone explains nearly all that the model does not; its diagnostics.
 
-    If nothing does, it is the plain one. What was significant without it must not be so with it,
+    If nothing does, it is the plain one. With it, what was significant before must not be clear,
     nor another alternative for the torques.
     """
     plain = _problem(given)
@@ -224,7 +224,7 @@ def _explained(given: _Given, gain_error: float) -> tuple[Problem, Diagnostics]:
         except NotIdentifiableError:
             continue
         found = wider.diagnostics(gain_error, suspected)
-        left = {effect.name for effect in clear(found.effects)}
+        left = {effect.name for effect in clear(found.effects, explanation.rest)}
         if all(x.possible for x in wider.additions) and not left & {*suspected, *TORQUES}:
             return wider, found
     return plain, diagnostics

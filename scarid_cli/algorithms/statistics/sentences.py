@@ -24,7 +24,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     tilted,
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import CERTAIN, REVERSALS, Effect
+from scarid_cli.algorithms.statistics.effects import REVERSALS, Effect, level_among
 from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, ZEROS
 from scarid_cli.arrays import Array, Marks
 
@@ -138,7 +138,7 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> li
     move them where one of them is true. With so many alternatives, one is significant by chance
     more often than a single one would be.
     """
-    level = CERTAIN / max(1, len(diagnostics.effects))
+    level = level_among(diagnostics.effects)
     scatter = diagnostics.scatter[: len(names)]
     least = np.maximum(scatter, diagnostics.consequences.negligible)
     found = [
@@ -148,7 +148,7 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> li
     ]
     if not found:
         return []
-    best = max(found, key=lambda effect: effect.largest / effect.threshold(level))
+    best = max(found, key=lambda effect: effect.clearness(level))
     wide = [name for name, x in zip(names, _wide(best, least), strict=True) if x]
     allow = "interval" if len(wide) == 1 else "intervals"
     verb = "allows" if len(wide) == 1 else "allow"
