@@ -26,6 +26,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     Model,
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
+from scarid_cli.algorithms.statistics.explanations import Explanation
 from scarid_cli.arrays import Array
 
 ARM = load("planar2-gravity")
@@ -102,14 +103,14 @@ def diagnosed(rows: Rows) -> Diagnostics:
 def test_what_explains_the_torques_alone_is_found(
     beyond: Beyond, expected: set[tuple[str, int]]
 ) -> None:
-    assert diagnosed(log(beyond)).explanations[0] == expected
+    assert diagnosed(log(beyond)).explanations[0].torques == expected
 
 
 def test_friction_may_be_any_curve_of_the_speed() -> None:
-    (first, *_) = diagnosed(log(of_the_speed)).explanations
-    assert {joint for _, joint in first} == {0}
-    assert {name for name, _ in first} <= DECAYED.keys()
-    assert len(first) > 1
+    torques = diagnosed(log(of_the_speed)).explanations[0].torques
+    assert {joint for _, joint in torques} == {0}
+    assert {name for name, _ in torques} <= DECAYED.keys()
+    assert len(torques) > 1
 
 
 def test_of_several_causes_none_explains_the_torques_alone() -> None:
@@ -141,7 +142,7 @@ def test_with_the_explanation_the_estimates_are_right(beyond: Beyond) -> None:
 
 
 def test_a_spring_is_slack_somewhere_unless_the_joint_has_an_offset() -> None:
-    explanation = frozenset({(SPRING, 0), (SPRING, 1)})
+    explanation = Explanation(frozenset({(SPRING, 0), (SPRING, 1)}), clearness=2.0)
     found = [(x.name, x.joint) for x in of_explanation(explanation, log(pulled), {0})]
     assert found == [(OFFSET, 1), (SPRING, 0), (SPRING, 1)]
 
