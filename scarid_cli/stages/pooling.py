@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from statistics import fmean
 
 import numpy as np
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.changes.pooling import pooled
-from scarid_cli.algorithms.statistics.additions import Addition
+from scarid_cli.algorithms.statistics.additions import mean_additions
 from scarid_cli.errors import bad_data
 from scarid_cli.stages.changes import Known
 from scarid_cli.stages.parameters import Identified
@@ -32,20 +31,9 @@ def pooled_identifications(tables: Sequence[Entry]) -> tuple[Identified, Known]:
     models = [model for _, model, _ in tables]
     found = pooled([m.theta for m in models], [m.delay for m in models], evidences)
     errors = np.full_like(before.errors, np.nan)
-    additions = _shared([m.additions for m in models])
+    additions = mean_additions([m.additions for m in models])
     own = replace(model, theta=found.theta, delay=found.delay, additions=additions)
     return own, Known(found.evidence, errors)
-
-
-def _shared(additions: Sequence[Sequence[Addition]]) -> tuple[Addition, ...]:
-    """What all have beside their parameters, with the means of its sizes and speeds."""
-    sets = [{(x.name, x.joint): x for x in own} for own in additions]
-    keys = [key for key in sets[0] if all(key in own for own in sets)]
-    return tuple(Addition(*key, *_means([own[key] for own in sets])) for key in keys)
-
-
-def _means(alike: Sequence[Addition]) -> tuple[float, float]:
-    return fmean(x.usual for x in alike), fmean(x.size for x in alike)
 
 
 def _evidence(table: Entry) -> LogEvidence:

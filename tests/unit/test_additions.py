@@ -11,7 +11,12 @@ from unit.regressions import estimated
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
+from scarid_cli.algorithms.statistics.additions import (
+    Addition,
+    Shapes,
+    mean_additions,
+    of_explanation,
+)
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
     CURVATURE,
@@ -163,6 +168,16 @@ def test_the_torques_are_those_of_the_robot_and_not_of_the_log() -> None:
     torques = Shapes(additions, MODEL, ARM.apriori).torques(rows)
     assert torques[:, 1] == pytest.approx(2.0 * expected)
     assert np.all(torques[:, 0] == 0.0)
+
+
+def test_pooled_additions_are_the_mean_of_those_of_all_logs() -> None:
+    first = [Addition(LOAD, 0, 1.0, 0.02), Addition(STRIBECK, 1, 1.0, 0.3)]
+    other = [Addition(LOAD, 0, 3.0, 0.04)]
+    assert mean_additions([first, other]) == (
+        Addition(LOAD, 0, 2.0, 0.03),
+        Addition(STRIBECK, 1, 1.0, 0.15),
+    )
+    assert mean_additions([first]) == tuple(first)
 
 
 def test_gears_take_a_part_of_the_load_away() -> None:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
+from statistics import fmean
 
 import numpy as np
 
@@ -61,6 +63,17 @@ def of_explanation(
     found = explanation.torques
     slack = {(OFFSET, j) for name, j in found if name == SPRING and j not in constant}
     return tuple(Addition(name, j, float(usual[j])) for name, j in sorted(slack | found))
+
+
+def mean_additions(sets: Sequence[Sequence[Addition]]) -> tuple[Addition, ...]:
+    """The mean of several sets of additions, of which each may have others."""
+    alike: dict[tuple[str, int], list[Addition]] = {}
+    for addition in chain.from_iterable(sets):
+        alike.setdefault((addition.name, addition.joint), []).append(addition)
+    return tuple(
+        Addition(name, joint, fmean(x.usual for x in own), sum(x.size for x in own) / len(sets))
+        for (name, joint), own in alike.items()
+    )
 
 
 @dataclass(frozen=True)
