@@ -147,7 +147,7 @@ def test_with_the_explanation_the_estimates_are_right(beyond: Beyond) -> None:
 
 
 def test_a_spring_is_slack_somewhere_unless_the_joint_has_an_offset() -> None:
-    explanation = Explanation(frozenset({(SPRING, 0), (SPRING, 1)}), clearness=2.0)
+    explanation = Explanation(frozenset({(SPRING, 0), (SPRING, 1)}), clearness=2.0, threshold=4.0)
     found = [(x.name, x.joint) for x in of_explanation(explanation, log(pulled), {0})]
     assert found == [(OFFSET, 1), (SPRING, 0), (SPRING, 1)]
 

@@ -22,11 +22,13 @@ FITTED = SHAPES.keys() - {OFFSET}  # which offsets.py looks for
 class Explanation:
     """An alternative that explains nearly all that the torques are beyond the model.
 
-    It is as clear as its `clearness`; what is left is not clearer than `rest`.
+    It is as clear as its `clearness`, where 1 is the `threshold` in errors; what is left is not
+    clearer than `rest`.
     """
 
     torques: Torques
     clearness: float
+    threshold: float
 
     @property
     def rest(self) -> float:
@@ -42,7 +44,8 @@ def explanations(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, 
     found = []
     for effect in clear(effects):
         if effect.name in FITTED:
-            one = Explanation(_torques(trial, [effect], level), effect.clearness(level))
+            torques = _torques(trial, [effect], level)
+            one = Explanation(torques, effect.clearness(level), effect.threshold(level))
             found.append(_completed(trial, one))
     return tuple(sorted(filter(None, found), key=lambda x: -x.clearness))
 

@@ -15,7 +15,7 @@ from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
-from scarid_cli.algorithms.statistics.alternatives import DECAYED, TORQUES, Model
+from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.consequences import few
@@ -87,6 +87,17 @@ class Problem:
         sizes = self.found.fit.estimates[self.own + len(self.additions) :].tolist()
         offsets = dict(zip(self.offsets, sizes, strict=False))
         return replace(found, offsets=offsets, additions=self.additions)
+
+    def added(self, errors: Array) -> float:
+        """The largest addition in units of its error (columns); 0 if one of them is impossible.
+
+        These errors are those of disturbances that last, too, of which blocks know nothing.
+        """
+        if not all(addition.possible for addition in self.additions):
+            return 0.0
+        sizes = self.found.fit.estimates[self.own : self.own + len(self.additions)]
+        ratios = np.abs(sizes) / errors[self.own : self.own + len(self.additions)]
+        return float(np.max(ratios[[addition.name != OFFSET for addition in self.additions]]))
 
     @property
     def compared(self) -> Rows:
@@ -225,7 +236,8 @@ def _explained(given: _Given, gain_error: float) -> tuple[Problem, Diagnostics]:
             continue
         found = wider.diagnostics(gain_error, suspected)
         left = {effect.name for effect in clear(found.effects, explanation.rest)}
-        if all(x.possible for x in wider.additions) and not left & {*suspected, *TORQUES}:
+        there = wider.added(found.scatter) > explanation.threshold
+        if there and not left & {*suspected, *TORQUES}:
             return wider, found
     return plain, diagnostics
 
