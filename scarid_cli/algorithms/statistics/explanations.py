@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, SHAPES
-from scarid_cli.algorithms.statistics.effects import Effect, Trial, clear, level_among
+from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial, clear, level_among
 
 # The names of alternatives for the torques, with the joints (from 0) to whose torques they belong.
 Torques = frozenset[tuple[str, int]]
+RARE = 0.001  # probability of fitting what is not there
 LEFT = 0.25  # times as clear as the alternative itself: what it may leave unexplained
 FITTED = SHAPES.keys() - {OFFSET}  # which offsets.py looks for
 
@@ -22,8 +23,8 @@ FITTED = SHAPES.keys() - {OFFSET}  # which offsets.py looks for
 class Explanation:
     """An alternative that explains nearly all that the torques are beyond the model.
 
-    It is as clear as its `clearness`, where 1 is the `threshold` in errors; what is left is not
-    clearer than `rest`.
+    It is as clear as its `clearness`; what is left is not clearer than `rest`. To be fitted, it
+    must be larger than so many errors as its `threshold` says.
     """
 
     torques: Torques
@@ -45,7 +46,8 @@ def explanations(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, 
     for effect in clear(effects):
         if effect.name in FITTED:
             torques = _torques(trial, [effect], level)
-            one = Explanation(torques, effect.clearness(level), effect.threshold(level))
+            least = effect.threshold(RARE / CERTAIN * level)
+            one = Explanation(torques, effect.clearness(level), least)
             found.append(_completed(trial, one))
     return tuple(sorted(filter(None, found), key=lambda x: -x.clearness))
 
