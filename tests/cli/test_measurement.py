@@ -183,6 +183,24 @@ def test_friction_of_the_load_is_fitted_and_predicted(shell: Run, tmp_path: Path
     assert all(own < 0.9 * other for own, other in zip(*errors, strict=True))
 
 
+def test_the_offset_beside_a_spring_is_not_better_known_than_where_it_is_slack(
+    shell: Run, tmp_path: Path
+) -> None:
+    """A cable of 0.1 N m/rad that is slack at 1 rad, beside the offset of a joint."""
+    result = shell(
+        "scarid trajgen -q --robot planar2-gravity --seed 3 --q-max 2,2 --ddq-max 20,30"
+        " --duration 20 | scarid simulate -q --robot planar2-gravity --seed 3 --format csv |"
+        " awk -F, -v OFS=, 'NR > 1 { $4 += 0.1 * ($2 - 1) } 1' > log.csv;"
+        " scarid identify --robot planar2-gravity log.csv -o p.parquet"
+    )
+    assert "something pulls on joint 1 as a spring or a cable does" in result.err, result.err
+    assert re.search(r"fitted as well: 0\.(09|1)\d* N m/rad", result.err), result.err
+    found = {row["parameter"]: row for row in pq.read_table(tmp_path / "p.parquet").to_pylist()}
+    assert found["offset1"]["low"] < 0.0 < found["offset1"]["high"]
+    assert found["offset1"]["robust_error"] > 0.05
+    assert found["offset2"]["robust_error"] < 0.01
+
+
 @pytest.mark.parametrize(("torque", "told"), [("0", "not identifiable"), ("0.3", "doubtful")])
 def test_a_constant_torque_has_no_r2_and_does_not_disturb_the_other_joint(
     torque: str, told: str, shell: Run

@@ -13,9 +13,10 @@ from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableErr
 from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.terms import Offset
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
-from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, TORQUES, Model
+from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, SPRING, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.consequences import few
@@ -86,7 +87,8 @@ class Problem:
         )
         sizes = self.found.fit.estimates[self.own + len(self.additions) :].tolist()
         offsets = dict(zip(self.offsets, sizes, strict=False))
-        return replace(found, offsets=offsets, additions=self.additions)
+        found = replace(found, offsets=offsets, additions=self.additions)
+        return self._with_slack(self.model.robot, self.model.kept, found) if self.model else found
 
     def added(self, errors: Array) -> float:
         """The largest addition in units of its error (columns); 0 if one of them is impossible.
@@ -98,6 +100,22 @@ class Problem:
         sizes = self.found.fit.estimates[self.own : self.own + len(self.additions)]
         ratios = np.abs(sizes) / errors[self.own : self.own + len(self.additions)]
         return float(np.max(ratios[[addition.name != OFFSET for addition in self.additions]]))
+
+    def _with_slack(self, robot: Robot, kept: list[int], found: Diagnostics) -> Diagnostics:
+        """The diagnostics, whose errors of the offsets allow for where springs are slack.
+
+        An offset is the torque where its joint is at 0, if the spring of this joint is slack there.
+        No log can tell; it may be as far away as the positions of the log are.
+        """
+        moved = np.zeros(self.own)
+        squares = np.mean(self.rows.motion[0] ** 2, axis=1)
+        springs = {x.joint: x.size for x in self.additions if x.name == SPRING}
+        for k, index in enumerate(kept):
+            term = robot.parameters[index].term
+            if isinstance(term, Offset) and (joint := term.joints[0] - 1) in springs:
+                moved[k] = abs(springs[joint]) * float(np.sqrt(squares[joint]))
+        matrix = found.matrix + np.diag(moved**2)
+        return replace(found, errors=np.hypot(found.errors, moved), matrix=matrix)
 
     @property
     def compared(self) -> Rows:
