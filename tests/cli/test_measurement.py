@@ -112,9 +112,9 @@ def test_a_measurement_is_identified_by_the_recommended_procedure(log: Path, sca
 
 
 def test_rows_are_whitened_where_the_torque_has_a_part_that_lasts(shell: Run) -> None:
-    """Noise with a correlation time of 2 s moves the friction less."""
+    """Noise with a correlation time of 2 s moves the friction by half as much."""
     result = shell(
-        "scarid trajgen -q --seed 5 --duration 20 | scarid simulate -q --seed 5"
+        "scarid trajgen -q --seed 3 --duration 20 | scarid simulate -q --seed 3"
         " --with coloured-torque-noise=0.3,0.05 --with torque-noise-time=2 -o log.csv;"
         " for options in '--estimator wls' '' --essential; do"
         " scarid identify $options log.csv | grep '^F[vs]1' | cut -d, -f3; done"
@@ -122,7 +122,7 @@ def test_rows_are_whitened_where_the_torque_has_a_part_that_lasts(shell: Run) ->
     assert result.status == 0, result.err
     assert result.err.count("samples, whitened, as the residuals are correlated in time") == 2
     _, weighted, _, whitened, dropped, _ = (float(x) for x in result.out.split())
-    assert abs(whitened - 0.58) < 0.7 * abs(weighted - 0.58)
+    assert abs(whitened - 0.58) < 0.5 * abs(weighted - 0.58)
     assert dropped == 0.0  # Fv1 is not essential
 
 
