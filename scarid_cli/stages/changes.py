@@ -27,7 +27,6 @@ from scarid_cli.algorithms.regression.normal_equations import inverse
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.bursts import bursts_of
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.ringing import with_ringing
@@ -142,9 +141,8 @@ def verdict(
     if steps:
         return of_wiring(steps)
     rows = in_step(rows, theta, model.delay, low_pass=model.low_pass)
-    modelled = Model(robot, list(range(len(theta))))
     wide = model.shapes.beside(rows) if model.additions else rows
-    sums = Products.of(with_ringing(wide, robot), theta, model=modelled)
+    sums = Products.of(with_ringing(wide, robot), theta, model=model.model)
     now = sums.usual
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)

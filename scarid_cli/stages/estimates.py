@@ -8,11 +8,10 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.additions import Addition
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import Table
-from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.parameters import Identified, identified
 
 REMEDY = "write the table with `identify -o parameters.parquet`"
 
@@ -21,27 +20,31 @@ REMEDY = "write the table with `identify -o parameters.parquet`"
 class Estimates:
     """Identified parameters and their errors.
 
-    `robot` is the robot as it was identified. `values` (parameters) are in its units. The torques
-    led the motion by `delay` [s], with `low_pass` as behind one, and had `additions`. `errors`
-    (parameters) are robust standard errors where known, nan where there are none. `dropped` are the
-    indices of the values that `identify --essential` set to zero. `full` are the estimates before
-    that and `covariance` (parameters, parameters) is theirs, with nan in the rows and columns of
-    parameters without errors. `fixed` has the name, unit and value of the table's further rows, in
-    which the torques are not linear. `remark` explains why the covariance is diagonal; it is empty
-    if it is not.
+    `model` is the content of the table. `errors` (parameters) are robust standard errors where
+    known, nan where there are none. `dropped` are the indices of the values that `identify
+    --essential` set to zero. `full` are the estimates before that and `covariance` (parameters,
+    parameters) is theirs, with nan in the rows and columns of parameters without errors. `fixed`
+    has the name, unit and value of the table's further rows, in which the torques are not linear.
+    `remark` explains why the covariance is diagonal; it is empty if it is not.
     """
 
-    robot: Robot
-    delay: float
-    low_pass: bool
-    additions: tuple[Addition, ...]
-    values: Array
+    model: Identified
     errors: Array
     full: Array
     covariance: Array
     dropped: tuple[int, ...]
     fixed: tuple[tuple[str, str, float], ...]
     remark: str
+
+    @property
+    def robot(self) -> Robot:
+        """The robot as it was identified."""
+        return self.model.robot
+
+    @property
+    def values(self) -> Array:
+        """The estimates (parameters), in the units of the robot."""
+        return self.model.theta
 
 
 def estimates_with_covariance(table: Table, robot: Robot) -> Estimates:
@@ -56,11 +59,7 @@ def estimates_with_covariance(table: Table, robot: Robot) -> Estimates:
     covariance, remark = _covariance(table, errors)
     full = values if remark else _full_estimates(table, values, len(errors))
     return Estimates(
-        robot=content.robot,
-        delay=content.delay,
-        low_pass=content.low_pass,
-        additions=content.additions,
-        values=values,
+        model=content,
         errors=errors[:count],
         full=full,
         covariance=_conditional(covariance, count),

@@ -49,10 +49,14 @@ class Identified:
         return torques + self.shapes.torques(rows).T if self.additions else torques
 
     @property
+    def model(self) -> Model:
+        """The robot, with all of its parameters."""
+        return Model(self.robot, list(range(len(self.theta))))
+
+    @property
     def shapes(self) -> Shapes:
         """The shapes of what the torques are beside the model."""
-        own = Model(self.robot, list(range(len(self.theta))))
-        return Shapes(self.additions, own, self.theta)
+        return Shapes(self.additions, self.model, self.theta)
 
 
 def identified(table: Table, robot: Robot) -> Identified:

@@ -15,7 +15,6 @@ from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table, number, table_of
 from scarid_cli.io.urdf import Inertial, rewritten
 from scarid_cli.stages.estimates import Estimates
-from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.prediction import qualities
 
 SHOWN = 5  # parameters that a message names at most
@@ -69,14 +68,7 @@ def r2_before_and_after(
 
     Rows are treated as in `validate`.
     """
-    model = Identified(
-        identified.robot,
-        identified.values,
-        identified.delay,
-        identified.low_pass,
-        identified.additions,
-    )
-    models = [model, replace(model, theta=found.base)]
+    models = [identified.model, replace(identified.model, theta=found.base)]
     found_r2 = ([joint.r2 for joint in own] for own in qualities(table, models, treatment))
     before, after = map(np.array, found_r2)
     return before, after

@@ -24,9 +24,10 @@ CERTAIN = 0.01  # probability of calling any of the offsets one that is none
 NOTHING = 1e-4  # of a torque: no sensor shows as little
 
 
-def constant_joints(robot: Robot) -> set[int]:
-    """The joints (from 0) for which the robot has an offset."""
-    return {p.term.joints[0] - 1 for p in robot.parameters if isinstance(p.term, Offset)}
+def offset_joints(robot: Robot) -> dict[int, int]:
+    """The parameters (by index) of the robot that are offsets, with their joints (from 0)."""
+    terms = ((k, parameter.term) for k, parameter in enumerate(robot.parameters))
+    return {k: term.joints[0] - 1 for k, term in terms if isinstance(term, Offset)}
 
 
 def offsets(rows: Rows, robot: Robot, others: Collection[int] = ()) -> tuple[int, ...]:
@@ -34,7 +35,7 @@ def offsets(rows: Rows, robot: Robot, others: Collection[int] = ()) -> tuple[int
 
     The `others` have a column for it already.
     """
-    known = {*constant_joints(robot), *others}
+    known = {*offset_joints(robot).values(), *others}
     joints = tuple(j for j in range(rows.y.shape[1]) if j not in known)
     if not joints or not rows.h > 0.0:
         return ()

@@ -13,7 +13,6 @@ from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableErr
 from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.terms import Offset
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
 from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, SPRING, TORQUES, Model
@@ -24,7 +23,7 @@ from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.effects import clear
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
 from scarid_cli.algorithms.statistics.explanations import Explanation
-from scarid_cli.algorithms.statistics.offsets import constant_joints, offsets, with_offsets
+from scarid_cli.algorithms.statistics.offsets import offset_joints, offsets, with_offsets
 from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.arrays import Array, median
 
@@ -110,10 +109,9 @@ class Problem:
         moved = np.zeros(self.own)
         squares = np.mean(self.rows.motion[0] ** 2, axis=1)
         springs = {x.joint: x.size for x in self.additions if x.name == SPRING}
-        for k, index in enumerate(kept):
-            term = robot.parameters[index].term
-            if isinstance(term, Offset) and (joint := term.joints[0] - 1) in springs:
-                moved[k] = abs(springs[joint]) * float(np.sqrt(squares[joint]))
+        for index, joint in offset_joints(robot).items():
+            if joint in springs and index in kept:
+                moved[kept.index(index)] = abs(springs[joint]) * float(np.sqrt(squares[joint]))
         matrix = found.matrix + np.diag(moved**2)
         return replace(found, errors=np.hypot(found.errors, moved), matrix=matrix)
 
@@ -263,7 +261,7 @@ def _explained(given: _Given, gain_error: float) -> tuple[Problem, Diagnostics]:
 def _shapes(given: _Given, plain: Problem, model: Model, explanation: Explanation) -> Shapes:
     """The shapes of what explains the torques, with the estimates beside it."""
     rows = thinned(plain.rows)
-    constant = {*constant_joints(given.robot), *plain.offsets}
+    constant = {*offset_joints(given.robot).values(), *plain.offsets}
     additions = of_explanation(explanation, rows, constant)
     first = Shapes(additions, model, plain.found.fit.estimates[: plain.own])
     wide = first.beside(rows)

@@ -150,13 +150,16 @@ def _tell(job: Job, table: Table, robot: str, chosen: Chosen, extra: dict[str, A
     facts, verdict = summary_lines(robot, chosen.name, extra)
     job.say(facts)
     if chosen.treatment.align and job.out.format == "csv":
-        job.say(f"CSV does not keep {_kept(extra)}: write -o FILE.parquet for validate to apply it")
+        job.say(f"CSV {_lost(extra)}: write -o FILE.parquet for validate to apply it")
     job.say(verdict, extra["verdict"])
 
 
-def _kept(extra: dict[str, Any]) -> str:
-    """What validate needs beside the parameters."""
-    return "the delay and what was fitted as well" if extra.get(ADDITIONS) else "the delay"
+def _lost(extra: dict[str, Any]) -> str:
+    """What validate needs beside the parameters, and CSV lacks."""
+    more = bool(extra.get(ADDITIONS))
+    return (
+        "keeps neither the delay nor what was fitted as well" if more else "does not keep the delay"
+    )
 
 
 def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
