@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from unit.pendulum import ARM, MODEL, H, motion
 from unit.regressions import estimated
 
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
-from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.additions import (
     Addition,
     Shapes,
@@ -28,32 +28,14 @@ from scarid_cli.algorithms.statistics.alternatives import (
     SLOW,
     SPRING,
     STRIBECK,
-    Model,
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.explanations import Explanation
 from scarid_cli.arrays import Array
 
-ARM = load("planar2-gravity")
-MODEL = Model(ARM, list(range(len(ARM.names))))
-H = 0.005  # s
 SAMPLES = 6000
 NOISE = 0.02  # N m
-SINES = [[(1.0, 0.31, 0.0), (0.4, 0.83, 1.0)], [(0.8, 0.23, 2.0), (0.3, 1.1, 0.5)]]
 Beyond = Callable[[Array], Array]
-
-
-def motion() -> Array:
-    """Positions, velocities and accelerations (3, joints, samples) of sums of sines."""
-    t = np.arange(SAMPLES) * H
-    found = np.zeros((3, 2, SAMPLES))
-    for joint, sines in enumerate(SINES):
-        for size, frequency, phase in sines:
-            w = 2.0 * np.pi * frequency
-            found[0, joint] += size * np.sin(w * t + phase)
-            found[1, joint] += size * w * np.cos(w * t + phase)
-            found[2, joint] -= size * w * w * np.sin(w * t + phase)
-    return found
 
 
 def nothing(at: Array) -> Array:

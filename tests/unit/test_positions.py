@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from unit.arms import URDF
+from unit.pendulum import ARM, MODEL, H, motion
 from unit.regressions import estimated
 
 from scarid_cli.algorithms.estimators import ls
@@ -25,24 +26,6 @@ from scarid_cli.algorithms.statistics.positions import (
 )
 from scarid_cli.algorithms.statistics.sentences import notes_of
 from scarid_cli.arrays import Array
-
-ARM = load("planar2-gravity")
-MODEL = Model(ARM, list(range(len(ARM.parameters))))
-H = 0.005  # s
-SINES = [[(1.0, 0.31, 0.0), (0.4, 0.83, 1.0)], [(0.8, 0.23, 2.0), (0.3, 1.1, 0.5)]]
-
-
-def motion(samples: int = 6000) -> Array:
-    """Positions, velocities and accelerations (3, joints, samples) of sums of sines."""
-    t = np.arange(samples) * H
-    found = np.zeros((3, 2, samples))
-    for joint, sines in enumerate(SINES):
-        for size, frequency, phase in sines:
-            w = 2.0 * np.pi * frequency
-            found[0, joint] += size * np.sin(w * t + phase)
-            found[1, joint] += size * w * np.cos(w * t + phase)
-            found[2, joint] -= size * w * w * np.sin(w * t + phase)
-    return found
 
 
 def torques(at: Array) -> Array:
