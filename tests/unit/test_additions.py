@@ -33,7 +33,6 @@ from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.explanations import Explanation
 from scarid_cli.arrays import Array
 
-SAMPLES = 6000
 NOISE = 0.02  # N m
 Beyond = Callable[[Array], Array]
 
@@ -72,7 +71,7 @@ def log(beyond: Beyond, seed: int = 0) -> Rows:
     true = motion()
     torque = ARM.torques(ARM.regressor(*true), ARM.apriori) + beyond(true)
     noise = NOISE * np.random.default_rng(seed).standard_normal(torque.shape)
-    return rows_of(ARM, np.stack((*true, torque + noise)), np.arange(SAMPLES), H)
+    return rows_of(ARM, np.stack((*true, torque + noise)), np.arange(true.shape[2]), H)
 
 
 def diagnosed(rows: Rows) -> Diagnostics:
