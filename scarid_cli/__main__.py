@@ -135,7 +135,7 @@ def _mend_streams() -> None:
 
 
 def _flushed(status: int) -> int:
-    """Flush standard output here: at the end of the interpreter, a failure would exit with 120."""
+    """Flush the outputs here: at the end of the interpreter, a failure would exit with 120."""
     try:
         sys.stdout.flush()
     except BrokenPipeError:
@@ -145,6 +145,10 @@ def _flushed(status: int) -> int:
     with contextlib.suppress(OSError):
         null = os.open(os.devnull, os.O_WRONLY)
         os.dup2(null, 1)
+        try:
+            sys.stderr.flush()
+        except OSError:  # the status says it as well
+            os.dup2(null, 2)
     return status
 
 
