@@ -128,7 +128,7 @@ def parameters(
     known_errors = found.diagnostics.covariance
     nan = np.full(len(found.kept), np.nan)
     robust = found.diagnostics.errors if known_errors else nan
-    half = robust * known_errors.quantile if known_errors else nan
+    half = robust * found.diagnostics.quantiles
     estimates = found.found.fit.estimates
     errors = found.found.fit.standard_errors(variance=variance)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -15,7 +15,12 @@ from scarid_cli.algorithms.regression.rows import faded, plain
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.diagnostics import diagnose
-from scarid_cli.algorithms.statistics.jackknife import inflation, jackknife, quantile
+from scarid_cli.algorithms.statistics.jackknife import (
+    inflation,
+    interval_quantiles,
+    jackknife,
+    quantile,
+)
 from scarid_cli.algorithms.statistics.residuals import residuals
 from scarid_cli.arrays import Array
 
@@ -190,3 +195,13 @@ def test_errors_of_a_long_record_are_those_of_its_rows() -> None:
     by_blocks = diagnose(rows, found, P, Blocks.every(H).add(rows).whole())
     np.testing.assert_allclose(by_blocks.errors, by_rows.errors, rtol=0.3)
     assert by_blocks.errors.mean() == pytest.approx(by_rows.errors.mean(), rel=0.1)
+
+
+def test_intervals_allow_once_for_errors_that_are_not_well_known() -> None:
+    """Student's t for those of ten blocks, 1.96 for larger ones, and no less than those of blocks.
+
+    Errors of long disturbances allow for it themselves.
+    """
+    student, normal = scipy.stats.t.ppf(0.975, 9), scipy.stats.norm.ppf(0.975)
+    found = interval_quantiles(10.0, np.array([1.0, 1.1, 1.5]))
+    assert found == pytest.approx([student, student / 1.1, normal], rel=2e-3)

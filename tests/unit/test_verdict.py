@@ -55,6 +55,7 @@ def evidence(**changes: object) -> Evidence:
         blocks=BLOCKS,
         scatter=0.01 * np.ones(8),
         errors=0.01 * np.ones(8),
+        quantiles=2.0 * np.ones(8),
         matrix=1e-4 * np.eye(8),
         joints=(GOOD, replace(GOOD, torque=0.5)),
         effects=(effect(PARALLEL), effect(SIGNALS)),

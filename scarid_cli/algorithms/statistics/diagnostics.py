@@ -30,6 +30,7 @@ from scarid_cli.algorithms.statistics.halves import Halves
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
     inflation,
+    interval_quantiles,
     jackknife,
     jackknife_of_blocks,
 )
@@ -48,7 +49,8 @@ class Diagnostics:
     out blocks and those from the autocovariance of the residuals. `errors` (own parameters) also
     allow for the `effects` of alternatives to the model and for the errors of the torque constants.
     `matrix` (own, own) is the covariance of the estimates with all of that. `blocks` is the
-    effective number of blocks. `gains` (joints, own) is how far the estimates move per relative
+    effective number of blocks, and `quantiles` (own) are half the widths of 95 % intervals, in
+    errors. `gains` (joints, own) is how far the estimates move per relative
     change of the torque constant of a joint. `bursts` are the intervals that the model does not
     explain, counted from sample 0 of a record that is known as a whole. `halves` are the estimates
     of its halves, None if these do not determine them. `offsets` [N m or N] are those of the
@@ -60,6 +62,7 @@ class Diagnostics:
     blocks: float
     scatter: Array
     errors: Array
+    quantiles: Array
     matrix: Array
     joints: tuple[JointResidual, ...]
     effects: tuple[Effect, ...]
@@ -119,6 +122,7 @@ def diagnose(
         blocks=blocks,
         scatter=scatter,
         errors=stated.errors,
+        quantiles=interval_quantiles(blocks, longer[:own]),
         matrix=stated.matrix,
         joints=residuals(rows, estimates if modelled is None else modelled, record),
         effects=effects,

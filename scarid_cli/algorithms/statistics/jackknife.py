@@ -41,11 +41,6 @@ class RobustCovariance:
         """The covariance of the first `own` estimates."""
         return replace(self, matrix=self.matrix[:own, :own])
 
-    @property
-    def quantile(self) -> float:
-        """Half the width of a 95 % confidence interval, in standard errors."""
-        return quantile(0.975, self.effective - 1.0)
-
 
 def jackknife(rows: Rows, found: Estimation) -> RobustCovariance:
     """The covariance from leaving out blocks of half a second.
@@ -195,6 +190,16 @@ def _times(W: Array, scales: Array, whitening: Array | None) -> Array:
         scaled = scaled * np.all(scales > 0.0, axis=1).reshape(-1, 1, 1)
     mixed: Array = np.einsum("ij,kjp->kip", whitening, scaled)
     return mixed
+
+
+def interval_quantiles(blocks: float, longer: Array) -> Array:
+    """Half the widths of 95 % intervals, in errors that are `longer` times those of blocks.
+
+    The variance of few blocks is not well known, which Student's t allows for. The errors of long
+    disturbances allow for that themselves (`unknown` in autocovariance.py), so that these need no
+    more than the quantile of a normal distribution.
+    """
+    return np.maximum(quantile(0.975, blocks - 1.0) / longer, NormalDist().inv_cdf(0.975))
 
 
 def quantile(probability: float, freedom: float) -> float:
