@@ -183,6 +183,35 @@ def test_friction_of_the_load_is_fitted_and_predicted(shell: Run, tmp_path: Path
     assert all(own < 0.9 * other for own, other in zip(*errors, strict=True))
 
 
+def test_torque_ripple_is_fitted_and_predicted(shell: Run, tmp_path: Path) -> None:
+    """As of cogging motors: 0.2 N m with 10 and 0.03 N m with 8 periods per rad."""
+    once = shell(
+        "for seed in 3 4; do scarid trajgen -q --seed $seed --duration 20 | scarid simulate -q"
+        " --seed $seed --with ripple=0.2,0.03 --with ripple-cycles=10,8 -o log$seed.parquet; done;"
+        " scarid identify log3.parquet -o p.parquet"
+    )
+    number = r"([\d.]+)"
+    found = re.search(
+        r": good: .*; the torque of joints 1 and 2 ripples with the position"
+        rf" \({number} and {number} periods per rad\), as of cogging motors or of gears, for which"
+        rf" there is no term; fitted as well, with {number} and {number} N m\n",
+        once.err,
+    )
+    assert found, once.err
+    assert [float(x) for x in found.groups()] == pytest.approx([10.0, 8.0, 0.2, 0.03], rel=0.1)
+    checked = "scarid validate log4.parquet --parameters"
+    kept, lost = (
+        shell(f"scarid convert -q p.parquet -o p.csv; {checked} {file}")
+        for file in ("p.parquet", "p.csv")
+    )
+    assert "scarid validate: unchanged: " in kept.err
+    own, other = (
+        [float(row["relative_error"]) for row in csv.DictReader(one.out.splitlines())]
+        for one in (kept, lost)
+    )
+    assert all(x < 0.9 * y for x, y in zip(own, other, strict=True))
+
+
 def test_the_offset_beside_a_spring_is_not_better_known_than_where_it_is_slack(
     shell: Run, tmp_path: Path
 ) -> None:

@@ -24,7 +24,9 @@ from scarid_cli.algorithms.statistics.alternatives import (
     DRIFT,
     LOAD,
     OFFSET,
+    RIPPLE,
     SATURATION,
+    SINE,
     SLOW,
     SPRING,
     STRIBECK,
@@ -62,6 +64,11 @@ def of_the_speed(at: Array) -> Array:
     return np.array([[0.2], [0.0]]) * np.sign(at[1]) * np.exp(-((at[1] / 0.4) ** 2))
 
 
+def rippled(at: Array) -> Array:
+    """Ripple of the first joint, whose torque is 0.1 N m at 0."""
+    return np.array([[0.12], [0.0]]) * np.sin(2.0 * np.pi * 3.1 * at[0] + 1.0)
+
+
 def of_two_kinds(at: Array) -> Array:
     return of_the_load(at) + pulled(at) + of_the_speed(at)
 
@@ -84,6 +91,7 @@ def diagnosed(rows: Rows) -> Diagnostics:
         (of_the_load, {(LOAD, 0), (LOAD, 1)}),
         (of_the_first_load, {(LOAD, 0)}),
         (pulled, {(SPRING, 1)}),
+        (rippled, {(RIPPLE, 0)}),
     ],
 )
 def test_what_explains_the_torques_alone_is_found(
@@ -107,7 +115,22 @@ def test_of_several_causes_none_explains_the_torques_alone() -> None:
 
 def test_noise_is_seldom_explained() -> None:
     """Of 100 logs 1 is expected; more than 4 come by chance once in 250 times."""
-    assert sum(bool(diagnosed(log(nothing, seed)).explanations) for seed in range(100)) <= 4
+    found = [diagnosed(log(nothing, seed)) for seed in range(100)]
+    assert sum(bool(one.explanations) for one in found) <= 4
+    ripples = [effect for one in found for effect in one.effects if effect.name == RIPPLE]
+    assert len(ripples) == 100
+    assert sum(effect.significant() for effect in ripples) <= 4  # of hundreds that are tried
+
+
+def explained(rows: Rows, without: Diagnostics) -> tuple[Array, Diagnostics]:
+    """The estimates with the explanation, and their diagnostics."""
+    additions = of_explanation(without.explanations[0], rows, {0, 1})
+    plain = estimated(wls.Estimator(), rows).fit.estimates
+    wide = Shapes(additions, MODEL, plain).beside(rows)
+    found = estimated(wls.Estimator(), wide)
+    curves = {x.joint for x in additions if x.name in DECAYED}
+    own = len(ARM.names)
+    return found.fit.estimates[:own], diagnose(wide, found, own, model=MODEL, curves=curves)
 
 
 @pytest.mark.parametrize("beyond", [of_the_load, pulled, of_the_speed])
@@ -115,20 +138,28 @@ def test_with_the_explanation_the_estimates_are_right(beyond: Beyond) -> None:
     """Without it, some are off by more than three errors from noise."""
     rows = log(beyond)
     without = diagnosed(rows)
-    additions = of_explanation(without.explanations[0], rows, {0, 1})
     plain = estimated(wls.Estimator(), rows).fit.estimates
     assert np.any(np.abs(plain - ARM.apriori) > 3.0 * without.scatter)
-    wide = Shapes(additions, MODEL, plain).beside(rows)
-    found = estimated(wls.Estimator(), wide)
-    curves = {x.joint for x in additions if x.name in DECAYED}
-    own = len(ARM.names)
-    stated = diagnose(wide, found, own, model=MODEL, curves=curves)
-    off = np.abs(found.fit.estimates[:own] - ARM.apriori)
-    assert np.all(off < 3.5 * stated.errors)
+    estimates, stated = explained(rows, without)
+    assert np.all(np.abs(estimates - ARM.apriori) < 3.5 * stated.errors)
+
+
+def test_with_its_ripple_a_joint_is_known_as_well_as_without_any() -> None:
+    """Its friction and inertia, of which the ripple made the errors over ten times as large."""
+    smooth, rows = log(nothing), log(rippled)
+    without = diagnosed(rows)
+    estimates, stated = explained(rows, without)
+    assert np.all(np.abs(estimates - ARM.apriori) < 3.5 * stated.errors)
+    first = [ARM.names.index(name) for name in ("ZZ1R", "MX1R", "Fv1", "Fc1")]
+    usual = diagnosed(smooth).scatter[first]
+    assert np.all(without.scatter[first] > 10.0 * usual)
+    assert np.all(stated.scatter[first] < 1.3 * usual)
 
 
 def test_a_spring_is_slack_somewhere_unless_the_joint_has_an_offset() -> None:
-    explanation = Explanation(frozenset({(SPRING, 0), (SPRING, 1)}), clearness=2.0, threshold=4.0)
+    explanation = Explanation(
+        frozenset({(SPRING, 0), (SPRING, 1)}), clearness=2.0, threshold=4.0, cycles=np.zeros(2)
+    )
     found = [(x.name, x.joint) for x in of_explanation(explanation, log(pulled), {0})]
     assert found == [(OFFSET, 1), (SPRING, 0), (SPRING, 1)]
 
@@ -159,6 +190,16 @@ def test_pooled_additions_are_the_mean_of_those_of_all_logs() -> None:
         Addition(STRIBECK, 1, 1.0, 0.15),
     )
     assert mean_additions([first]) == tuple(first)
+
+
+def test_pooled_ripples_keep_their_periods() -> None:
+    """The mean of the torques of two ripples is not one of a ripple between them."""
+    sets = [[Addition(SINE, 0, 1.0, 0.1, cycles)] for cycles in (9.9, 10.1)]
+    rows = log(nothing)
+    pooled, *own = (
+        Shapes(found, MODEL, ARM.apriori).torques(rows) for found in (mean_additions(sets), *sets)
+    )
+    assert pooled == pytest.approx(np.mean(own, axis=0), abs=1e-12)
 
 
 def test_gears_take_a_part_of_the_load_away() -> None:

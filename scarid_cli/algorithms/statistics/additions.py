@@ -17,10 +17,13 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.alternatives import (
+    COSINE,
     DRIFT,
     LOAD,
     OFFSET,
+    RIPPLE,
     SHAPES,
+    SINE,
     SPRING,
     Model,
     Signals,
@@ -33,13 +36,15 @@ from scarid_cli.arrays import Array
 class Addition:
     """A torque of a joint (from 0): `size` times one of the SHAPES, whose name it has.
 
-    `usual` [rad/s or m/s] is the speed by which the shape scales velocities.
+    `usual` [rad/s or m/s] is the speed by which the shape scales velocities, and `cycles` the
+    periods of a ripple per rad or m, 0 for others.
     """
 
     name: str
     joint: int
     usual: float
     size: float = np.nan
+    cycles: float = 0.0
 
     @property
     def lasts(self) -> bool:
@@ -62,17 +67,25 @@ def of_explanation(
     usual = np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
     found = explanation.torques
     slack = {(OFFSET, j) for name, j in found if name == SPRING and j not in constant}
-    return tuple(Addition(name, j, float(usual[j])) for name, j in sorted(slack | found))
+    cycles = {j: float(explanation.cycles[j]) for name, j in found if name == RIPPLE}
+    waves = {(wave, j) for wave in (SINE, COSINE) for j in cycles}
+    plain = {(name, j) for name, j in found if name != RIPPLE}
+    return tuple(
+        Addition(name, j, float(usual[j]), cycles=cycles.get(j, 0.0))
+        for name, j in sorted(slack | waves | plain)
+    )
 
 
 def mean_additions(sets: Sequence[Sequence[Addition]]) -> tuple[Addition, ...]:
     """The mean of several sets of additions, of which each may have others."""
-    alike: dict[tuple[str, int], list[Addition]] = {}
+    alike: dict[tuple[str, int, float], list[Addition]] = {}
     for addition in chain.from_iterable(sets):
-        alike.setdefault((addition.name, addition.joint), []).append(addition)
+        alike.setdefault((addition.name, addition.joint, addition.cycles), []).append(addition)
     return tuple(
-        Addition(name, joint, fmean(x.usual for x in own), sum(x.size for x in own) / len(sets))
-        for (name, joint), own in alike.items()
+        replace(
+            own[0], usual=fmean(x.usual for x in own), size=sum(x.size for x in own) / len(sets)
+        )
+        for own in alike.values()
     )
 
 
@@ -95,14 +108,13 @@ class Shapes:
 
     def columns(self, rows: Rows) -> Array:
         """The shapes (samples, joints, additions)."""
-        usual = np.ones(rows.y.shape[1])
-        for addition in self.additions:
-            usual[addition.joint] = addition.usual
-        signals = Signals.of(rows, self.model, self.theta, usual)
+        signals = Signals.of(rows, self.model, self.theta)
         columns = np.zeros((*rows.y.shape, len(self.additions)))
+        joints = np.ones(rows.y.shape[1])
         for k, addition in enumerate(self.additions):
-            j = addition.joint
-            columns[:, j, k] = SHAPES[addition.name](signals)[:, j]
+            usual, cycles = addition.usual * joints, addition.cycles * joints
+            own = replace(signals, usual=usual, cycles=cycles)
+            columns[:, addition.joint, k] = SHAPES[addition.name](own)[:, addition.joint]
         return columns
 
     def torques(self, rows: Rows) -> Array:

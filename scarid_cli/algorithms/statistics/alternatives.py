@@ -11,21 +11,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows, predicted, runs
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.terms import Mass, Term
+from scarid_cli.algorithms.statistics.ripple import gain
 from scarid_cli.arrays import Array, Marks
 
 OFFSET, ASYMMETRY, LOAD, SPRING = "offset", "asymmetry", "load", "spring"
 SATURATION, DRIFT, TILT = "saturation", "drift", "tilt"
+RIPPLE, SINE, COSINE = "ripple", "ripple as a sine", "ripple as a cosine"
 SLOW, STRIBECK, CURVATURE = "slow friction", "Stribeck", "curvature"
 # Of the root-mean-square velocity: where the friction of slow motion has decayed. Together the
 # three are a curve of friction over the speed.
 DECAYED = {SLOW: 0.1, STRIBECK: 0.3, CURVATURE: 1.0}
-TORQUES = (OFFSET, ASYMMETRY, *DECAYED, LOAD, SPRING, SATURATION, DRIFT, TILT)
+TORQUES = (OFFSET, ASYMMETRY, *DECAYED, LOAD, SPRING, SATURATION, DRIFT, TILT, RIPPLE)
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
 BESIDE_FRICTION = ("offset", "stribeck")  # terms that are not friction alone, but go with it
 
@@ -115,7 +118,8 @@ class Signals:
 
     `q`, `v` and `time` [s] from the start; `predicted` are the torques of the model, `transmitted`
     those of it that pass through the gears, 0 without a model. `usual` (joints) are the speeds
-    by which velocities are scaled.
+    by which velocities are scaled, `cycles` (joints) the periods of ripple per rad or m, and
+    `passed` what the low-pass behind the rows leaves of a frequency [Hz].
     """
 
     q: Array
@@ -124,26 +128,39 @@ class Signals:
     predicted: Array
     transmitted: Array
     usual: Array
+    cycles: Array
+    passed: Callable[[Array], Array]
 
     @classmethod
     def of(
-        cls, rows: Rows, model: Model | None, estimates: Array, usual: Array | None = None
+        cls,
+        rows: Rows,
+        model: Model | None,
+        estimates: Array,
+        *,
+        cycles: Array | None = None,
     ) -> Signals:
         """Those of the rows, at estimates of the first columns of W.
 
-        The usual speeds are by default the root mean squares of these rows.
+        The usual speeds are the root mean squares of these rows.
         """
         q, v = rows.motion[0].T, rows.motion[1].T
         time = np.broadcast_to(rows.h * (rows.at - rows.at[0])[:, None], v.shape)
-        if usual is None:
-            usual = np.sqrt(np.mean(v**2, axis=0)) + 1e-300
+        usual = np.sqrt(np.mean(v**2, axis=0)) + 1e-300
+        if cycles is None:
+            cycles = np.zeros(v.shape[1])
         own = np.flatnonzero(model.transmits) if model else np.empty(0, dtype=np.int64)
         torques = predicted(rows, estimates), rows.W[:, :, own] @ estimates[own]
-        return cls(q, v, time, *torques, usual)
+        return cls(q, v, time, *torques, usual, cycles, partial(gain, rows))
 
     def friction(self, decayed: float) -> Array:
         """Friction that has decayed at this part of the usual speed."""
         return np.asarray(np.sign(self.v) * np.exp(-((self.v / (decayed * self.usual)) ** 2)))
+
+    def ripple(self, wave: Callable[[Array], Array]) -> Array:
+        """What is left of a sine or cosine; 0 where there is no ripple."""
+        left = self.passed(self.cycles * self.v) * wave(2.0 * np.pi * self.cycles * self.q)
+        return np.asarray(left * (self.cycles > 0.0))
 
 
 SHAPES: dict[str, Callable[[Signals], Array]] = {
@@ -157,15 +174,23 @@ SHAPES: dict[str, Callable[[Signals], Array]] = {
     DRIFT: lambda x: x.time - x.time.mean(axis=0),
     # Friction of gears grows with the torque that they transmit, which only a model can tell.
     LOAD: lambda x: np.sign(x.v) * np.abs(x.transmitted),
+    SINE: lambda x: x.ripple(np.sin),
+    COSINE: lambda x: x.ripple(np.cos),
 }
 
 
-def torque_columns(rows: Rows, model: Model | None, estimates: Array) -> dict[str, Array]:
-    """Further columns (samples, joints, columns) of each alternative for the torques."""
-    signals = Signals.of(rows, model, estimates)
+def torque_columns(
+    rows: Rows, model: Model | None, estimates: Array, cycles: Array | None = None
+) -> dict[str, Array]:
+    """Further columns (samples, joints, columns) of each alternative for the torques.
+
+    `cycles` (joints) are the periods of ripple per rad or m, 0 where there is none.
+    """
+    signals = Signals.of(rows, model, estimates, cycles=cycles)
     shapes = {name: shape for name, shape in SHAPES.items() if model or name != LOAD}
     columns = {name: diagonal(shape(signals)) for name, shape in shapes.items()}
     columns[SPRING] = np.concatenate((columns[OFFSET], columns[SPRING]), axis=2)
+    columns[RIPPLE] = np.concatenate((columns.pop(SINE), columns.pop(COSINE)), axis=2)
     tilt = model.tilted(rows.motion[0], estimates[: len(model.kept)]) if model else None
     if tilt is not None:
         columns[TILT] = tilt

@@ -56,6 +56,7 @@ class Diagnostics:
     of its halves, None if these do not determine them. `offsets` [N m or N] are those of the
     torques of joints (from 0) that were fitted beside the parameters, and `additions` what else
     was. Each of the `explanations` alone explains nearly all that the torques are beyond the model.
+    `cycles` (joints) are the periods per rad or m of the likeliest ripple.
     """
 
     covariance: RobustCovariance | None
@@ -71,6 +72,7 @@ class Diagnostics:
     bursts: tuple[Interval, ...] = ()
     halves: Halves | None = None
     explanations: tuple[Explanation, ...] = ()
+    cycles: Array = field(default_factory=lambda: np.zeros(0))
     offsets: dict[int, float] = field(default_factory=dict)
     additions: tuple[Addition, ...] = ()
 
@@ -139,6 +141,7 @@ def diagnose(
         bursts=() if record else bursts_of(rows, trimmed(whole)),
         halves=trial.halves(longer),
         explanations=explanations(trial, effects) if model and trial.plain else (),
+        cycles=trial.ripples.cycles,
     )
 
 

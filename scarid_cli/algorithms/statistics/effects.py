@@ -12,6 +12,7 @@ from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
+    RIPPLE,
     SLOW,
     STRIBECK,
     Model,
@@ -25,6 +26,7 @@ from scarid_cli.algorithms.statistics.halves import Halves, halves
 from scarid_cli.algorithms.statistics.jackknife import block_numbers, quantile
 from scarid_cli.algorithms.statistics.parallel import smoothed
 from scarid_cli.algorithms.statistics.products import Products, Solved, jackknifed
+from scarid_cli.algorithms.statistics.ripple import Ripples
 from scarid_cli.arrays import Array, Numbers
 
 REVERSALS, PARALLEL, LOW_PASS = "reversals", "parallel", "low-pass"
@@ -44,7 +46,7 @@ class Effect:
     treated alike. `amounts` are the statistics that show whether there is an effect, with their
     `noise`, from so many `blocks`: the estimates of the further columns of an alternative (nan for
     those that are not in it), or else how far the parameters move. One that is `suspected` counts
-    whether it is significant or not.
+    whether it is significant or not. It is the best of so many that were `searched`.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Effect:
     noise: Array
     blocks: int
     suspected: bool = False
+    searched: float = 1.0
 
     @cached_property
     def ratios(self) -> Array:
@@ -68,9 +71,9 @@ class Effect:
         return float(np.max(self.ratios, initial=0.0))
 
     @property
-    def tests(self) -> int:
+    def tests(self) -> float:
         """The number of amounts that were tested."""
-        return int(np.count_nonzero(~np.isnan(self.amounts)))
+        return self.searched * np.count_nonzero(~np.isnan(self.amounts))
 
     def threshold(self, level: float = CERTAIN) -> float:
         """The ratio that noise alone exceeds with this probability in any of the tests."""
@@ -177,8 +180,14 @@ class Trial:
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
         """The products with what torques may have beyond the model, and the places of those."""
         return self.products(
-            self.rows.scales, torque_columns(self.rows, self.model, self.estimates)
+            self.rows.scales,
+            torque_columns(self.rows, self.model, self.estimates, self.ripples.cycles),
         )
+
+    @cached_property
+    def ripples(self) -> Ripples:
+        """The likeliest ripple of the torque of each joint."""
+        return Ripples.of(self.rows)
 
     @cached_property
     def plain(self) -> Solved | None:
@@ -272,7 +281,7 @@ class Trial:
         found = []
         for name, columns in places.items():
             new = [c for c in products.independent([*given, *columns]) if c not in given]
-            if name == SLOW:
+            if name in (SLOW, RIPPLE):
                 new = [c for c in new if products.spread[c] >= BLOCKS]
             solved = products.solved([*given, *new]) if new else None
             if solved:
@@ -321,4 +330,5 @@ class Trial:
             at = [given + column for column in tested if column is not None]
             amounts[there], noise[there] = other.whole[at], jackknifed(other.deviations[:, at])
         suspected = name in self.suspected
-        return Effect(name, moved, errors, apart, amounts, noise, self.count, suspected)
+        searched = self.ripples.tried if name == RIPPLE else 1.0
+        return Effect(name, moved, errors, apart, amounts, noise, self.count, suspected, searched)

@@ -9,14 +9,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, SHAPES
+from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, RIPPLE, SHAPES
 from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial, clear, level_among
+from scarid_cli.arrays import Array
 
 # The names of alternatives for the torques, with the joints (from 0) to whose torques they belong.
 Torques = frozenset[tuple[str, int]]
 RARE = 0.001  # probability of fitting what is not there
 LEFT = 0.25  # times as clear as the alternative itself: what it may leave unexplained
-FITTED = SHAPES.keys() - {OFFSET}  # which offsets.py looks for
+FITTED = {*SHAPES.keys(), RIPPLE} - {OFFSET}  # which offsets.py looks for
 
 
 @dataclass(frozen=True)
@@ -24,12 +25,14 @@ class Explanation:
     """An alternative that explains nearly all that the torques are beyond the model.
 
     It is as clear as its `clearness`; what is left is not clearer than `rest`. To be fitted, it
-    must be larger than so many errors as its `threshold` says.
+    must be larger than so many errors as its `threshold` says. `cycles` (joints) are the periods
+    per rad or m that a ripple has.
     """
 
     torques: Torques
     clearness: float
     threshold: float
+    cycles: Array
 
     @property
     def rest(self) -> float:
@@ -47,7 +50,7 @@ def explanations(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, 
         if effect.name in FITTED:
             torques = _torques(trial, [effect], level)
             least = effect.threshold(RARE / CERTAIN * level)
-            one = Explanation(torques, effect.clearness(level), least)
+            one = Explanation(torques, effect.clearness(level), least, trial.ripples.cycles)
             found.append(_completed(trial, one))
     return tuple(sorted(filter(None, found), key=lambda x: -x.clearness))
 

@@ -11,12 +11,15 @@ from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.statistics.additions import Addition
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
+    COSINE,
     CURVATURE,
     DECAYED,
     DRIFT,
     LOAD,
     OFFSET,
+    RIPPLE,
     SATURATION,
+    SINE,
     SLOW,
     SPRING,
     STRIBECK,
@@ -46,6 +49,8 @@ ADVICE = {
     SATURATION: "the logged torque of {joints} is not proportional to the real one, as when a "
     "motor saturates",
     DRIFT: "the torque of {joints} drifts during the log",
+    RIPPLE: "the torque of {joints} ripples with the position ({periods}), as of cogging motors or "
+    "of gears, for which there is no term",
     TILT: "gravity acts in another direction than described, as on a tilted base (state gravity = "
     "{gravity} in the TOML file of the robot)",
     ZEROS: "where the log has a position of 0, {zeros} (state it as `zero` in the TOML file of the "
@@ -101,22 +106,47 @@ def additions_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
     notes = _offsets(diagnostics, robot)
     added = [x for x in diagnostics.additions if x.name != OFFSET]  # where a spring is slack
     if added:
-        kind = CURVATURE if added[0].name in DECAYED else added[0].name
-        joints = joints_named(sorted({addition.joint + 1 for addition in added}))
+        kind = {**dict.fromkeys(DECAYED, CURVATURE), SINE: RIPPLE, COSINE: RIPPLE}.get(
+            added[0].name, added[0].name
+        )
+        cycles = {x.joint: x.cycles for x in sorted(added, key=lambda x: x.joint)}
+        advice = ADVICE[kind].format(
+            joints=joints_named(j + 1 for j in cycles), periods=_periods(cycles, robot)
+        )
         what = "a curve over the speed was fitted as well"
-        if kind != CURVATURE:
+        if kind == RIPPLE:
+            what = f"fitted as well, with {_amplitudes(added, robot)}"
+        elif kind != CURVATURE:
             what = f"fitted as well: {_sizes(added, robot)}"
-        notes.append(f"{ADVICE[kind].format(joints=joints)}; {what}")
+        notes.append(f"{advice}; {what}")
     return notes
 
 
 def _sizes(added: Sequence[Addition], robot: Robot) -> str:
     """`0.02 and 0.0185 of this torque`, or `0.0993 N m/rad`."""
     units = [_unit(addition.name, robot.joints[addition.joint]) for addition in added]
-    sizes = [f"{addition.size:.3g}" for addition in added]
+    return _quantities([addition.size for addition in added], units)
+
+
+def _periods(cycles: dict[int, float], robot: Robot) -> str:
+    """`10 and 9.98 periods per rad`, of ripple of these joints (from 0)."""
+    units = [f"periods per {robot.joints[j].unit}" for j in cycles]
+    return _quantities(list(cycles.values()), units)
+
+
+def _amplitudes(added: Sequence[Addition], robot: Robot) -> str:
+    """`0.1 and 0.03 N m`, of the sines and cosines of each joint."""
+    joints = sorted({x.joint for x in added})
+    sizes = [float(np.linalg.norm([x.size for x in added if x.joint == j])) for j in joints]
+    return _quantities(sizes, [robot.joints[j].torque_unit for j in joints])
+
+
+def _quantities(values: Sequence[float], units: Sequence[str]) -> str:
+    """Values with three digits, and their units; one that all have is said once."""
+    texts = [f"{value:.3g}" for value in values]
     if len(set(units)) == 1:
-        return f"{listed(sizes)} {units[0]}"
-    return listed([f"{size} {unit}" for size, unit in zip(sizes, units, strict=True)])
+        return f"{listed(texts)} {units[0]}"
+    return listed([f"{text} {unit}" for text, unit in zip(texts, units, strict=True)])
 
 
 def _unit(name: str, joint: Joint) -> str:
@@ -152,17 +182,20 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> li
     wide = [name for name, x in zip(names, _wide(best, least), strict=True) if x]
     allow = "interval" if len(wide) == 1 else "intervals"
     verb = "allows" if len(wide) == 1 else "allow"
-    advice = ADVICE[best.name].format_map(_amounts(best, robot, level))
+    amounts = _amounts(best, robot, level, diagnostics.cycles)
+    advice = ADVICE[best.name].format_map(amounts)
     return [f"{advice}; the {allow} of {listed(wide)} {verb} for it"]
 
 
-def _amounts(effect: Effect, robot: Robot, level: float) -> dict[str, str]:
-    """What the advice on an alternative names: the joints of it, its zeros or its gravity."""
+def _amounts(effect: Effect, robot: Robot, level: float, cycles: Array) -> dict[str, str]:
+    """What the advice on an alternative names: its joints, zeros, periods or gravity."""
     if effect.name == TILT and robot.body:
         return {"gravity": _vector(tilted(np.array(robot.body.gravity), effect.amounts))}
     count = len(robot.joints)
     found = effect.joints(level, count)
     texts = {"joints": joints_named(j + 1 for j in found) if found else ""}
+    if effect.name == RIPPLE:
+        texts["periods"] = _periods({j: float(cycles[j]) for j in found}, robot)
     if effect.name == ZEROS:
         texts["zeros"] = listed([f"joint {j + 1} is at {_zero(effect, robot, j)}" for j in found])
     return texts
