@@ -31,6 +31,8 @@ from scarid_cli.algorithms.statistics.effects import REVERSALS, Effect, level_am
 from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, ZEROS
 from scarid_cli.arrays import Array, Marks
 
+# The alternatives whose shapes have names of their own.
+KINDS = {**dict.fromkeys(DECAYED, CURVATURE), SINE: RIPPLE, COSINE: RIPPLE}
 NAMED = 2  # estimates whose change is written out
 DECREASES = (
     "friction of {joints} decreases with speed (add Stribeck friction with --estimator separable)"
@@ -104,22 +106,24 @@ def _offsets(diagnostics: Diagnostics, robot: Robot) -> list[str]:
 def additions_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
     """What was fitted beside the parameters, with the terms to add."""
     notes = _offsets(diagnostics, robot)
-    added = [x for x in diagnostics.additions if x.name != OFFSET]  # where a spring is slack
+    # where a spring is slack goes without saying
+    added = sorted((x for x in diagnostics.additions if x.name != OFFSET), key=lambda x: x.joint)
     if added:
-        kind = {**dict.fromkeys(DECAYED, CURVATURE), SINE: RIPPLE, COSINE: RIPPLE}.get(
-            added[0].name, added[0].name
-        )
-        cycles = {x.joint: x.cycles for x in sorted(added, key=lambda x: x.joint)}
-        advice = ADVICE[kind].format(
-            joints=joints_named(j + 1 for j in cycles), periods=_periods(cycles, robot)
-        )
-        what = "a curve over the speed was fitted as well"
-        if kind == RIPPLE:
-            what = f"fitted as well, with {_amplitudes(added, robot)}"
-        elif kind != CURVATURE:
-            what = f"fitted as well: {_sizes(added, robot)}"
-        notes.append(f"{advice}; {what}")
+        kind = KINDS.get(added[0].name, added[0].name)
+        cycles = {x.joint: x.cycles for x in added}
+        joints, periods = joints_named(j + 1 for j in cycles), _periods(cycles, robot)
+        advice = ADVICE[kind].format(joints=joints, periods=periods)
+        notes.append(f"{advice}; {_fitted(kind, added, robot)}")
     return notes
+
+
+def _fitted(kind: str, added: Sequence[Addition], robot: Robot) -> str:
+    """What was fitted of this kind."""
+    if kind == CURVATURE:
+        return "a curve over the speed was fitted as well"
+    if kind == RIPPLE:
+        return f"fitted as well, with {_amplitudes(added, robot)}"
+    return f"fitted as well: {_sizes(added, robot)}"
 
 
 def _sizes(added: Sequence[Addition], robot: Robot) -> str:
