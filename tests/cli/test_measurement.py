@@ -193,8 +193,9 @@ def test_torque_ripple_is_fitted_and_predicted(shell: Run, tmp_path: Path) -> No
     number = r"([\d.]+)"
     found = re.search(
         r": good: .*; the torque of joints 1 and 2 ripples with the position"
-        rf" \({number} and {number} periods per rad\), as of cogging motors or of gears, for which"
-        rf" there is no term; fitted as well, with {number} and {number} N m\n",
+        rf" \({number} periods per rad at joint 1, {number} periods per rad at joint 2\), as of"
+        r" cogging motors or of gears, for which there is no term; fitted as well,"
+        rf" with {number} N m at joint 1, {number} N m at joint 2\n",
         once.err,
     )
     assert found, once.err

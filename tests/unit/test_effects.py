@@ -183,7 +183,7 @@ def test_a_drift_of_the_torque_is_found() -> None:
 def test_a_drift_has_no_mean_and_a_spring_has_one() -> None:
     """An offset is the mean over the log, but the torque of a spring where it is slack."""
     rows = replace(axis(), motion=axis().motion + 0.3)
-    columns = torque_columns(rows, None, AXIS.apriori)
+    columns = torque_columns(rows, None, AXIS.apriori, np.zeros((0, 1)))
     assert abs(columns[DRIFT].mean()) < 1e-9
     assert columns[SPRING].shape == (rows.samples, 1, 2)
     assert columns[SPRING][:, 0, 1].mean() == pytest.approx(rows.motion[0].mean())

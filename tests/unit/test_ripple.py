@@ -34,8 +34,22 @@ def test_the_periods_of_each_joint_are_found(cycles: tuple[float, float]) -> Non
     """Within a tenth of a period over the range of the joint."""
     q = motion()[0]
     found = rows(0.1 * np.cos(2.0 * np.pi * np.array(cycles)[:, None] * q + 0.4))
-    off = Ripples.of(found).cycles - cycles
+    off = Ripples.of(found).cycles[0] - cycles
     assert np.all(np.abs(off) * np.ptp(q, axis=1) < 0.1)
+
+
+def test_further_ripples_of_a_joint_are_found_the_largest_first() -> None:
+    """Three harmonics, of which the second is the largest; the other joint has one ripple."""
+    q = motion()[0]
+    numbers = np.array([[4.0, 2.0, 6.0], [5.0, 0.0, 0.0]])
+    sizes = np.array([[0.12, 0.07, 0.05], [0.1, 0.0, 0.0]])
+    waves = sizes[:, None] * np.sin(2.0 * np.pi * numbers[:, None] * q[:, :, None] + 0.7)
+    found = Ripples.of(rows(waves.sum(axis=2)))
+    assert pytest.approx(numbers, abs=0.04) == found.cycles.T
+
+
+def test_noise_has_one_at_most() -> None:
+    assert len(Ripples.of(rows()).cycles) == 1
 
 
 def test_the_low_pass_leaves_what_its_gain_says() -> None:
@@ -51,4 +65,4 @@ def test_the_low_pass_leaves_what_its_gain_says() -> None:
 def test_a_joint_that_stands_still_has_none() -> None:
     still = rows()
     still.motion[:2, 1] = 0.0
-    assert Ripples.of(still).cycles[1] == 0.0
+    assert np.all(Ripples.of(still).cycles[:, 1] == 0.0)

@@ -67,12 +67,18 @@ def of_explanation(
     usual = np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
     found = explanation.torques
     slack = {(OFFSET, j) for name, j in found if name == SPRING and j not in constant}
-    cycles = {j: float(explanation.cycles[j]) for name, j in found if name == RIPPLE}
-    waves = {(wave, j) for wave in (SINE, COSINE) for j in cycles}
-    plain = {(name, j) for name, j in found if name != RIPPLE}
+    waves = {
+        (wave, j, float(cycles))
+        for name, j in found
+        if name == RIPPLE
+        for cycles in explanation.cycles[:, j]
+        if cycles > 0.0
+        for wave in (SINE, COSINE)
+    }
+    plain = {(name, j, 0.0) for name, j in found | slack if name != RIPPLE}
     return tuple(
-        Addition(name, j, float(usual[j]), cycles=cycles.get(j, 0.0))
-        for name, j in sorted(slack | waves | plain)
+        Addition(name, j, float(usual[j]), cycles=cycles)
+        for name, j, cycles in sorted(plain | waves)
     )
 
 

@@ -137,21 +137,17 @@ class Signals:
         rows: Rows,
         model: Model | None,
         estimates: Array,
-        *,
-        cycles: Array | None = None,
     ) -> Signals:
-        """Those of the rows, at estimates of the first columns of W.
+        """Those of the rows, at estimates of the first columns of W, without ripple.
 
         The usual speeds are the root mean squares of these rows.
         """
         q, v = rows.motion[0].T, rows.motion[1].T
         time = np.broadcast_to(rows.h * (rows.at - rows.at[0])[:, None], v.shape)
         usual = np.sqrt(np.mean(v**2, axis=0)) + 1e-300
-        if cycles is None:
-            cycles = np.zeros(v.shape[1])
         own = np.flatnonzero(model.transmits) if model else np.empty(0, dtype=np.int64)
         torques = predicted(rows, estimates), rows.W[:, :, own] @ estimates[own]
-        return cls(q, v, time, *torques, usual, cycles, partial(gain, rows))
+        return cls(q, v, time, *torques, usual, np.zeros(v.shape[1]), partial(gain, rows))
 
     def friction(self, decayed: float) -> Array:
         """Friction that has decayed at this part of the usual speed."""
@@ -180,17 +176,21 @@ SHAPES: dict[str, Callable[[Signals], Array]] = {
 
 
 def torque_columns(
-    rows: Rows, model: Model | None, estimates: Array, cycles: Array | None = None
+    rows: Rows, model: Model | None, estimates: Array, cycles: Array
 ) -> dict[str, Array]:
     """Further columns (samples, joints, columns) of each alternative for the torques.
 
-    `cycles` (joints) are the periods of ripple per rad or m, 0 where there is none.
+    `cycles` (ripples, joints) are the periods of ripple per rad or m, 0 where there is none.
     """
-    signals = Signals.of(rows, model, estimates, cycles=cycles)
+    signals = Signals.of(rows, model, estimates)
     shapes = {name: shape for name, shape in SHAPES.items() if model or name != LOAD}
+    waves = [shapes.pop(name) for name in (SINE, COSINE)]
     columns = {name: diagonal(shape(signals)) for name, shape in shapes.items()}
     columns[SPRING] = np.concatenate((columns[OFFSET], columns[SPRING]), axis=2)
-    columns[RIPPLE] = np.concatenate((columns.pop(SINE), columns.pop(COSINE)), axis=2)
+    ripples = [replace(signals, cycles=own) for own in cycles]
+    if ripples:
+        parts = [diagonal(wave(ripple)) for ripple in ripples for wave in waves]
+        columns[RIPPLE] = np.concatenate(parts, axis=2)
     tilt = model.tilted(rows.motion[0], estimates[: len(model.kept)]) if model else None
     if tilt is not None:
         columns[TILT] = tilt

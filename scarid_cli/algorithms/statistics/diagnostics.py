@@ -56,7 +56,7 @@ class Diagnostics:
     of its halves, None if these do not determine them. `offsets` [N m or N] are those of the
     torques of joints (from 0) that were fitted beside the parameters, and `additions` what else
     was. Each of the `explanations` alone explains nearly all that the torques are beyond the model.
-    `cycles` (joints) are the periods per rad or m of the likeliest ripple.
+    `cycles` (ripples, joints) are the periods per rad or m of the likeliest ripples.
     """
 
     covariance: RobustCovariance | None
@@ -72,7 +72,7 @@ class Diagnostics:
     bursts: tuple[Interval, ...] = ()
     halves: Halves | None = None
     explanations: tuple[Explanation, ...] = ()
-    cycles: Array = field(default_factory=lambda: np.zeros(0))
+    cycles: Array = field(default_factory=lambda: np.zeros((0, 0)))
     offsets: dict[int, float] = field(default_factory=dict)
     additions: tuple[Addition, ...] = ()
 

@@ -25,8 +25,8 @@ class Explanation:
     """An alternative that explains nearly all that the torques are beyond the model.
 
     It is as clear as its `clearness`; what is left is not clearer than `rest`. To be fitted, it
-    must be larger than so many errors as its `threshold` says. `cycles` (joints) are the periods
-    per rad or m that a ripple has.
+    must be larger than so many errors as its `threshold` says. `cycles` (ripples, joints) are
+    the periods per rad or m that ripples have.
     """
 
     torques: Torques

@@ -3,13 +3,15 @@
 Cogging of a motor and errors of a gear make torques A sin(2 pi n q + phase). The low-pass behind
 the rows leaves of it what it leaves of the frequency n |dq|, so that ripple shows in slow motion.
 The n that explains most of what W leaves of the torque is searched for among all that such rows
-have, with one Fourier transform over the positions for each of some intervals of speeds.
+have, with one Fourier transform over the positions for each of some intervals of speeds. Where it
+explains much, the next one is searched for beside it, as a ripple has harmonics.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import zip_longest
 
 import numpy as np
 
@@ -23,13 +25,15 @@ SPEEDS = 16  # intervals of speed, of which each has one gain
 FINER = 4  # steps of the search per independent number of periods
 NEARER = 8  # steps between two of them
 ORDER = 4  # of the low-pass, where it is not known
+MOST = 3  # ripples of a joint
+MUCH = 0.1  # of the squares that W leaves: a ripple beside which the next one is searched for
 
 
 @dataclass(frozen=True)
 class Ripples:
-    """The periods per rad or m of the likeliest ripple of each joint.
+    """The periods per rad or m of the likeliest ripples of each joint, the largest one first.
 
-    `cycles` (joints) is 0 where the rows could show none. They are the best of so many that were
+    `cycles` (ripples, joints) is 0 where a joint has fewer. They are the best of so many that were
     `tried`, as a mean over the joints.
     """
 
@@ -40,9 +44,10 @@ class Ripples:
     def of(cls, rows: Rows) -> Ripples:
         """From the rows that count."""
         searches = [_Search.of(rows, joint) for joint in range(rows.y.shape[1])]
-        cycles = [search.best() if search else 0.0 for search in searches]
+        found = [search.numbers() if search else [] for search in searches]
         tried = [search.tried if search else 0.0 for search in searches]
-        return cls(np.array(cycles), max(1.0, float(np.mean(tried))))
+        cycles = np.array(list(zip_longest(*found, fillvalue=0.0))).reshape(-1, len(found))
+        return cls(cycles, max(1.0, float(np.mean(tried))))
 
 
 def gain(rows: Rows, frequency: Array) -> Array:
@@ -84,13 +89,25 @@ class _Search:
         W, y = rows.W[counts, joint], rows.y[counts, joint]
         sizes = np.sqrt(np.sum(W**2, axis=0))
         W = W[:, sizes > 0.0] / sizes[sizes > 0.0]
-        search = cls(rows, q - q.min(), np.abs(v), W, y, least, most)
-        return replace(search, y=search._left(y))
+        return cls(rows, q - q.min(), np.abs(v), W, y, least, most).without(W)
 
     @property
     def tried(self) -> float:
         """How many independent numbers of periods there are."""
         return (self.most - self.least) * float(np.ptp(self.q))
+
+    def numbers(self) -> list[float]:
+        """The likeliest number, and further ones as long as all of them explain much."""
+        found, search = list[float](), self
+        while len(found) < MOST:
+            number = search.best()
+            much = search._exactly(number) > MUCH * float(search.y @ search.y)
+            if much or not found:
+                found.append(number)
+            if not much:
+                break
+            search = search.without(np.hstack((search.W, search._waves(number))))
+        return found
 
     def best(self) -> float:
         """The number that explains most."""
@@ -125,13 +142,21 @@ class _Search:
 
     def _exactly(self, number: float) -> float:
         """The squares that this number of periods explains."""
-        waves = gain(self.rows, number * self.v) * np.exp(2j * np.pi * number * self.q)
-        columns = np.stack((waves.real, waves.imag), axis=1)
-        columns = self._left(columns)
+        columns = self.left(self._waves(number))
         found, *_ = np.linalg.lstsq(columns, self.y, rcond=None)
         return float(self.y @ columns @ found)
 
-    def _left(self, x: Array) -> Array:
+    def _waves(self, number: float) -> Array:
+        """The cosine and the sine with this number of periods (rows, 2)."""
+        waves = gain(self.rows, number * self.v) * np.exp(2j * np.pi * number * self.q)
+        return np.stack((waves.real, waves.imag), axis=1)
+
+    def without(self, W: Array) -> _Search:
+        """The search in what these columns W (rows, columns) leave of the torque."""
+        search = replace(self, W=W)
+        return replace(search, y=search.left(self.y))
+
+    def left(self, x: Array) -> Array:
         """What W leaves of x (rows, ...)."""
         return np.asarray(x - self.W @ (self._inverse @ (self.W.T @ x)))
 

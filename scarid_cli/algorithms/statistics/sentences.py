@@ -110,8 +110,8 @@ def additions_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
     added = sorted((x for x in diagnostics.additions if x.name != OFFSET), key=lambda x: x.joint)
     if added:
         kind = KINDS.get(added[0].name, added[0].name)
-        cycles = {x.joint: x.cycles for x in added}
-        joints, periods = joints_named(j + 1 for j in cycles), _periods(cycles, robot)
+        joints = joints_named(dict.fromkeys(x.joint + 1 for x in added))
+        periods = _periods(_ripples(added), robot)
         advice = ADVICE[kind].format(joints=joints, periods=periods)
         notes.append(f"{advice}; {_fitted(kind, added, robot)}")
     return notes
@@ -129,28 +129,41 @@ def _fitted(kind: str, added: Sequence[Addition], robot: Robot) -> str:
 def _sizes(added: Sequence[Addition], robot: Robot) -> str:
     """`0.02 and 0.0185 of this torque`, or `0.0993 N m/rad`."""
     units = [_unit(addition.name, robot.joints[addition.joint]) for addition in added]
-    return _quantities([addition.size for addition in added], units)
+    sizes = [f"{addition.size:.3g}" for addition in added]
+    if len(set(units)) == 1:
+        return f"{listed(sizes)} {units[0]}"
+    return listed([f"{size} {unit}" for size, unit in zip(sizes, units, strict=True)])
 
 
-def _periods(cycles: dict[int, float], robot: Robot) -> str:
-    """`10 and 9.98 periods per rad`, of ripple of these joints (from 0)."""
-    units = [f"periods per {robot.joints[j].unit}" for j in cycles]
-    return _quantities(list(cycles.values()), units)
+Ripple = tuple[int, float]  # the joint (from 0) and the periods per rad or m
+
+
+def _ripples(added: Sequence[Addition]) -> dict[Ripple, float]:
+    """The amplitude of each ripple, from those of its sine and its cosine."""
+    found: dict[Ripple, list[float]] = {}
+    for x in added:
+        found.setdefault((x.joint, x.cycles), []).append(x.size)
+    return {ripple: float(np.linalg.norm(sizes)) for ripple, sizes in found.items()}
+
+
+def _periods(ripples: Iterable[Ripple], robot: Robot) -> str:
+    """`10 periods per rad at joint 1, 8 and 16 periods per rad at joint 2`."""
+    units = [f"periods per {joint.unit}" for joint in robot.joints]
+    return _at_joints(list(ripples), units)
 
 
 def _amplitudes(added: Sequence[Addition], robot: Robot) -> str:
-    """`0.1 and 0.03 N m`, of the sines and cosines of each joint."""
-    joints = sorted({x.joint for x in added})
-    sizes = [float(np.linalg.norm([x.size for x in added if x.joint == j])) for j in joints]
-    return _quantities(sizes, [robot.joints[j].torque_unit for j in joints])
+    """`0.1 N m at joint 1, 0.03 and 0.02 N m at joint 2`."""
+    sizes = [(j, size) for (j, _), size in _ripples(added).items()]
+    return _at_joints(sizes, [joint.torque_unit for joint in robot.joints])
 
 
-def _quantities(values: Sequence[float], units: Sequence[str]) -> str:
-    """Values with three digits, and their units; one that all have is said once."""
-    texts = [f"{value:.3g}" for value in values]
-    if len(set(units)) == 1:
-        return f"{listed(texts)} {units[0]}"
-    return listed([f"{text} {unit}" for text, unit in zip(texts, units, strict=True)])
+def _at_joints(values: Sequence[tuple[int, float]], units: Sequence[str]) -> str:
+    """Values of joints (from 0), with the units of these."""
+    own: dict[int, list[str]] = {}
+    for j, value in values:
+        own.setdefault(j, []).append(f"{value:.3g}")
+    return ", ".join(f"{listed(texts)} {units[j]} at joint {j + 1}" for j, texts in own.items())
 
 
 def _unit(name: str, joint: Joint) -> str:
@@ -199,7 +212,7 @@ def _amounts(effect: Effect, robot: Robot, level: float, cycles: Array) -> dict[
     found = effect.joints(level, count)
     texts = {"joints": joints_named(j + 1 for j in found) if found else ""}
     if effect.name == RIPPLE:
-        texts["periods"] = _periods({j: float(cycles[j]) for j in found}, robot)
+        texts["periods"] = _periods([(j, x) for j in found for x in cycles[:, j] if x], robot)
     if effect.name == ZEROS:
         texts["zeros"] = listed([f"joint {j + 1} is at {_zero(effect, robot, j)}" for j in found])
     return texts
