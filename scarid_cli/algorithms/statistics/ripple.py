@@ -19,7 +19,7 @@ from scarid_cli.algorithms.filters.two_sided import two_sided_bandwidth, two_sid
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.arrays import Array
 
-PERIODS = 2.0  # over the range of a joint: what has fewer is a spring or gravity
+PERIODS = 1.0  # over the range of a joint: what has fewer looks like a spring or gravity
 SLOW = 0.1  # of the usual speed: motion that is to show the fastest ripple
 SPEEDS = 16  # intervals of speed, of which each has one gain
 FINER = 4  # steps of the search per independent number of periods
@@ -120,8 +120,8 @@ class _Search:
     def _explained(self) -> tuple[Array, Array]:
         """All numbers of periods, and the squares that each explains.
 
-        Sine and cosine are taken to be independent and equally large, which they are nearly over
-        two periods and more.
+        Sine and cosine are taken to be independent and equally large, which they nearly are over
+        several periods.
         """
         places = (self.q * 4.0 * self.most).astype(np.int64)  # a quarter of the shortest period
         length = 1 << (FINER * int(places.max() + 1)).bit_length()
