@@ -106,3 +106,10 @@ def test_a_message_names_up_to_five_parameters_and_says_if_there_are_more(differ
     text = _listed(pair, names, ["kg"] * P)
     assert [name for name in names if f"{name} +20 kg" in text] == names[: min(differing, 5)]
     assert text.endswith(", ...") == (differing > 5)
+
+
+def test_all_errors_of_a_log_have_the_freedom_of_its_widest_interval() -> None:
+    """The others are narrower because they allow for slow noise, and unknown errors say nothing."""
+    errors = np.array([2.0, 1.0, np.nan])
+    half = errors * [quantile(0.975, 9.0), 1.96, 1.96]
+    assert freedom_of(errors, half) == pytest.approx([9.0, 9.0, 9.0])

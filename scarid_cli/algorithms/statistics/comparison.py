@@ -129,13 +129,18 @@ def holm(tails: Array) -> Array:
 
 
 def freedom_of(errors: Array, half: Array) -> Array:
-    """Degrees of freedom, from standard errors and half the widths of their 95 % intervals."""
+    """Degrees of freedom, from standard errors and half the widths of their 95 % intervals.
+
+    Those of the widest interval: all errors of a log come from its blocks, and intervals that are
+    narrower allow for few blocks otherwise (`interval_quantiles` in jackknife.py).
+    """
     known = _quantiles()
     with np.errstate(divide="ignore", invalid="ignore"):
         quantiles = np.nan_to_num(half / errors, nan=0.0, posinf=0.0)
     # the quantile falls with the degrees of freedom; half a percent is closer than the formula is
     places = np.searchsorted(-known, -quantiles)
-    return np.asarray(np.clip(places + 1, 1, MOST_FREEDOM), dtype=np.float64)
+    found = np.clip(places + 1, 1, MOST_FREEDOM)
+    return np.full(len(errors), float(np.min(found, initial=MOST_FREEDOM)))
 
 
 @cache  # a trend may have hundreds of tables
