@@ -92,6 +92,7 @@ def diagnosed(rows: Rows) -> Diagnostics:
         (of_the_first_load, {(LOAD, 0)}),
         (pulled, {(SPRING, 1)}),
         (rippled, {(RIPPLE, 0)}),
+        (lambda at: of_the_load(at) + rippled(at), {(LOAD, 0), (LOAD, 1), (RIPPLE, 0)}),
     ],
 )
 def test_what_explains_the_torques_alone_is_found(

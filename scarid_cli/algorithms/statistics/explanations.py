@@ -56,8 +56,11 @@ def explanations(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, 
 
 
 def _completed(trial: Trial, one: Explanation) -> Explanation | None:
-    """The same, with others of its kind that are clear; None if it does not explain the torques."""
-    kinds = {name for name, _ in one.torques}
+    """The same, with others of its kind that are clear; None if it does not explain the torques.
+
+    A ripple goes with any of them: none is like it, so that neither makes up for the other.
+    """
+    kinds = {RIPPLE, *(name for name, _ in one.torques)}
     if kinds & DECAYED.keys():  # one curve of friction
         kinds |= DECAYED.keys()
     while (left := _beside(trial, one.torques)) is not None:

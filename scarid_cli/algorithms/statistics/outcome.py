@@ -15,7 +15,15 @@ from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
-from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, SPRING, TORQUES, Model
+from scarid_cli.algorithms.statistics.alternatives import (
+    COSINE,
+    DECAYED,
+    OFFSET,
+    SINE,
+    SPRING,
+    TORQUES,
+    Model,
+)
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.consequences import few
@@ -92,13 +100,16 @@ class Problem:
     def added(self, errors: Array) -> float:
         """The largest addition in units of its error (columns); 0 if one of them is impossible.
 
-        These errors are those of disturbances that last, too, of which blocks know nothing.
+        These errors are those of disturbances that last, too, of which blocks know nothing. An
+        offset and a ripple go with others, and do not count beside them.
         """
         if not all(addition.possible for addition in self.additions):
             return 0.0
         sizes = self.found.fit.estimates[self.own : self.own + len(self.additions)]
         ratios = np.abs(sizes) / errors[self.own : self.own + len(self.additions)]
-        return float(np.max(ratios[[addition.name != OFFSET for addition in self.additions]]))
+        names = [addition.name for addition in self.additions]
+        own = {*names} - {OFFSET, SINE, COSINE} or {SINE, COSINE}
+        return float(np.max(ratios[[name in own for name in names]]))
 
     def _with_slack(self, robot: Robot, kept: list[int], found: Diagnostics) -> Diagnostics:
         """The diagnostics, whose errors of the offsets allow for where springs are slack.

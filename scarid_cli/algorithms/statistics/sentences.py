@@ -108,12 +108,12 @@ def additions_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
     notes = _offsets(diagnostics, robot)
     # where a spring is slack goes without saying
     added = sorted((x for x in diagnostics.additions if x.name != OFFSET), key=lambda x: x.joint)
-    if added:
-        kind = KINDS.get(added[0].name, added[0].name)
-        joints = joints_named(dict.fromkeys(x.joint + 1 for x in added))
-        periods = _periods(_ripples(added), robot)
-        advice = ADVICE[kind].format(joints=joints, periods=periods)
-        notes.append(f"{advice}; {_fitted(kind, added, robot)}")
+    kinds = [KINDS.get(addition.name, addition.name) for addition in added]
+    for kind in sorted(set(kinds)):
+        own = [addition for addition, of in zip(added, kinds, strict=True) if of == kind]
+        joints = joints_named(dict.fromkeys(x.joint + 1 for x in own))
+        advice = ADVICE[kind].format(joints=joints, periods=_periods(_ripples(own), robot))
+        notes.append(f"{advice}; {_fitted(kind, own, robot)}")
     return notes
 
 
