@@ -159,7 +159,10 @@ def test_with_its_ripple_a_joint_is_known_as_well_as_without_any() -> None:
 
 def test_a_spring_is_slack_somewhere_unless_the_joint_has_an_offset() -> None:
     explanation = Explanation(
-        frozenset({(SPRING, 0), (SPRING, 1)}), clearness=2.0, threshold=4.0, cycles=np.zeros(2)
+        frozenset({(SPRING, 0), (SPRING, 1)}),
+        clearness=2.0,
+        threshold=4.0,
+        cycles=np.zeros((0, 2)),
     )
     found = [(x.name, x.joint) for x in of_explanation(explanation, log(pulled), {0})]
     assert found == [(OFFSET, 1), (SPRING, 0), (SPRING, 1)]

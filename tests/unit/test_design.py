@@ -276,6 +276,7 @@ def test_three_planned_experiments_tell_more_than_a_random_one_of_twice_their_ti
     ratios = standard_errors(known) / whole
     assert np.exp(np.log(ratios).mean()) < 0.9
     assert {robot.names[i] for i in np.argsort(ratios)[-2:]} == {"Fs1", "Fs2"}
+    assert np.sort(ratios)[-3] < 1.2  # which optimum is found depends on the rounding
     assert ratios.max() < 1.5
 
 

@@ -132,12 +132,7 @@ class Signals:
     passed: Callable[[Array], Array]
 
     @classmethod
-    def of(
-        cls,
-        rows: Rows,
-        model: Model | None,
-        estimates: Array,
-    ) -> Signals:
+    def of(cls, rows: Rows, model: Model | None, estimates: Array) -> Signals:
         """Those of the rows, at estimates of the first columns of W, without ripple.
 
         The usual speeds are the root mean squares of these rows.

@@ -100,8 +100,8 @@ class _Search:
         """The likeliest number, and further ones as long as all of them explain much."""
         found, search = list[float](), self
         while len(found) < MOST:
-            number = search.best()
-            much = search._exactly(number) > MUCH * float(search.y @ search.y)
+            explained, number = search.best()
+            much = explained > MUCH * float(search.y @ search.y)
             if much or not found:
                 found.append(number)
             if not much:
@@ -109,13 +109,14 @@ class _Search:
             search = search.without(np.hstack((search.W, search._waves(number))))
         return found
 
-    def best(self) -> float:
-        """The number that explains most."""
+    def best(self) -> tuple[float, float]:
+        """The squares that the likeliest number explains, and this number."""
         numbers, explained = self._explained()
         first = float(numbers[int(np.argmax(explained))])
         step = float(numbers[1] - numbers[0])
         near = first + step * np.linspace(-1.0, 1.0, 2 * NEARER + 1)
-        return float(near[int(np.argmax([self._exactly(n) for n in near.tolist()]))])
+        exactly = [(self._exactly(number), number) for number in near.tolist()]
+        return max(exactly, key=lambda found: found[0])
 
     def _explained(self) -> tuple[Array, Array]:
         """All numbers of periods, and the squares that each explains.
