@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -33,6 +34,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.explanations import Explanation
+from scarid_cli.algorithms.statistics.sentences import additions_of
 from scarid_cli.arrays import Array
 
 NOISE = 0.02  # N m
@@ -155,6 +157,31 @@ def test_with_its_ripple_a_joint_is_known_as_well_as_without_any() -> None:
     usual = diagnosed(smooth).scatter[first]
     assert np.all(without.scatter[first] > 10.0 * usual)
     assert np.all(stated.scatter[first] < 1.3 * usual)
+
+
+def test_other_joints_may_have_what_one_has_as_far_as_the_log_can_tell() -> None:
+    """The joint without a spring: its static moment is known as well as with a spring fitted."""
+    rows, own, moment = log(pulled), len(ARM.names), ARM.names.index("MX1R")
+
+    def fitted(
+        joints: Sequence[int], shared: frozenset[str] = frozenset()
+    ) -> tuple[float, Diagnostics]:
+        springs = [Addition(SPRING, joint, 1.0) for joint in joints]
+        wide = Shapes(springs, MODEL, ARM.apriori).beside(rows)
+        found = estimated(wls.Estimator(), wide)
+        return found.fit.estimates[moment], diagnose(wide, found, own, model=MODEL, shared=shared)
+
+    def bias(found: Diagnostics) -> float:
+        (spring,) = [effect for effect in found.effects if effect.name == SPRING]
+        return float(abs(spring.bias[moment]))
+
+    both, known = fitted([0, 1])
+    one, found = fitted([1], frozenset({SPRING}))
+    assert bias(found) == pytest.approx(np.hypot(both - one, known.scatter[moment]), rel=0.05)
+    assert bias(fitted([1])[1]) == 0.0
+    found = replace(found, additions=(Addition(SPRING, 1, 1.0, 0.1),))
+    (note,) = additions_of(ARM.names, found, ARM)
+    assert note.endswith("the intervals of ZZ1R and MX1R allow for the same at joint 1")
 
 
 def test_a_spring_is_slack_somewhere_unless_the_joint_has_an_offset() -> None:

@@ -88,6 +88,7 @@ def diagnose(
     doubt: Array | None = None,
     gain_error: float = 0.0,
     suspected: frozenset[str] = frozenset(),
+    shared: frozenset[str] = frozenset(),
     curves: Collection[int] = (),
 ) -> Diagnostics:
     """Diagnose an estimation from its rows.
@@ -98,8 +99,9 @@ def diagnose(
     predict torques later, by which the residuals of the joints are stated. `doubt` (own) is how far
     the estimates may be off because torques may lead as behind a low-pass or as behind a delay.
     `gain_error` is the relative standard error of the torque constants. Intervals allow for the
-    alternatives that are `suspected` even where they are not significant, and for any curve of the
-    friction of the joints (from 0) of `curves`.
+    alternatives that are `suspected` even where they are not significant, for all that is possible
+    of those that are `shared`, because other joints have them, and for any curve of the friction of
+    the joints (from 0) of `curves`.
     """
     noise = found.noise
     white = noise.rows(rows) if noise else rows
@@ -108,7 +110,16 @@ def diagnose(
     weights = _weights(found, rows.y.shape[1])
     covariance, blocks, errors = _noise_errors(white, found, record, fitted)
     estimates = found.fit.estimates
-    trial = Trial.of(rows, own, weights, estimates, model=model, noise=noise, suspected=suspected)
+    trial = Trial.of(
+        rows,
+        own,
+        weights,
+        estimates,
+        model=model,
+        noise=noise,
+        suspected=suspected,
+        shared=shared,
+    )
     longer = trial.longer(white)
     scatter = errors * longer
     effects = trial.effects()

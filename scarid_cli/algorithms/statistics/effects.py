@@ -46,7 +46,8 @@ class Effect:
     treated alike. `amounts` are the statistics that show whether there is an effect, with their
     `noise`, from so many `blocks`: the estimates of the further columns of an alternative (nan for
     those that are not in it), or else how far the parameters move. One that is `suspected` counts
-    whether it is significant or not. It is the best of so many that were `searched`.
+    whether it is significant or not. One that is `shared` was fitted for other joints, so that
+    these may have it as far as the log can tell. It is the best of so many that were `searched`.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Effect:
     noise: Array
     blocks: int
     suspected: bool = False
+    shared: bool = False
     searched: float = 1.0
 
     @cached_property
@@ -95,14 +97,22 @@ class Effect:
     @property
     def counts(self) -> bool:
         """Whether the intervals allow for it."""
-        return self.suspected or self.name in ALWAYS or self.significant()
+        return self.suspected or self.shared or self.name in ALWAYS or self.significant()
+
+    @property
+    def _trust(self) -> float:
+        """The variances that are subtracted from the square of the move."""
+        return -1.0 if self.shared else TRUST
 
     @property
     def bias(self) -> Array:
-        """The part of the move that its error does not explain (parameters); 0 if there is none."""
+        """The part of the move that its error does not explain (parameters); 0 if there is none.
+
+        Of one that is shared it is the move and its error: what other joints have is no chance.
+        """
         if not self.counts:
             return np.zeros_like(self.moved)
-        rest = self.moved**2 - TRUST * self.errors**2
+        rest = self.moved**2 - self._trust * self.errors**2
         return np.asarray(np.sign(self.moved) * np.sqrt(np.maximum(np.nan_to_num(rest), 0.0)))
 
     def direction(self, scatter: Array) -> Array:
@@ -115,7 +125,7 @@ class Effect:
             return np.zeros_like(self.moved)
         known = scatter > 0.0
         squares = float(np.sum((self.moved[known] / scatter[known]) ** 2))
-        noise = TRUST * float(np.sum((self.errors[known] / scatter[known]) ** 2))
+        noise = self._trust * float(np.sum((self.errors[known] / scatter[known]) ** 2))
         share: float = max(1.0 - noise / squares, 0.0) if squares > 0.0 else 0.0
         return np.asarray(share**0.5 * self.moved, dtype=np.float64)
 
@@ -144,7 +154,7 @@ class Trial:
     The first `own` columns of W belong to the robot, whose `model` is None if they are not those of
     its regressor. Joints are weighted by `weights`, and rows are whitened by the `noise`, if there
     is one: torques need only those in these `places`. The alternatives that are `suspected` count
-    even where they are not significant.
+    even where they are not significant; those that are `shared` were fitted for other joints.
     """
 
     rows: Rows
@@ -157,6 +167,7 @@ class Trial:
     noise: ColouredNoise | None
     places: Numbers
     suspected: frozenset[str] = frozenset()
+    shared: frozenset[str] = frozenset()
 
     @classmethod
     def of(
@@ -169,12 +180,13 @@ class Trial:
         model: Model | None = None,
         noise: ColouredNoise | None = None,
         suspected: frozenset[str] = frozenset(),
+        shared: frozenset[str] = frozenset(),
     ) -> Trial:
         """From the rows of an estimation, and its estimates."""
         few = thinned(rows)
         places = noise.kept(few) if noise else np.arange(few.samples)
         numbers = block_numbers(few.at, few.h)
-        return cls(few, own, weights, estimates, model, *numbers, noise, places, suspected)
+        return cls(few, own, weights, estimates, model, *numbers, noise, places, suspected, shared)
 
     @cached_property
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
@@ -329,6 +341,15 @@ class Trial:
             there = [k for k, column in enumerate(tested) if column is not None]
             at = [given + column for column in tested if column is not None]
             amounts[there], noise[there] = other.whole[at], jackknifed(other.deviations[:, at])
-        suspected = name in self.suspected
-        searched = self.ripples.tried if name == RIPPLE else 1.0
-        return Effect(name, moved, errors, apart, amounts, noise, self.count, suspected, searched)
+        return Effect(
+            name,
+            moved,
+            errors,
+            apart,
+            amounts,
+            noise,
+            self.count,
+            suspected=name in self.suspected,
+            shared=name in self.shared,
+            searched=self.ripples.tried if name == RIPPLE else 1.0,
+        )

@@ -90,6 +90,7 @@ class Problem:
             doubt=None if doubt is None else doubt[: self.own],
             gain_error=gain_error,
             suspected=suspected,
+            shared=frozenset(x.name for x in self.additions) - {OFFSET},
             curves={x.joint for x in self.additions if x.name in DECAYED},
         )
         sizes = self.found.fit.estimates[self.own + len(self.additions) :].tolist()

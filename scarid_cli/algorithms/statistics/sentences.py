@@ -103,8 +103,11 @@ def _offsets(diagnostics: Diagnostics, robot: Robot) -> list[str]:
     ]
 
 
-def additions_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
-    """What was fitted beside the parameters, with the terms to add."""
+def additions_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> list[str]:
+    """What was fitted beside the parameters, with the terms to add.
+
+    Other joints may have the same: the parameters whose intervals are wider for that are named.
+    """
     notes = _offsets(diagnostics, robot)
     # where a spring is slack goes without saying
     added = sorted((x for x in diagnostics.additions if x.name != OFFSET), key=lambda x: x.joint)
@@ -113,8 +116,30 @@ def additions_of(diagnostics: Diagnostics, robot: Robot) -> list[str]:
         own = [addition for addition, of in zip(added, kinds, strict=True) if of == kind]
         joints = joints_named(dict.fromkeys(x.joint + 1 for x in own))
         advice = ADVICE[kind].format(joints=joints, periods=_periods(_ripples(own), robot))
-        notes.append(f"{advice}; {_fitted(kind, own, robot)}")
+        elsewhere = _elsewhere(names, diagnostics, kind, {x.joint for x in own})
+        notes.append(f"{advice}; {_fitted(kind, own, robot)}{elsewhere}")
     return notes
+
+
+def _elsewhere(names: Sequence[str], diagnostics: Diagnostics, kind: str, joints: set[int]) -> str:
+    """`; the interval of my2 allows for the same at joint 2`, or nothing.
+
+    Of this kind `joints` (from 0) have some already.
+    """
+    level = level_among(diagnostics.effects)
+    shared = [
+        effect
+        for effect in diagnostics.effects
+        if effect.shared and KINDS.get(effect.name, effect.name) == kind
+    ]
+    if not shared or any(effect.significant(level) for effect in shared):  # then it has a note
+        return ""
+    least = _least(names, diagnostics)
+    wide = [any(column) for column in zip(*(np.abs(x.bias) > least for x in shared), strict=True)]
+    others = [j + 1 for j in range(len(diagnostics.joints)) if j not in joints]
+    if not others or not any(wide):
+        return ""
+    return f"; {_allowing(names, wide)} the same at {joints_named(others)}"
 
 
 def _fitted(kind: str, added: Sequence[Addition], robot: Robot) -> str:
@@ -186,8 +211,7 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> li
     more often than a single one would be.
     """
     level = level_among(diagnostics.effects)
-    scatter = diagnostics.scatter[: len(names)]
-    least = np.maximum(scatter, diagnostics.consequences.negligible)
+    least = _least(names, diagnostics)
     found = [
         effect
         for effect in diagnostics.effects
@@ -196,12 +220,21 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> li
     if not found:
         return []
     best = max(found, key=lambda effect: effect.clearness(level))
-    wide = [name for name, x in zip(names, _wide(best, least), strict=True) if x]
-    allow = "interval" if len(wide) == 1 else "intervals"
-    verb = "allows" if len(wide) == 1 else "allow"
     amounts = _amounts(best, robot, level, diagnostics.cycles)
     advice = ADVICE[best.name].format_map(amounts)
-    return [f"{advice}; the {allow} of {listed(wide)} {verb} for it"]
+    return [f"{advice}; {_allowing(names, _wide(best, least))} it"]
+
+
+def _least(names: Sequence[str], diagnostics: Diagnostics) -> Array:
+    """The bias of each parameter above which it is worth a word."""
+    return np.maximum(diagnostics.scatter[: len(names)], diagnostics.consequences.negligible)
+
+
+def _allowing(names: Sequence[str], wide: Iterable[bool]) -> str:
+    """`the interval of my2 allows for`, of the parameters that are `wide`."""
+    found = [name for name, x in zip(names, wide, strict=True) if x]
+    intervals, allow = ("interval", "allows") if len(found) == 1 else ("intervals", "allow")
+    return f"the {intervals} of {listed(found)} {allow} for"
 
 
 def _amounts(effect: Effect, robot: Robot, level: float, cycles: Array) -> dict[str, str]:

@@ -107,8 +107,9 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     ]
     if wrong and evidence.unexplained and not evidence.failed:
         wrong = [evidence.unexplained, *wrong]
-    notes = notes_of(evidence.names, evidence.diagnostics, robot)
-    notes = [*_inertia_unknown(evidence), *additions_of(evidence.diagnostics, robot), *notes]
+    names, diagnostics = evidence.names, evidence.diagnostics
+    notes = [*additions_of(names, diagnostics, robot), *notes_of(names, diagnostics, robot)]
+    notes = [*_inertia_unknown(evidence), *notes]
     if not wrong and any(x.end - x.start >= LASTING for x in evidence.diagnostics.bursts):
         notes = [*([evidence.unexplained] if evidence.unexplained else []), *notes]
     return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes), bool(bias))
