@@ -91,6 +91,21 @@ def test_the_first_screen_names_the_best_method_and_its_verdict(study: tuple[str
         assert line in text
 
 
+def test_a_validation_of_any_name_is_that_of_the_only_identification(
+    study: tuple[str, Path], scarid: Run
+) -> None:
+    _, folder = study
+    other = (folder / "best.cross.metrics.parquet").rename(folder / "validation.parquet")
+    html = folder / "one.html"
+    tables = (folder / "best.parameters.parquet", other)
+    assert scarid("report", *tables, "--html", html).status == 0
+    page = html.read_text("utf-8")
+    first = page[page.index('class="top"') : page.index("<nav")]
+    assert "The estimates of best are good" in first
+    assert "It predicts the torques of the log of the validation within" in first
+    assert "identifications" not in first
+
+
 def page_of_verdict(path: Path) -> str:
     import json
 

@@ -91,10 +91,16 @@ def ranking(results: Sequence[Result]) -> Ranking | None:
 
 
 def _standings(parameters: Sequence[Parameters], metrics: Sequence[Metrics]) -> list[Standing]:
-    """Metrics belong to the parameters of their label, the first ones if there are several."""
+    """Metrics belong to the parameters of their label, the first ones if there are several.
+
+    Beside the parameters of one label, metrics of one other label are of these.
+    """
     by_label: dict[str, dict[str, Metrics]] = {}
     for one in metrics:
         by_label.setdefault(one.name.label, {})[experiment_of(one)] = one
+    labels = {each.name.label for each in parameters}
+    if len(labels) == len(by_label) == 1:
+        by_label = {labels.pop(): by_label.popitem()[1]}
     found = [
         Standing(each.name.label, each, by_label.pop(each.name.label, {}))
         for each in sorted(parameters, key=lambda r: r.name.experiment != "")
