@@ -121,6 +121,9 @@ def test_another_zero_is_found_with_its_joint_and_its_size() -> None:
     assert abs(effect.amounts[0] + 0.02) < 3.0 * effect.noise[0] < 0.002
     (note,) = notes_of(ARM.names, found, ARM)
     assert note.startswith("where the log has a position of 0, joint 1 is at -0.0")
+    # The zero of the other joint is likely to be off as well, as far as the log can tell.
+    assert np.abs(effect.bias) == pytest.approx(np.hypot(effect.moved, effect.errors))
+    assert not named(diagnosed(true, true)[0], ZEROS).bias.any()
 
 
 def eccentric(true: Array) -> Array:

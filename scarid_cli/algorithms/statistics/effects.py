@@ -24,7 +24,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
 from scarid_cli.algorithms.statistics.halves import Halves, halves
 from scarid_cli.algorithms.statistics.jackknife import block_numbers, quantile
-from scarid_cli.algorithms.statistics.parallel import smoothed
+from scarid_cli.algorithms.statistics.parallel import ZEROS, smoothed
 from scarid_cli.algorithms.statistics.products import Products, Solved, jackknifed
 from scarid_cli.algorithms.statistics.ripple import Ripples
 from scarid_cli.arrays import Array, Numbers
@@ -100,15 +100,20 @@ class Effect:
         return self.suspected or self.shared or self.name in ALWAYS or self.significant()
 
     @property
+    def widespread(self) -> bool:
+        """Whether all joints are likely to have what some have, as zeros of one calibration."""
+        return self.shared or (self.name == ZEROS and self.significant())
+
+    @property
     def _trust(self) -> float:
         """The variances that are subtracted from the square of the move."""
-        return -1.0 if self.shared else TRUST
+        return -1.0 if self.widespread else TRUST
 
     @property
     def bias(self) -> Array:
         """The part of the move that its error does not explain (parameters); 0 if there is none.
 
-        Of one that is shared it is the move and its error: what other joints have is no chance.
+        Of one that is widespread it is the move and its error: what others have is no chance.
         """
         if not self.counts:
             return np.zeros_like(self.moved)
