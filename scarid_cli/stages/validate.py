@@ -64,7 +64,8 @@ def validate(
     qualities = [Quality.of(joint) for joint in sums]
     if before:
         residuals = np.array([quality.relative_error / 100.0 for quality in qualities])
-        judged = verdict(subsample.rows(), model, before, residuals, times)
+        rows = left_out.settled(subsample.rows())
+        judged = verdict(rows, model, before, residuals, times)
         if causes := failed():
             judged = replace(judged, grade=UNEXPLAINED, reason="; ".join(causes))
         extra["change"] = judged.extra

@@ -55,7 +55,9 @@ def test_parameters_are_rounded_to_what_is_known_of_them(log: Path) -> None:
     assert len(estimate.partition(".")[2]) == len(error.partition(".")[2])
     assert len(error.lstrip("0.")) == 2
     assert float(low) < 3.42 < float(high)
-    assert float(share) == pytest.approx(100.0 * float(error) / float(estimate), rel=0.05)
+    half = 0.5 * 10.0 ** -len(error.partition(".")[2])  # both are rounded
+    expected = 100.0 * float(error) / float(estimate)
+    assert float(share) == pytest.approx(expected, abs=100.0 * half / float(estimate) + 0.005)
 
 
 def test_the_raw_table_is_there_for_the_asking(log: Path) -> None:

@@ -50,13 +50,30 @@ def validated(scarid: Run, log: Path, *tables: Path) -> tuple[list[float], dict[
     return table.column("r2").to_pylist(), extra["change"], result.err
 
 
-def test_the_same_table_twice_predicts_what_it_predicts_once(scarid: Run, logs: list[Path]) -> None:
+def simulated(scarid: Run, folder: Path, seed: int) -> Path:
+    """The folder with the motion of a simulated log of ten seconds, and its parameters."""
+    own = folder / f"simulated-{seed}"
+    own.mkdir()
+    path, log, motion = (own / f"{name}.parquet" for name in ("path", "log", "motion"))
+    for words in (
+        ("trajgen", "--robot", "scara2", "--seed", seed, "--duration", 10, "-o", path),
+        ("simulate", "--seed", seed, path, "-o", log),
+        ("differentiate", log, "-o", motion),
+        ("identify", "--estimator", "wls", "--align", motion, "-o", own / "p.parquet"),
+    ):
+        assert scarid(*words).status == 0
+    return own
+
+
+def test_the_same_table_twice_predicts_what_it_predicts_once(scarid: Run, tmp_path: Path) -> None:
     """Almost: the information weighs joints by the autocorrelation of residuals, `wls` does not."""
-    once, _, _ = validated(scarid, logs[0], logs[1] / "p.parquet")
-    twice, _, said = validated(scarid, logs[0], logs[1] / "p.parquet", logs[1] / "p.parquet")
-    assert twice == pytest.approx(once, abs=5e-4)
+    here, there = (simulated(scarid, tmp_path, seed) for seed in (1, 2))
+    table = there / "p.parquet"
+    once, _, _ = validated(scarid, here, table)
+    twice, _, said = validated(scarid, here, table, table)
+    assert twice == pytest.approx(once, abs=1e-5)
     assert "pooled the parameters of 2 identifications" in said
-    thrice, _, _ = validated(scarid, logs[0], *3 * [logs[1] / "p.parquet"])
+    thrice, _, _ = validated(scarid, here, *3 * [table])
     assert thrice == pytest.approx(twice, rel=1e-9)
 
 

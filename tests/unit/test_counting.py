@@ -93,6 +93,18 @@ def test_rows_near_reversals_and_standstill_are_left_out(counting: Counting) -> 
     assert scales(rows, counting).tolist() == by_definition(rows, counting).tolist()
 
 
+def test_a_log_that_is_known_as_a_whole_does_not_count_the_creeping_before_its_motion() -> None:
+    """Its speeds so far let it pass: at first nothing is faster."""
+    t = np.arange(300) * H
+    dq = np.array([np.where(t < 1.0, 1e-3 * (1.0 + t), 2.0 + np.sin(5.0 * t))])
+    left_out = LeftOut()
+    ((_, rows),) = counted([(0, rows_of(dq))], Counting(bandwidth=10.0), left_out)
+    assert rows.scales[:100].all()
+    assert not left_out.settled(rows).scales[:100].any()
+    assert left_out.settled(rows).scales[100:].all()
+    assert LeftOut().settled(rows) is rows  # where all rows count
+
+
 @pytest.mark.parametrize("counting", COUNTINGS, ids=str)
 def test_a_reversal_does_not_reach_across_a_gap(counting: Counting) -> None:
     at = np.concatenate((np.arange(120), 130 + np.arange(180)))

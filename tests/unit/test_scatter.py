@@ -57,6 +57,20 @@ def test_the_middle_of_the_lowest_plateau_is_chosen(
     assert choice.plateau == pytest.approx([scatter.STEP**k for k in ends])
 
 
+def test_the_creeping_before_a_motion_does_not_count() -> None:
+    """It is faster than its noise, and as fast as anything so far."""
+    own, creeping = arm(), 0.01 * np.arange(-500, 0) * H
+    q = np.column_stack((own.q[:, :1] + creeping, own.q))
+    tau = np.column_stack((np.zeros((2, 500)), own.tau))
+    found = lowpassed.lowpassed(Segment(q, tau, np.zeros(2)), H, 10.0)
+    assert found
+    end = int(lowpassed.END / 10.0 / H) + lowpassed.REACH
+    early = int((400 - end) * H / found.interval)  # until the low-pass knows of the motion
+    assert early > 10
+    assert not found.counts[:, :early].any()
+    assert found.counts.mean() > 0.5
+
+
 def test_vibration_lowers_the_cutoff() -> None:
     """The plateau ends below the vibration, which a likelihood would follow."""
     calm, shaken = (

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
-from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.rows import Rows, without_slow
 from scarid_cli.arrays import Array, Marks, Numbers
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.coupled import CoupledTerm
 
 # Chosen on simulated robots, see DESIGN.md, section "Rows that count".
-SLOW = 0.02  # share of the root-mean-square velocity so far
+SLOW = 0.02  # share of the root-mean-square velocity
 NOISES = 3.0  # standard deviations of the noise of the velocity
 REVERSAL = 0.5  # periods of the bandwidth, before and after a reversal
 
@@ -66,8 +66,13 @@ class Speeds:
     sums: Array
     samples: int = 0
 
+    @property
+    def slow(self) -> Array:
+        """The velocity (joints) [rad/s or m/s] up to which a joint is near standstill."""
+        return np.asarray(SLOW * np.sqrt(self.sums / max(self.samples, 1)))
+
     def moving(self, dq: Array, floor: Array) -> Marks:
-        """Whether each velocity of dq (joints, samples) is above both bounds."""
+        """Whether each velocity of dq (joints, samples) is above both bounds, as known so far."""
         # One addition after the other, so that the bits do not depend on the batches.
         sums = np.cumsum(np.column_stack((self.sums, dq**2)), axis=1)[:, 1:]
         counts = self.samples + np.arange(1, dq.shape[1] + 1)
@@ -92,6 +97,13 @@ class LeftOut:
     def counts(self) -> dict[str, int]:
         """The three numbers, by name."""
         return {"rows": self.rows, "reversal": self.reversal, "standstill": self.standstill}
+
+    def settled(self, rows: Rows) -> Rows:
+        """Rows of a log that is known as a whole, of which no row near standstill counts.
+
+        While a log begins at rest, its speeds so far say nothing about those that follow.
+        """
+        return without_slow(rows, self.speeds.slow) if self.speeds else rows
 
     @property
     def text(self) -> str:

@@ -287,6 +287,7 @@ def _problem(given: _Given, shapes: Shapes | None = None) -> Problem:
     estimator, initial, end, robot = given.estimator, given.initial, given.end, given.robot
     rows, lead, joints = end.subsample.rows(), None, tuple[int, ...]()
     if given.align:
+        rows = end.left_out.settled(rows)
         rows = shapes.beside(rows) if shapes else rows
         joints = offsets(rows, robot, shapes.constant if shapes else ())
         fitted = _aligned(estimator, initial, with_offsets(rows, joints), robot)

@@ -105,7 +105,8 @@ def _counts(
 ) -> Marks:
     counting = Counting(bandwidth, tuple(velocity_noise(x, bandwidth, h) for x in noise.tolist()))
     at = np.arange(dq.shape[1])
-    moving = Speeds(np.zeros(len(dq))).moving(dq, counting.floor(len(dq)))
+    slow = np.maximum(Speeds(np.sum(dq**2, axis=1), dq.shape[1]).slow, counting.floor(len(dq)))
+    moving = np.abs(dq) > slow[:, None]
     return np.asarray(moving & away(reversals(dq, 0, motors), at, counting.window(h)))
 
 
