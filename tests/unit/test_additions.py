@@ -34,6 +34,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.explanations import Explanation
+from scarid_cli.algorithms.statistics.outcome import Problem
 from scarid_cli.algorithms.statistics.sentences import additions_of
 from scarid_cli.arrays import Array
 
@@ -182,6 +183,15 @@ def test_other_joints_may_have_what_one_has_as_far_as_the_log_can_tell() -> None
     found = replace(found, additions=(Addition(SPRING, 1, 1.0, 0.1),))
     (note,) = additions_of(ARM.names, found, ARM)
     assert note.endswith("the intervals of ZZ1R and MX1R allow for the same at joint 1")
+
+
+def test_the_diagnostics_of_an_outcome_know_what_was_fitted_for_other_joints() -> None:
+    additions = (Addition(SPRING, 1, 1.0, 0.1),)
+    rows = Shapes(additions, MODEL, ARM.apriori).beside(log(pulled))
+    found = estimated(wls.Estimator(), rows)
+    problem = Problem(rows, found, len(ARM.names), None, MODEL, additions=additions)
+    effects = problem.diagnostics(0.0).effects
+    assert [effect.name for effect in effects if effect.shared] == [SPRING]
 
 
 def test_a_spring_is_slack_somewhere_unless_the_joint_has_an_offset() -> None:
