@@ -144,8 +144,9 @@ BATCH   := .venv-batch
 PROFILE ?= local
 
 $(BATCH)/installed: $(BUILD_FILES)
+	@echo 'batch: making the environment $(BATCH) for Snakemake, once; this takes two minutes' >&2
 	@test -x $(BATCH)/bin/python || $(PYTHON) -m venv $(BATCH)
-	$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[batch,logs,urdf]'
+	@$(BATCH)/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[batch,logs,urdf]'
 	@touch $@
 
 $(BATCH)/tested: $(BATCH)/installed
@@ -154,7 +155,7 @@ $(BATCH)/tested: $(BATCH)/installed
 
 batch: $(BATCH)/installed
 	@test -n "$(CONFIG)" || { echo "make batch CONFIG=FILE: which configuration? See docs/batch.md"; exit 2; }
-	$(BATCH)/bin/python workflow/batch.py $(CONFIG) --profile $(PROFILE) $(OPTIONS)
+	@$(BATCH)/bin/python workflow/batch.py $(CONFIG) --profile $(PROFILE) $(OPTIONS)
 
 test-batch: $(BATCH)/tested
 	$(BATCH)/bin/python -m pytest tests/workflows

@@ -18,6 +18,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import click  # noqa: E402
 
 from scarid_cli.cli import chain, scarid  # noqa: E402
+from scarid_cli.cli.terminal import told  # noqa: E402
 from scarid_cli.errors import (  # noqa: E402
     BAD_DATA,
     BROKEN_PIPE,
@@ -85,7 +86,7 @@ def _reported(where: str, message: str, status: int) -> int:
     # A message of a library may have line breaks.
     line = printable(f"{where}: {' '.join(message.split())}")
     with contextlib.suppress(OSError):  # the status says it as well
-        print(line, file=sys.stderr, flush=True)  # noqa: T201
+        print(told(line), file=sys.stderr, flush=True)  # noqa: T201
     return status
 
 

@@ -32,9 +32,11 @@ def main() -> None:
         sys.exit(f"batch: --profile {given.profile}: no such profile or folder")
     os.chdir(given.config.resolve().parent)
     try:
-        out = plan.read(given.config.name).out
+        found = plan.read(given.config.name)
     except plan.PlanError as error:
         sys.exit(f"batch: {error}")
+    out = found.out
+    _say(found)
     out.mkdir(parents=True, exist_ok=True)
     lock = os.open(out / ".lock", os.O_RDWR | os.O_CREAT, 0o666)
     try:
@@ -45,6 +47,24 @@ def main() -> None:
     words = [sys.executable, "-m", "snakemake", "--config", f"batch={given.config.name}"]
     words += ["--snakefile", str(HERE / "Snakefile"), "--profile", str(profile), "--nolock"]
     os.execv(words[0], [*words, *more])
+
+
+def _say(found: plan.Plan) -> None:
+    """The first line of a batch: what is going to be done."""
+    logs = sum(len(robot.logs) for robot in found.robots)
+    groups = sum(len(found.groups(robot)) for robot in found.robots)
+    what = f"{_counted(logs, 'log')} of {_counted(len(found.robots), 'robot')}"
+    page = found.out.resolve() / "fleet.html"
+    where = f"its page is {page}" + (", which is there from before" if page.exists() else "")
+    print(
+        f"batch: {what} in {_counted(groups, 'group')}: check, identify, validate; {where}",
+        file=sys.stderr,
+        flush=True,
+    )
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count:,} {what}{'' if count == 1 else 's'}"
 
 
 if __name__ == "__main__":

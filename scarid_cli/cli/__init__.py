@@ -27,6 +27,7 @@ COMMANDS = {
     "convert": "Convert between table formats, or turn a recorded log into a table.",
     "tee": "Write a table to a file, and pass it on.",
     "info": "Describe a table: kind, columns, units, sampling, history.",
+    "help": "Explain a command.",
 }
 
 
@@ -61,25 +62,16 @@ class LazyGroup(click.Group):
 def _version(ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
     if not wanted or ctx.resilient_parsing:
         return
-    click.echo(f"scarid {__version__} (kernels: {kernels()})")
+    from scarid_cli.cli.interpreted import interpreted
+
+    click.echo(f"scarid {__version__} (kernels: {'interpreted' if interpreted() else 'compiled'})")
     ctx.exit()
-
-
-def kernels() -> str:
-    """Whether the kernels run compiled or interpreted."""
-    from importlib.util import find_spec
-    from pathlib import Path
-
-    folder = Path(__file__).parent.parent / "kernels"
-    specs = [find_spec(f"scarid_cli.kernels.{path.stem}") for path in folder.glob("[a-z]*.py")]
-    origins = [spec.origin or "" for spec in specs if spec]
-    return "interpreted" if any(origin.endswith(".py") for origin in origins) else "compiled"
 
 
 @click.group(
     cls=LazyGroup,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120},
-    epilog="`scarid COMMAND --help` explains a command, with examples.",
+    epilog="`scarid help COMMAND` explains a command, with examples.",
 )
 @click.option(
     "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version,

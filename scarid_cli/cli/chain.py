@@ -17,6 +17,7 @@ import click
 
 from scarid_cli.cli.command_line import inputs
 from scarid_cli.cli.options import InputFile
+from scarid_cli.cli.terminal import told
 from scarid_cli.errors import OK
 
 if TYPE_CHECKING:
@@ -184,4 +185,4 @@ def _guarded(batches: Iterator[pa.RecordBatch], where: str) -> Iterator[pa.Recor
 
 def _print(line: str) -> None:
     with contextlib.suppress(OSError):  # a remark that cannot be made is no failure
-        print(line, file=sys.stderr)  # noqa: T201
+        print(told(line), file=sys.stderr)  # noqa: T201

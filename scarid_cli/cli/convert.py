@@ -6,17 +6,12 @@ import click
 
 from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
+from scarid_cli.cli.headings import heading
 
 
 @declare("convert")
 @options.log_input
-@click.option(
-    "--beside",
-    multiple=True,
-    type=options.INPUT,
-    metavar="FILE",
-    help="Another log with the same rows, whose columns are added; repeatable.",
-)
+@heading("Names and units")
 @click.option(
     "--from",
     "recorder",
@@ -41,11 +36,25 @@ from scarid_cli.cli.declare import declare
 )
 @click.option("--rate", type=options.RATE, help="Add a time column t at this rate [Hz].")
 @click.option(
+    "--joints",
+    metavar="NAMES",
+    default="",
+    help="The names of the joints, in order, where the log has names.  [default: those of --robot]",
+)
+@click.option(
     "--robot",
     type=options.ROBOT,
     metavar="FILE",
     help="The robot of the log: joints in the order of its axes, and what its description says of "
     "its logs (columns, units, motors).",
+)
+@heading("The file")
+@click.option(
+    "--beside",
+    multiple=True,
+    type=options.INPUT,
+    metavar="FILE",
+    help="Another log with the same rows, whose columns are added; repeatable.",
 )
 @click.option(
     "--topic",
@@ -61,12 +70,6 @@ from scarid_cli.cli.declare import declare
     default="linear",
     show_default=True,
     help="How these efforts are brought to the times of the rows: interpolated, or the last one.",
-)
-@click.option(
-    "--joints",
-    metavar="NAMES",
-    default="",
-    help="The names of the joints, in order, where the log has names.  [default: those of --robot]",
 )
 @click.option(
     "--separator",

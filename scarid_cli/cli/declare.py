@@ -10,8 +10,11 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
+from scarid_cli.cli.headings import Command
 from scarid_cli.cli.options import SHARED
 
+# Commands that spend no time in kernels, and are as quick without a C compiler.
+WITHOUT_KERNELS = ("compare", "convert", "info", "report", "tee")
 READABLE = ("identify", "validate", "tune")  # whose tables a person reads on a terminal
 
 
@@ -28,7 +31,7 @@ def _require_values() -> None:
 
 
 def declare(
-    name: str, cls: type[click.Command] = click.Command
+    name: str, cls: type[click.Command] = Command
 ) -> Callable[[Callable[[], None]], click.Command]:
     """Make a command of its click options and its help text, which is a function's docstring.
 
@@ -46,6 +49,8 @@ def declare(
             action = importlib.import_module(f"scarid_cli.cli.actions.{name}")
             own = {option: value for option, value in given.items() if option not in SHARED}
             with job(given) as run:
+                if name not in WITHOUT_KERNELS:
+                    run.say_if_interpreted()
                 if "format" in given:
                     small = name in READABLE
                     run.out = run.output(given.get("output", "-"), given["format"], readable=small)

@@ -98,9 +98,11 @@ def optimised(
         wish.known,
         some,
     )
-    with steps(quiet=job.quiet, of="starts") as progress:
-        budget = given["budget"] or DEFAULT_BUDGET
-        best = search(wanted, given["seed"], given["starts"], budget, progress)
+    budget = given["budget"] or DEFAULT_BUDGET
+    count = given["starts"]
+    within = None if count else budget
+    with steps(quiet=job.quiet, of="starts", total=count, within=within) as progress:
+        best = search(wanted, given["seed"], count, budget, progress)
     limited = stage.limiting(best.curve, limits, margins(best.curve, laws), laws)
     return Found(best.curve, best.starts, limited)
 

@@ -7,16 +7,19 @@ import click
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
-from scarid_cli.cli.described import listed
+from scarid_cli.cli.described import listed, recommended
+from scarid_cli.cli.headings import METHOD, heading
 
 
 @declare("differentiate")
 @options.table_input
+@heading(METHOD)
 @click.option(
     "--method",
     type=click.Choice(DIFFERENTIATORS.names),
     metavar="NAME",
-    help=f"The method: {listed(DIFFERENTIATORS)}. `scarid methods NAME` describes one.  "
+    help=f"The method: {listed(DIFFERENTIATORS)}. `scarid methods NAME` describes one. "
+    f"Recommended: {recommended(DIFFERENTIATORS)}.  "
     "[default: the best of --settings, else kalman]",
 )
 @click.option(

@@ -8,11 +8,15 @@ from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 from scarid_cli.cli.described import describing
+from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
 
 
 @declare("identify", describing(ESTIMATORS, "Estimators"))
 @options.table_inputs
+@heading(DATA)
 @options.robot
+@selecting.selection
+@heading(METHOD)
 @click.option(
     "--estimator",
     type=click.Choice(ESTIMATORS.names),
@@ -50,6 +54,10 @@ from scarid_cli.cli.described import describing
     "its relative standard deviation is more than 30 times the smallest one and the fit gets no "
     "worse than noise explains.",
 )
+@options.input_file(
+    "--from", "resumed", metavar="STATE", help="Continue the estimation that --save wrote."
+)
+@heading(ERRORS)
 @click.option(
     "--torque-gain-error",
     metavar="PART",
@@ -64,6 +72,7 @@ from scarid_cli.cli.described import describing
     help="Variance of the residual in the column standard_error: estimated with r - c degrees of "
     "freedom (residual), 1 as printed in paper eq. 32-33 (unit), or estimated with r - 1 (sample).",
 )
+@heading(OUTPUT)
 @click.option(
     "--require",
     cls=options.Unrecorded,
@@ -73,15 +82,11 @@ from scarid_cli.cli.described import describing
     "the log fails a check.",
 )
 @options.side_output("--trace", help="Write the estimates after every sample (rls, ekf).")
-@options.input_file(
-    "--from", "resumed", metavar="STATE", help="Continue the estimation that --save wrote."
-)
 @options.side_output(
     "--save",
     metavar="STATE",
     help="Write the state of the estimation (.npz), to be continued with --from.",
 )
-@selecting.selection
 @options.table_output
 @options.common
 def command() -> None:

@@ -13,10 +13,11 @@ from scarid_cli.algorithms.imperfections.registry import (
     values_of,
 )
 from scarid_cli.cli import pairs
+from scarid_cli.cli.headings import Command
 from scarid_cli.errors import UsageFault
 
 
-class WithImperfections(click.Command):
+class WithImperfections(Command):
     """A command whose help ends with one line for each imperfection: name, unit and meaning."""
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002

@@ -286,13 +286,21 @@ class Job:
         while self.notes:
             self.say(self.notes.pop(0))
 
-    def say(self, message: str, verdict: str = "") -> None:
+    def say_if_interpreted(self) -> None:
+        """Report that the run will be slow, at its start, once in a line of stages."""
+        from scarid_cli.cli.interpreted import notice
+
+        if not self.quiet and self.place.source is None and (text := notice()):
+            self.place.say(text)
+
+    def say(self, message: str, verdict: str = "", command: str = "") -> None:
         """Report a line to the user, on standard error, once the run has ended well.
 
-        On a terminal it begins in the colour of the `verdict`, if it begins with one.
+        On a terminal it begins in the colour of the `verdict`, if it begins with one. A `command`
+        line to copy ends it.
         """
         if not self.quiet:
-            self.remarks.keep(message, verdict)
+            self.remarks.keep(message, verdict, command)
 
 
 @contextlib.contextmanager

@@ -85,7 +85,7 @@ def motion(
                 text += ", and positions are noisier than at the identification" if before else ""
         job.left_out += left_out
     job.say(f"velocities and accelerations are estimated from the positions: {text}")
-    job.say(f"the same as: {_pipe(smoother, added, rates)}")
+    job.say("the same as:", command=_pipe(smoother, added, rates))
     return found
 
 

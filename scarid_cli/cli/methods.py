@@ -46,7 +46,7 @@ def _listed() -> Iterator[str]:
         yield option
         for name in registry.names:
             start = f"  {name:<{width}}  "
-            yield wrapped(start, registry.describe(name).splitlines()[0], len(start))
+            yield wrapped(start, registry.summary(name), len(start))
 
 
 def _described(name: str) -> Iterator[str]:

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 import click
 
+from scarid_cli.cli.headings import METHOD, OUTPUT, heading
 from scarid_cli.errors import OutputFailure, UsageFault
 from scarid_cli.io import FORMATS
 
@@ -192,6 +193,7 @@ table_format: Callable[[F], F] = click.option(
 def table_output(function: F) -> F:
     """Where the table goes and in what format."""
     return all_of(
+        heading(OUTPUT),
         click.option(
             "-o", "--output", cls=Unrecorded, default="-", metavar="FILE",
             help="Write the table to FILE, in the format of its extension "
@@ -208,12 +210,14 @@ def table_output(function: F) -> F:
 
 def as_json(function: F) -> F:
     """Print a JSON document in place of text."""
-    return click.option("--json", "as_json", is_flag=True, help="Print a JSON document.")(function)
+    option = click.option("--json", "as_json", is_flag=True, help="Print a JSON document.")
+    return all_of(heading(OUTPUT), option)(function)
 
 
 def common(function: F) -> F:
     """What every command takes."""
     return all_of(
+        heading(OUTPUT),
         click.option(
             "-q",
             "--quiet",
@@ -238,6 +242,7 @@ robot: Callable[[F], F] = click.option(
 def treatment(function: F) -> F:
     """How the rows of the regression are treated, by identify, validate and urdf alike."""
     return all_of(
+        heading(METHOD),
         click.option(
             "--skip", type=NUMBERS, metavar="ROWS[,ROWS]",
             help="Leave out this many rows at the start and, if there are two numbers, at the end.",

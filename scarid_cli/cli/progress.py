@@ -16,13 +16,35 @@ SHOWN_AFTER = 1.0  # seconds before anything is shown
 
 
 @contextlib.contextmanager
-def steps(*, quiet: bool, of: str = "settings tried") -> Iterator[Callable[[], None]]:
-    """A function to call at each step of a search, counted where a person waits."""
+def steps(
+    *,
+    quiet: bool,
+    of: str = "settings tried",
+    total: int | None = None,
+    within: float | None = None,
+) -> Iterator[Callable[[], None]]:
+    """A function to call at each step of a search, counted where a person waits.
+
+    The remaining time is shown if the number of steps is known (`total`), or their time (`within`,
+    in seconds).
+    """
     if quiet or not sys.stderr.isatty():
         yield lambda: None
         return
-    with _line(f"{{task.completed}} {of}") as update:
-        yield lambda: update(advance=1)
+    begun = time.monotonic()
+    done = 0
+    behind = ("{task.fields[left]} left",) if total or within else ()
+    start = _clock(within) if within else "?"
+    with _line(f"{{task.completed}} {of}", behind=behind, left=start) as update:
+
+        def step() -> None:
+            nonlocal done
+            done += 1
+            passed = time.monotonic() - begun
+            left = passed * (total / done - 1.0) if total else (within or 0.0) - passed
+            update(advance=1, left=_clock(max(left, 0.0)))
+
+        yield step
 
 
 def counted(

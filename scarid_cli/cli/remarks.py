@@ -13,14 +13,18 @@ class Remarks:
 
     def __init__(self, say: Callable[[str], None]) -> None:
         self._say = say
-        self._kept: list[tuple[str, str]] = []
+        self._kept: list[tuple[str, str, str]] = []
 
-    def keep(self, message: str, verdict: str) -> None:
-        """A line, which begins in the colour of the `verdict`, if it begins with one."""
-        self._kept.append((message, verdict))
+    def keep(self, message: str, verdict: str, command: str) -> None:
+        """A line, which begins in the colour of the `verdict`, if it begins with one.
+
+        A `command` line to copy stands behind it.
+        """
+        self._kept.append((message, verdict, command))
 
     def tell(self) -> None:
         """Report what was kept, now that the run has ended well."""
-        for message, verdict in self._kept:
+        for message, verdict, command in self._kept:
             start = styled(verdict, verdict, 2) if verdict else ""
-            self._say(f"{start}{printable(message.removeprefix(verdict))}")
+            end = f"\n{printable(command)}" if command else ""
+            self._say(f"{start}{printable(message.removeprefix(verdict))}{end}")

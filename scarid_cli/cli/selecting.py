@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from scarid_cli.cli.headings import DATA, heading
 from scarid_cli.cli.options import FINITE, Number, all_of
 from scarid_cli.errors import UsageFault
 
@@ -40,6 +41,7 @@ class Rows(click.ParamType[str]):
 def window(function: F) -> F:
     """Which part of a log is read."""
     return all_of(
+        heading(DATA),
         click.option(
             "--from-time", type=Number(FINITE), metavar="S",
             help="Read the log from this time on [s].",
@@ -58,6 +60,7 @@ def window(function: F) -> F:
 def selection(function: F) -> F:
     """Which part of a log is read, and what becomes of rows that lack a value."""
     return all_of(
+        heading(DATA),
         window,
         click.option(
             "--missing", type=click.Choice(("refuse", "drop", "split")), default="refuse",

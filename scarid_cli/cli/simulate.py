@@ -6,6 +6,7 @@ import click
 
 from scarid_cli.cli import options
 from scarid_cli.cli.declare import declare
+from scarid_cli.cli.headings import OUTPUT, heading
 from scarid_cli.cli.imperfections import WithImperfections
 from scarid_cli.cli.options import NUMBERS
 
@@ -14,45 +15,8 @@ GAINS = options.Numbers(options.Range(-1e12, 1e12))
 
 @declare("simulate", WithImperfections)
 @options.table_input
+@heading("The robot")
 @options.robot
-@click.option(
-    "--control",
-    type=click.Choice(("pd", "pid", "pd-gravity", "computed-torque")),
-    help="Controller.  [default: the robot's, or computed-torque]",
-)
-@click.option(
-    "--bandwidth",
-    type=options.RATE,
-    help="Bandwidth from which the gains are found [Hz].  [default: the robot's gains, or 5]",
-)
-@click.option("--kp", type=GAINS, help="Proportional gains.  [default: see --bandwidth]")
-@click.option("--kd", type=GAINS, help="Derivative gains.  [default: see --bandwidth]")
-@click.option(
-    "--ki",
-    type=GAINS,
-    help="Integral gains.  [default: the robot's; else from --bandwidth for pid, and 0]",
-)
-@click.option(
-    "--control-rate",
-    type=options.RATE,
-    default=1000.0,
-    show_default=True,
-    help="Control rate [Hz].",
-)
-@click.option(
-    "--log-rate",
-    type=options.RATE,
-    default=200.0,
-    show_default=True,
-    help="Rows of the log per second [Hz].",
-)
-@click.option(
-    "--substeps",
-    type=click.IntRange(1, 1000),
-    default=2,
-    show_default=True,
-    help="Runge-Kutta steps per period of the controller.",
-)
 @click.option(
     "--with",
     "imperfections",
@@ -78,6 +42,46 @@ GAINS = options.Numbers(options.Range(-1e12, 1e12))
 )
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the noise."
+)
+@heading("The controller")
+@click.option(
+    "--control",
+    type=click.Choice(("pd", "pid", "pd-gravity", "computed-torque")),
+    help="Controller.  [default: the robot's, or computed-torque]",
+)
+@click.option(
+    "--bandwidth",
+    type=options.RATE,
+    help="Bandwidth from which the gains are found [Hz].  [default: the robot's gains, or 5]",
+)
+@click.option("--kp", type=GAINS, help="Proportional gains.  [default: see --bandwidth]")
+@click.option("--kd", type=GAINS, help="Derivative gains.  [default: see --bandwidth]")
+@click.option(
+    "--ki",
+    type=GAINS,
+    help="Integral gains.  [default: the robot's; else from --bandwidth for pid, and 0]",
+)
+@click.option(
+    "--control-rate",
+    type=options.RATE,
+    default=1000.0,
+    show_default=True,
+    help="Control rate [Hz].",
+)
+@click.option(
+    "--substeps",
+    type=click.IntRange(1, 1000),
+    default=2,
+    show_default=True,
+    help="Runge-Kutta steps per period of the controller.",
+)
+@heading(OUTPUT)
+@click.option(
+    "--log-rate",
+    type=options.RATE,
+    default=200.0,
+    show_default=True,
+    help="Rows of the log per second [Hz].",
 )
 @click.option(
     "--truth", is_flag=True, help="Add the true q, dq, ddq and tau as columns q1_true, ..."

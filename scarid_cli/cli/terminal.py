@@ -9,7 +9,7 @@ COLOURS = {
     "warning": "33", "doubtful": "33", "unexplained": "33",
     "failed": "31", "not identifiable": "31", "changed": "31",
 }  # fmt: skip
-NARROWEST = 40  # characters
+NARROWEST, USUAL = 40, 80  # characters
 
 
 def is_terminal(descriptor: int = 1) -> bool:
@@ -29,22 +29,48 @@ def styled(text: str, verdict: str, descriptor: int = 1) -> str:
     return f"\033[{code}m{text}\033[0m" if code and coloured(descriptor) else text
 
 
-def wrapped(start: str, text: str, indent: int, *, hanging: int = 0) -> str:
+def wrapped(start: str, text: str, indent: int, *, hanging: int = 0, descriptor: int = 1) -> str:
     """`start` of `indent` characters, and the text, wrapped to the window if there is one.
 
-    The lines after the first one are indented by `hanging` more.
+    The lines after the first one are indented by `hanging` more. A word is never broken, as it may
+    be a name: one that is longer than the window is left to the terminal.
     """
-    if not is_terminal():
+    if not is_terminal(descriptor):
         return f"{start}{text}"
-    import shutil
     import textwrap
 
-    width = max(shutil.get_terminal_size().columns, NARROWEST + indent)
+    width = max(_columns(descriptor), NARROWEST + indent)
     begin = indent + len(text) - len(text.lstrip())
     lines = textwrap.wrap(
         text.lstrip(),
         width,
         initial_indent=" " * begin,
         subsequent_indent=" " * (indent + hanging),
+        break_long_words=False,
+        break_on_hyphens=False,
     )
     return start + "\n".join(lines)[indent:]
+
+
+def _columns(descriptor: int) -> int:
+    """The width of the window: as $COLUMNS says, else as the terminal does."""
+    stated = os.environ.get("COLUMNS", "")
+    if stated.isdecimal() and int(stated):
+        return int(stated)
+    try:
+        return os.get_terminal_size(descriptor).columns or USUAL
+    except OSError:
+        return USUAL
+
+
+def told(line: str) -> str:
+    """A remark or an error as standard error shows it.
+
+    A command line to copy stands behind a line break: in a window it begins a line, and is not
+    wrapped; elsewhere each remark is one line.
+    """
+    text, _, command = line.partition("\n")
+    if not is_terminal(2):
+        return f"{text} {command}" if command else text
+    shown = wrapped("", text, 0, hanging=2, descriptor=2)
+    return f"{shown}\n  {command}" if command else shown

@@ -8,10 +8,12 @@ from scarid_cli.algorithms.choices.registry import EXCITATIONS
 from scarid_cli.cli import options
 from scarid_cli.cli.declare import declare
 from scarid_cli.cli.described import describing
+from scarid_cli.cli.headings import ERRORS, heading
 from scarid_cli.cli.options import NUMBERS
 
 
 @declare("trajgen", describing(EXCITATIONS, "Excitations"))
+@heading("The motion")
 @options.robot
 @click.option(
     "--excitation",
@@ -58,6 +60,40 @@ from scarid_cli.cli.options import NUMBERS
     help="Position at which the motion starts and ends [rad or m].  [default: zero where the "
     "limits allow it, else the middle between them]",
 )
+@click.option(
+    "--approach",
+    type=NUMBERS,
+    help="Begin with a slow motion from this posture to the home position [rad or m].",
+)
+@click.option(
+    "--repeat",
+    type=click.IntRange(1, 100_000),
+    default=1,
+    show_default=True,
+    help="How often the motion is repeated.",
+)
+@click.option(
+    "--rate", type=options.RATE, default=200.0, show_default=True, help="Rows per second [Hz]."
+)
+@heading("The limits")
+@click.option(
+    "--q-max",
+    type=NUMBERS,
+    help="Upper position limit [rad or m]; without --q-min, its negative is the lower one.  "
+    "[default: the robot's]",
+)
+@click.option(
+    "--q-min", type=NUMBERS, help="Lower position limit [rad or m].  [default: the robot's]"
+)
+@click.option("--dq-max", type=NUMBERS, help="Limit on |dq| [1/s].  [default: the robot's]")
+@click.option("--ddq-max", type=NUMBERS, help="Limit on |ddq| [1/s2].  [default: the robot's]")
+@click.option(
+    "--workspace",
+    type=NUMBERS,
+    metavar="XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX",
+    help="Box that the tool must not leave, in the frame of the base [m].  Needs --optimise.",
+)
+@heading("The best motion")
 @click.option("--optimise", is_flag=True, help="Find the best motion; see --criterion.")
 @click.option(
     "--criterion",
@@ -81,18 +117,6 @@ from scarid_cli.cli.options import NUMBERS
     help="A parameter table of earlier experiments, which the motion is to complement.",
 )
 @click.option(
-    "--torque-noise",
-    type=NUMBERS,
-    help="Standard deviation of the logged torques, for the errors that are predicted [N m or N].  "
-    "[default: that of --after, else the robot's]",
-)
-@click.option(
-    "--workspace",
-    type=NUMBERS,
-    metavar="XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX",
-    help="Box that the tool must not leave, in the frame of the base [m].  Needs --optimise.",
-)
-@click.option(
     "--budget", type=options.DURATION, metavar="SECONDS",
     help="Time for the random starts of --optimise.  Needs --optimise.  [default: 10]",
 )  # fmt: skip
@@ -102,8 +126,15 @@ from scarid_cli.cli.options import NUMBERS
     help="Number of random starts instead of a time, which gives the same motion each time.  Needs "
     "--optimise.  [default: as many as --budget allows]",
 )
+@heading(ERRORS)
 @options.side_output(
     "--expected", help="Write the expected error of each parameter to FILE, a table."
+)
+@click.option(
+    "--torque-noise",
+    type=NUMBERS,
+    help="Standard deviation of the logged torques, for the errors that are predicted [N m or N].  "
+    "[default: that of --after, else the robot's]",
 )
 @click.option(
     "--drop-slow",
@@ -117,32 +148,6 @@ from scarid_cli.cli.options import NUMBERS
     help="Predict errors for `identify` with this option, which also fits a delay.  Needs "
     "--expected or --optimise.",
 )
-@click.option(
-    "--repeat",
-    type=click.IntRange(1, 100_000),
-    default=1,
-    show_default=True,
-    help="How often the motion is repeated.",
-)
-@click.option(
-    "--approach",
-    type=NUMBERS,
-    help="Begin with a slow motion from this posture to the home position [rad or m].",
-)
-@click.option(
-    "--rate", type=options.RATE, default=200.0, show_default=True, help="Rows per second [Hz]."
-)
-@click.option(
-    "--q-max",
-    type=NUMBERS,
-    help="Upper position limit [rad or m]; without --q-min, its negative is the lower one.  "
-    "[default: the robot's]",
-)
-@click.option(
-    "--q-min", type=NUMBERS, help="Lower position limit [rad or m].  [default: the robot's]"
-)
-@click.option("--dq-max", type=NUMBERS, help="Limit on |dq| [1/s].  [default: the robot's]")
-@click.option("--ddq-max", type=NUMBERS, help="Limit on |ddq| [1/s2].  [default: the robot's]")
 @options.table_output
 @options.common
 def command() -> None:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
+from scarid_cli.cli.headings import DATA, OUTPUT, heading
 
 
 @declare("validate")
 @options.table_inputs
+@heading(DATA)
 @options.input_file(
     "--parameters",
     required=True,
@@ -15,9 +17,10 @@ from scarid_cli.cli.declare import declare
     help="The parameter table that `scarid identify` wrote; repeatable: several are pooled.",
 )
 @options.robot
-@options.treatment
-@options.side_output("--predictions", help="Write the measured and the predicted torques.")
 @selecting.selection
+@options.treatment
+@heading(OUTPUT)
+@options.side_output("--predictions", help="Write the measured and the predicted torques.")
 @options.table_output
 @options.common
 def command() -> None:

@@ -15,7 +15,7 @@ from rich.table import Table
 from scarid_cli.printable import printable
 from scarid_cli.reporting.parts import GAP, Section, split
 
-TEXT_WIDTH = 100  # characters of running text where there is no terminal
+TEXT_WIDTH = 100  # characters of a line where there is no terminal
 
 # What Markdown interprets: marks, the end of a link's text, entities, _ at the edge of a word, and
 # the # that ends a heading.
@@ -26,7 +26,7 @@ RULE = Box("\n".join(["    "] * 2 + [" ── "] + ["    "] * 5) + "\n")
 
 
 def terminal(sections: Sequence[Section], *, plain: bool = False) -> str:
-    """Tables for standard output; on a terminal, those that are too wide are shown in parts.
+    """Tables for standard output; those that are too wide are shown in parts.
 
     `plain` tables are for a file.
     """
@@ -39,8 +39,8 @@ def terminal(sections: Sequence[Section], *, plain: bool = False) -> str:
             console.print(section.title, style="bold")
             if section.note:
                 console.print(section.note, style="dim")
-            for part in split(section, width) if console.is_terminal else [section]:
-                # A part that is still too wide is wrapped by the terminal: no number is cut.
+            for part in split(section, width):
+                # A part that is still too wide keeps its width: no number is cut.
                 console.width = width if part.prose else max(width, sum(_widths(part)))
                 console.print(_table(part))
                 console.print()

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 import pytest
+from conftest import Result
 
-from scarid_cli.cli import progress
+from scarid_cli.cli import progress, terminal
 
 SCARID = str(Path(sys.executable).with_name("scarid"))
+MAIN = "from scarid_cli.__main__ import run; run()"
 COLOUR = re.compile(r"\x1b\[[\d;]*m")
 
 
@@ -107,3 +112,88 @@ def test_progress_has_a_percentage_where_the_length_is_known(
     text = COLOUR.sub("", capsys.readouterr().err)
     assert all(words in text for words in shown)
     assert ("%" in text) == (length is not None or part is not None)
+
+
+@pytest.mark.parametrize(
+    ("known", "shown"),
+    [({"total": 4}, "0:00:01 left"), ({"within": 9.0}, "0:00:0[78] left"), ({}, "2 starts")],
+)
+def test_steps_tell_the_remaining_time_where_it_is_known(
+    known: dict[str, Any],
+    shown: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    clock = iter([0.0, 0.5, 1.0])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock, 1.0))
+    with progress.steps(quiet=False, of="starts", **known) as step:
+        step()
+        step()
+    text = COLOUR.sub("", capsys.readouterr().err)
+    assert re.search(shown, text)
+    assert ("left" in text) == bool(known)
+
+
+def test_remarks_are_wrapped_to_the_window_and_commands_stay_whole(log: Path) -> None:
+    main, terminal = os.openpty()
+    variables = {**os.environ, "TERM": "xterm", "COLUMNS": "70", "NO_COLOR": "1"}
+    words = [SCARID, "identify", "--robot", "scara2", str(log)]
+    with subprocess.Popen(
+        words, stdout=subprocess.DEVNULL, stderr=terminal, env=variables
+    ) as process:
+        os.close(terminal)
+        parts = []
+        while data := _read(main):
+            parts.append(data)
+        assert process.wait() == 0
+    os.close(main)
+    text = b"".join(parts).decode().replace("\r\n", "\n")
+    lines = re.sub(r"\r[^\n]*\x1b\[2K|\x1b\[\?25[hl]", "", text).splitlines()
+    long = [line for line in lines if len(line) > 70]
+    assert len(long) == 1
+    assert long[0].startswith("  scarid differentiate ")
+    assert any(line == "scarid identify: the same as:" for line in lines)
+
+
+def test_a_word_is_never_broken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(terminal, "is_terminal", lambda _=1: True)
+    monkeypatch.setenv("COLUMNS", "40")
+    text = "scarid check: write -o FILE.parquet, or --missing=drop-all-rows-of-this-very-long-name"
+    shown = terminal.told(text)
+    assert shown.split() == text.split()
+    assert "\n" in shown
+
+
+def without_kernels(folder: Path) -> Path:
+    """A copy of the package without its compiled kernels."""
+    package = Path(progress.__file__).parents[1]
+    leave = shutil.ignore_patterns("*.so", "__pycache__")
+    shutil.copytree(package, folder / "scarid_cli", ignore=leave)
+    shutil.copytree(package.parent / "schemas", folder / "scarid_cli" / "schemas")
+    return folder
+
+
+def test_without_compiled_kernels_each_line_of_stages_says_once_that_it_is_slow(
+    tmp_path: Path, log: Path
+) -> None:
+    where = without_kernels(tmp_path)
+    head = tmp_path / "head.csv"
+    head.write_text("".join(log.read_text().splitlines(keepends=True)[:50]))
+
+    def errors(*words: object) -> str:
+        return subprocess.run(
+            [sys.executable, "-c", MAIN, *map(str, words)],
+            cwd=where, capture_output=True, text=True, check=True,
+        ).stderr  # fmt: skip
+
+    said = errors("filter", head, "then", "differentiate", "-o", tmp_path / "motion.csv")
+    assert said.count("this run is slow: the kernels are not compiled") == 1
+    assert errors("filter", "-q", head) == ""
+    for quick in (("info", head), ("convert", head)):
+        assert "slow" not in errors(*quick)
+
+
+def test_with_compiled_kernels_nothing_is_said(scarid: Callable[..., Result], log: Path) -> None:
+    assert "slow" not in scarid("filter", log).err

@@ -69,3 +69,17 @@ def test_two_batches_do_not_work_in_one_folder(tmp_path: Path) -> None:
     assert second.returncode == 1
     first.send_signal(signal.SIGINT)
     first.communicate(timeout=60)
+
+
+def test_a_batch_says_at_once_what_it_does_and_at_last_where_its_page_is(tmp_path: Path) -> None:
+    config = fleet(tmp_path / "fleet", 4, group=1, pages="none")
+    words = [sys.executable, str(WORKFLOW / "batch.py"), str(config)]
+    page = config.parent / "outcome" / "fleet.html"
+    done = subprocess.run(words, stderr=subprocess.PIPE, text=True, check=True)
+    said = done.stderr.splitlines()
+    assert said[0].startswith("batch: 4 logs of 4 robots in 4 groups: check, identify, validate;")
+    told = [line for line in said if line.startswith("batch: ")]
+    assert told[-1] == f"batch: all is done; the page is {page.resolve()}"
+    assert page.exists()
+    again = subprocess.run(words, stderr=subprocess.PIPE, text=True, check=True)
+    assert f"{page.resolve()}, which is there from before" in again.stderr.splitlines()[0]

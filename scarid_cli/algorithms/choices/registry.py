@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import importlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,8 @@ class Registry:
 
     folder: str
     class_name: str
+    recommended: dict[str, str] = field(default_factory=dict, hash=False)
+    """The choices to begin with, and what for."""
 
     @property
     def names(self) -> list[str]:
@@ -42,6 +44,13 @@ class Registry:
         path = ALGORITHMS / self.folder / f"{_stem(name)}.py"
         return ast.get_docstring(ast.parse(path.read_text("utf-8"))) or ""
 
+    def summary(self, name: str) -> str:
+        """The first line of the docstring of a choice, and what it is recommended for."""
+        use = self.recommended.get(name)
+        return self.describe(name).splitlines()[0].removesuffix(".") + (
+            f" (recommended {use})." if use else "."
+        )
+
 
 def _name(stem: str) -> str:
     return stem.lstrip("_").replace("_", "-")
@@ -52,6 +61,14 @@ def _stem(name: str) -> str:
     return f"_{stem}" if stem[0].isdigit() else stem
 
 
-DIFFERENTIATORS = Registry("differentiators", "Differentiator")
-ESTIMATORS = Registry("estimators", "Estimator")
-EXCITATIONS = Registry("excitations", "Excitation")
+DIFFERENTIATORS = Registry(
+    "differentiators",
+    "Differentiator",
+    {
+        "kalman": "online",
+        "kalman-lag": "online if rows may be late",
+        "rts": "for complete logs",
+    },
+)
+ESTIMATORS = Registry("estimators", "Estimator", {"gls": "for complete logs", "rls": "online"})
+EXCITATIONS = Registry("excitations", "Excitation", {"spline": "with --optimise"})
