@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from scarid_cli.reporting import published, torques
-from scarid_cli.reporting.estimates import constants, estimates, fit, verdicts
+from scarid_cli.reporting.estimates import changes, constants, estimates, fit, said_of, verdicts
 from scarid_cli.reporting.evolution import evolution
 from scarid_cli.reporting.kinds import (
+    Comparison,
     Measurement,
     Metrics,
     MotionEstimate,
@@ -23,11 +24,12 @@ from scarid_cli.reporting.wording import experiment_of, grouped, of_kind
 
 def sections(results: Sequence[Result], values: published.Values | None = None) -> list[Section]:
     """Everything that these results have to say, with published values beside them."""
-    labels = (r.name.label for r in results if not isinstance(r, Measurement))
+    labels = (r.name.label for r in results if not isinstance(r, (Measurement, Comparison)))
     colours = {name: i for i, name in enumerate(dict.fromkeys(labels))}
     results = published.beside(results, values or {})
     return [
         *verdicts(of_kind(results, Parameters)),
+        *changes(said_of(results)),
         *published.settings(results, values or {}),
         *(logs(group) for group in grouped(of_kind(results, Measurement), experiment_of)),
         *(

@@ -6,9 +6,18 @@ from collections.abc import Sequence
 from math import isfinite, nan
 
 from scarid_cli.algorithms.statistics.verdict import DOUBT
-from scarid_cli.reporting.kinds import Parameters
+from scarid_cli.reporting.kinds import Comparison, Metrics, Parameters, Result
 from scarid_cli.reporting.parts import Bars, Section, number
-from scarid_cli.reporting.wording import cells, robots_of, shown, titled, with_experiment, with_unit
+from scarid_cli.reporting.said import ALARMING, FINE, Said
+from scarid_cli.reporting.wording import (
+    cells,
+    of_kind,
+    robots_of,
+    shown,
+    titled,
+    with_experiment,
+    with_unit,
+)
 
 PLAIN = "Each estimate with its relative standard deviation in % (eq. 34)."
 ROBUST = (
@@ -24,11 +33,31 @@ def verdicts(results: Sequence[Parameters]) -> list[Section]:
         for r in results
         if "verdict" in r.extra
     ]
+    note = "Whether the estimates can be relied on, and why."
+    return _prose("Verdict", note, ("method", "verdict", "why"), rows)
+
+
+def changes(said: Sequence[Said]) -> list[Section]:
+    """Whether the robot has changed, by validate and compare; the alarming verdicts first."""
+    order = sorted(said, key=lambda one: (*ALARMING, *FINE).index(one.verdict))
+    rows = [(one.title, one.verdict, one.reason) for one in order]
+    note = "Whether the robot is the one that was identified, by validate and compare."
+    return _prose("Has the robot changed?", note, ("log or table", "verdict", "why"), rows)
+
+
+def said_of(results: Sequence[Result]) -> list[Said]:
+    """All that validate and compare have said."""
+    found = [r.said for r in of_kind(results, Metrics) if r.said]
+    return [*found, *(one for r in of_kind(results, Comparison) for one in r.said)]
+
+
+def _prose(
+    title: str, note: str, headers: tuple[str, ...], rows: Sequence[tuple[str, ...]]
+) -> list[Section]:
+    """A section whose last column is running text; none without rows."""
     if not rows:
         return []
-    note = "Whether the estimates can be relied on, and why."
-    headers = ("method", "verdict", "why")
-    return [Section("Verdict", note, headers, tuple(rows), texts=3, keys=3, prose=True)]
+    return [Section(title, note, headers, tuple(rows), texts=3, keys=3, prose=True)]
 
 
 def estimates(group: Sequence[Parameters], colours: dict[str, int]) -> Section:

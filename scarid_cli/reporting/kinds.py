@@ -9,6 +9,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.arrays import Array
 from scarid_cli.reporting.naming import Name
+from scarid_cli.reporting.said import Said
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,8 @@ class Parameters(_PerParameter):
 
     `robust` holds relative standard errors [%] that are robust to autocorrelated residuals; it is
     empty where the table has none. `low` and `high` are the ends of the 95 % intervals in the
-    parameters' units, nan where unknown. `extra` is what the metadata say of the estimation.
+    parameters' units, nan where unknown. `extra` is what the metadata say of the estimation, and
+    `file` the name of the table.
     """
 
     estimates: tuple[float, ...]
@@ -53,6 +55,7 @@ class Parameters(_PerParameter):
     robust: tuple[float, ...] = ()
     low: tuple[float, ...] = ()
     high: tuple[float, ...] = ()
+    file: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,9 +68,22 @@ class Trace(_PerParameter):
 
 @dataclass(frozen=True)
 class Metrics(_PerJoint):
-    """Quality of the predicted torques of each joint; nan where unknown."""
+    """Quality of the predicted torques of each joint; nan where unknown.
+
+    `by` are the parameter tables that predicted them, as far as the history tells, and `said` is
+    whether the robot has changed.
+    """
 
     qualities: tuple[Quality, ...]
+    by: tuple[str, ...] = ()
+    said: Said | None = None
+
+
+@dataclass(frozen=True)
+class Comparison(Result):
+    """What `compare` said of each table beside the first one."""
+
+    said: tuple[Said, ...]
 
 
 @dataclass(frozen=True)

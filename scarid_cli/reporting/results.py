@@ -17,9 +17,10 @@ from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
 from scarid_cli.printable import printable
 from scarid_cli.reporting.common import with_common
-from scarid_cli.reporting.kinds import Metrics, Parameters, Result
+from scarid_cli.reporting.kinds import Comparison, Metrics, Parameters, Result
 from scarid_cli.reporting.naming import name_of, names_of
 from scarid_cli.reporting.records import measurement, motion, prediction, trace
+from scarid_cli.reporting.said import files_of, of_comparison, of_validation
 from scarid_cli.reporting.source import Source
 
 
@@ -36,13 +37,13 @@ def reportable(table: Table) -> Table:
         return checked(table, kind)
     if kind in (*schemas.KINDS, "via"):
         raise NotReported(
-            f"{table.name} is a {kind} table; report takes parameters, trace, metrics, prediction, "
-            "motion and measurement tables"
+            f"{table.name} is a {kind} table; report takes parameters, trace, metrics, comparison, "
+            "prediction, motion and measurement tables"
         )
     raise BadData(
         f"{table.name}: found the columns {printable(', '.join(table.columns))}, expected a "
-        "parameters, trace, metrics, prediction, motion or measurement table; name the columns as "
-        "docs/tables.md does"
+        "parameters, trace, metrics, comparison, prediction, motion or measurement table; name the "
+        "columns as docs/tables.md does"
     )
 
 
@@ -84,6 +85,7 @@ def _parameters(source: Source) -> Parameters:
         robust=_relative(_numbers(rows, "robust_error"), rows["estimate"]),
         low=_numbers(rows, "low"),
         high=_numbers(rows, "high"),
+        file=table.name,
     )
 
 
@@ -96,7 +98,7 @@ def _relative(errors: Sequence[float], estimates: Sequence[float]) -> tuple[floa
 
 
 def _metrics(source: Source) -> Metrics:
-    rows = _rows(source.table)
+    rows, meta = _rows(source.table), source.table.meta
     values = (_numbers(rows, column) for column in ("r2", "rmse", "relative_error"))
     return Metrics(
         name=source.name,
@@ -104,7 +106,15 @@ def _metrics(source: Source) -> Metrics:
         joints=tuple(rows["joint"]),
         units=_texts(rows["unit"]),
         qualities=tuple(Quality(*row) for row in zip(*values, rows["samples"], strict=True)),
+        by=files_of(meta)[1],
+        said=of_validation(meta, source.name.shown),
     )
+
+
+def _comparison(source: Source) -> Comparison:
+    _rows(source.table)
+    said = of_comparison(source.table.meta, source.name.shown)
+    return Comparison(source.name, source.robot, said)
 
 
 def _rows(table: Table) -> dict[str, list[Any]]:
@@ -137,6 +147,7 @@ READERS: dict[str, Callable[[Source], Result]] = {
     "parameters": _parameters,
     "trace": trace,
     "metrics": _metrics,
+    "comparison": _comparison,
     "prediction": prediction,
     "motion": motion,
     "measurement": measurement,

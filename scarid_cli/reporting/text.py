@@ -15,7 +15,8 @@ from rich.table import Table
 from scarid_cli.printable import printable
 from scarid_cli.reporting.parts import GAP, Section, split
 
-TEXT_WIDTH = 100  # characters of a line where there is no terminal
+TEXT_WIDTH = 100  # characters of running text where there is no terminal
+TABLE_WIDTH = 120  # and of a table, which is shown in parts if it is wider
 
 # What Markdown interprets: marks, the end of a link's text, entities, _ at the edge of a word, and
 # the # that ends a heading.
@@ -39,7 +40,7 @@ def terminal(sections: Sequence[Section], *, plain: bool = False) -> str:
             console.print(section.title, style="bold")
             if section.note:
                 console.print(section.note, style="dim")
-            for part in split(section, width):
+            for part in split(section, width if console.is_terminal else TABLE_WIDTH):
                 # A part that is still too wide keeps its width: no number is cut.
                 console.width = width if part.prose else max(width, sum(_widths(part)))
                 console.print(_table(part))

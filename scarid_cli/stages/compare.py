@@ -25,6 +25,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
 from scarid_cli.stages.estimates import array_of, errors_of
 
+SAME, DIFFER = "same", "differ"  # verdicts
 SHOWN = 5  # parameters that a message names at most
 MOST_ROWS = 3  # tables from which there is a trend
 
@@ -93,17 +94,26 @@ def compare(tables: Sequence[Table]) -> tuple[Table, list[str]]:
     labels = [table.name for table in tables[1:]]
     lines = [*_remarks(found, names)]
     for label, pair in zip(labels, pairs, strict=True):
-        lines.append(f"{label + ': ' if len(labels) > 1 else ''}{sentence(pair, names, units)}")
+        start = f"{label}: " if len(labels) > 1 else ""
+        lines.append(f"{start}{verdict(pair)}: {reason(pair, names, units)}")
     if trends:
         lines.append(_trend_sentence(trends, names, units, len(tables)))
-    facts = [_facts(label, pair, names) for label, pair in zip(labels, pairs, strict=True)]
+    facts = [
+        {**_facts(label, pair, names), "reason": reason(pair, names, units)}
+        for label, pair in zip(labels, pairs, strict=True)
+    ]
     table = _table(tables[0], labels, names, units, estimates, pairs)
     extra: dict[str, Any] = {"comparisons": facts, "level": LEVEL}
     return replace(table, meta=replace(table.meta, extra=extra)), lines
 
 
-def sentence(pair: Comparison, names: list[str], units: list[str]) -> str:
-    """The verdict on one pair of tables."""
+def verdict(pair: Comparison) -> str:
+    """Whether two tables are of the same robot, as far as their errors tell."""
+    return DIFFER if pair.differ else SAME
+
+
+def reason(pair: Comparison, names: list[str], units: list[str]) -> str:
+    """Why two tables differ, or how close they are."""
     joint = pair.joint
     together = ""
     if joint:
@@ -112,11 +122,11 @@ def sentence(pair: Comparison, names: list[str], units: list[str]) -> str:
         )
     if not pair.differ:
         most = float(np.nanmax(np.abs(pair.counts), initial=0.0))
-        return f"agree within their errors: at most {most:.2g} errors apart{together}"
+        return f"the estimates are at most {_count(most)} errors apart{together}"
     if not pair.differing:
-        return f"differ, but no single parameter does{together}"
+        return f"no single parameter, but all together{together}"
     listed = _listed(pair, names, units)
-    return f"differ: {len(pair.differing)} of {len(names)} parameters: {listed}{together}"
+    return f"{len(pair.differing)} of {len(names)} parameters: {listed}{together}"
 
 
 def _trend_sentence(trends: Comparison, names: list[str], units: list[str], count: int) -> str:
@@ -127,10 +137,15 @@ def _trend_sentence(trends: Comparison, names: list[str], units: list[str], coun
 
 def _listed(pair: Comparison, names: list[str], units: list[str]) -> str:
     texts = [
-        f"{names[i]} {pair.difference[i]:+.3g} {units[i]} ({abs(pair.counts[i]):.2g} errors)"
+        f"{names[i]} {pair.difference[i]:+.3g} {units[i]} ({_count(abs(pair.counts[i]))} errors)"
         for i in pair.differing[:SHOWN]
     ]
     return ", ".join(texts) + (", ..." if len(pair.differing) > SHOWN else "")
+
+
+def _count(errors: float) -> str:
+    """How many errors apart, in two digits, without an exponent."""
+    return f"{errors:,.0f}" if errors >= 10.0 else f"{errors:.2g}"
 
 
 def _facts(label: str, pair: Comparison, names: list[str]) -> dict[str, Any]:

@@ -49,7 +49,7 @@ def test_what_differs_is_named(scarid: Run, tables: list[Path], tmp_path: Path) 
 
 def test_a_table_agrees_with_itself(scarid: Run, tables: list[Path]) -> None:
     result = scarid("compare", tables[0], tables[0])
-    assert "agree within their errors: at most 0 errors apart" in result.err
+    assert "same: the estimates are at most 0 errors apart" in result.err
     assert len(result.out.splitlines()) == 9
 
 

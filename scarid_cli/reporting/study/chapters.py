@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from scarid_cli.reporting import published
+from scarid_cli.reporting.estimates import said_of
 from scarid_cli.reporting.kinds import (
+    Comparison,
     Measurement,
     Metrics,
     MotionEstimate,
@@ -24,7 +26,7 @@ from scarid_cli.reporting.wording import of_kind
 
 def view_of(results: Sequence[Result]) -> View:
     """The order and the colours of the methods among these results."""
-    labels = (r.name.label for r in results if not isinstance(r, Measurement))
+    labels = (r.name.label for r in results if not isinstance(r, (Measurement, Comparison)))
     colours = {name: i for i, name in enumerate(dict.fromkeys(labels))}
     return View(ranking(results), colours)
 
@@ -38,6 +40,7 @@ def chapters(
     torques = [r for r in results if isinstance(r, (Metrics, Prediction))]
     estimated = [*estimation.parameters(view, of_kind(results, Parameters))]
     yield from estimation.methods(view)
+    yield from estimation.changed(said_of(results))
     yield from estimated[:1]
     yield from signals.torques(view, torques)
     yield from signals.sensors(view, of_kind(results, MotionEstimate))

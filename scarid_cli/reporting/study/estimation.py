@@ -9,6 +9,7 @@ from scarid_cli.reporting.estimates import constants, fit
 from scarid_cli.reporting.evolution import evolution
 from scarid_cli.reporting.kinds import Parameters, Trace
 from scarid_cli.reporting.parts import NONE, Panels, Section
+from scarid_cli.reporting.said import ALARMING, FINE, Said
 from scarid_cli.reporting.study.blocks import (
     Block,
     Chapter,
@@ -50,6 +51,20 @@ def methods(view: View) -> Iterator[Chapter]:
     asked = ("known within 30 %", "model torque within", "residual", "matched", "soft sensor")
     words = [word for word in asked if word in said]
     yield Chapter("Verdicts", "Verdicts", note, ("verdict", *words), tuple(blocks))
+
+
+def changed(said: Sequence[Said]) -> Iterator[Chapter]:
+    """Whether the robot has changed, by validate and compare; the alarming verdicts first."""
+    order = sorted(said, key=lambda one: (*ALARMING, *FINE).index(one.verdict))
+    rows = [(one.title, "", one.verdict, one.reason, ()) for one in order]
+    if not rows:
+        return
+    blocks: list[Block] = [Methods(tuple(rows[:FEW]))]
+    if rows[FEW:]:
+        blocks.append(Fold(f"The other {len(rows) - FEW}", (Methods(tuple(rows[FEW:])),)))
+    note = "Whether the robot is the one that was identified, by validate and compare."
+    title = "Has the robot changed?"
+    yield Chapter(title, "Changes", note, ("unchanged",), tuple(blocks))
 
 
 def parameters(view: View, results: Sequence[Parameters]) -> Iterator[Chapter]:

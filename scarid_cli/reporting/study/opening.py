@@ -8,10 +8,13 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from scarid_cli.algorithms.changes.wording import CHANGED, UNEXPLAINED
 from scarid_cli.algorithms.statistics.verdict import DOUBT, DOUBTFUL, GOOD
+from scarid_cli.reporting.said import FINE, Said, worst
 from scarid_cli.reporting.study import league
 from scarid_cli.reporting.study.league import League, Place, percents
 from scarid_cli.reporting.study.ranking import GRADES, Ranking, Standing
+from scarid_cli.stages.compare import DIFFER
 
 ROWS = 12  # of the figure at most
 NAMED = 4  # good methods that are named at most
@@ -46,17 +49,48 @@ class Opening:
         return cls(grade, headline, given, figure.caption, league.drawn(figure))
 
 
-def opening(ranking: Ranking, colours: dict[str, int]) -> Opening:
-    """What a reader who has not seen the study needs to know of it."""
+def opening(ranking: Ranking, colours: dict[str, int], said: Sequence[Said] = ()) -> Opening:
+    """What a reader who has not seen the study needs to know of it.
+
+    `said` is what validate and compare have said; of the validations, those of the best count.
+    """
     best = ranking.best
-    answers = [("How well?", _how_well(ranking)), ("May I believe it?", _belief(best))]
+    others_said = {one.said for s in ranking.standings[1:] for one in s.metrics.values()}
+    own = [one for one in said if one not in others_said]
+    alarm = worst(own)
+    answers = [
+        ("How well?", _how_well(ranking)),
+        ("May I believe it?", _belief(best, alarm)),
+        ("Has the robot changed?", _changed(own, alarm)),
+    ]
     if len(ranking.standings) > 1:
         grades = [(standing.name, standing.grade) for standing in ranking.standings]
         answers.append(("And the others?", counted(grades)))
-    return Opening.of(best.grade, _headline(ranking), answers, _figure(ranking, colours))
+    grade = alarm.verdict if alarm and best.grade in (GOOD, "") else best.grade
+    if alarm and alarm.verdict != UNEXPLAINED:
+        grade = alarm.verdict
+    return Opening.of(grade, _headline(ranking, alarm), answers, _figure(ranking, colours))
 
 
-def _headline(ranking: Ranking) -> str:
+def _changed(said: Sequence[Said], alarm: Said | None) -> str:
+    """What validate and compare have said: the worst, and how many others are fine."""
+    if not said:
+        return ""
+    fine = sum(one.verdict in FINE for one in said)
+    if alarm:
+        more = f" ({fine} of {len(said)} are unchanged.)" if fine else ""
+        start = "Perhaps" if alarm.verdict == UNEXPLAINED else "Yes"
+        return f"{start}. {alarm.title}: {alarm.reason}.{more}"
+    if len(said) > 1:
+        return f"No: none of the {fine} logs and tables differs from the identification."
+    return f"No. {said[0].title}: {said[0].reason}."
+
+
+def _headline(ranking: Ranking, alarm: Said | None) -> str:
+    if alarm and alarm.verdict == CHANGED:
+        return f"The robot of {alarm.what} has changed"
+    if alarm and alarm.verdict == DIFFER:
+        return f"{alarm.what} and {alarm.against} differ by more than their errors"
     best, count = ranking.best.name, len(ranking.standings)
     if count == 1:
         grade = ranking.best.grade
@@ -91,12 +125,23 @@ def _known(best: Standing) -> str:
     return percents([best.vagueness()])
 
 
-def _belief(best: Standing) -> str:
+def _belief(best: Standing, alarm: Said | None) -> str:
+    """The answer from the verdicts of identify, validate and compare together."""
     if not best.grade:
-        return "The tables state no verdict; a CSV file cannot carry one."
+        if alarm:
+            return f"Not for {alarm.what}: it is {alarm.verdict}."
+        return "The tables state no verdict of identify; a CSV file cannot carry one."
     reasons = "; ".join(best.reasons[:1])
     belief = BELIEF.get(best.grade, "No: the log does not determine the parameters")
-    return f"{belief}: {reasons}." if reasons else f"{belief}."
+    why = f": {reasons}" if reasons else ""
+    if not alarm:
+        return f"{belief}{why}."
+    if best.grade == GOOD:
+        return (
+            f"For the robot as it was identified, within the stated intervals{why}. Not for "
+            f"{alarm.what}, which is {alarm.verdict}."
+        )
+    return f"{belief}{why}; and {alarm.what} is {alarm.verdict}."
 
 
 def counted(methods: Sequence[tuple[str, str]]) -> str:

@@ -14,6 +14,7 @@ from scarid_cli import __version__
 from scarid_cli.io.table import Table
 from scarid_cli.reporting import published
 from scarid_cli.reporting.curves import POINTS
+from scarid_cli.reporting.estimates import said_of
 from scarid_cli.reporting.kinds import Measurement, Result
 from scarid_cli.reporting.parts import Section, header_lines, split
 from scarid_cli.reporting.repeated import sections as repeated_sections
@@ -45,7 +46,7 @@ def study(
 ) -> str:
     """The page of these results."""
     view = view_of(results)
-    first = opening(view.ranking, view.colours) if view.ranking else None
+    first = opening(view.ranking, view.colours, said_of(results)) if view.ranking else None
     logs = sum(isinstance(result, Measurement) for result in results)
     found = chapters(view, results, values)
     return _rendered(title, first, found, tables, rules(len(view.colours) + logs))

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, inf, isfinite, log
+from pathlib import Path
 
 from scarid_cli.algorithms.statistics.verdict import DOUBTFUL, GOOD, NOT_IDENTIFIABLE
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
 from scarid_cli.reporting.naming import COMMON
+from scarid_cli.reporting.said import named
 from scarid_cli.reporting.wording import experiment_of, of_kind
 
 GRADES = (GOOD, DOUBTFUL, NOT_IDENTIFIABLE)
@@ -91,21 +93,35 @@ def ranking(results: Sequence[Result]) -> Ranking | None:
 
 
 def _standings(parameters: Sequence[Parameters], metrics: Sequence[Metrics]) -> list[Standing]:
-    """Metrics belong to the parameters of their label, the first ones if there are several.
+    """Metrics belong to the parameters that predicted them, as their history tells.
 
-    Beside the parameters of one label, metrics of one other label are of these.
+    Without a history they belong to the parameters of their label, the first ones if there are
+    several; beside the parameters of one label, metrics of one other label are of these.
     """
+    files = {Path(each.file).name: each.name.label for each in parameters}
     by_label: dict[str, dict[str, Metrics]] = {}
     for one in metrics:
-        by_label.setdefault(one.name.label, {})[experiment_of(one)] = one
+        by_label.setdefault(_owner(one, files), {})[experiment_of(one)] = one
     labels = {each.name.label for each in parameters}
-    if len(labels) == len(by_label) == 1:
+    unstated = all(not one.by for one in metrics)
+    if unstated and len(labels) == len(by_label) == 1:
         by_label = {labels.pop(): by_label.popitem()[1]}
     found = [
         Standing(each.name.label, each, by_label.pop(each.name.label, {}))
         for each in sorted(parameters, key=lambda r: r.name.experiment != "")
     ]
     return [*found, *(Standing(label, None, those) for label, those in by_label.items())]
+
+
+def _owner(metrics: Metrics, files: dict[str, str]) -> str:
+    """The label of the parameters that predicted the torques."""
+    if not metrics.by:
+        return metrics.name.label
+    names = [Path(file).name for file in metrics.by]
+    if len(names) == 1 and names[0] in files:
+        return files[names[0]]
+    own = metrics.name.label
+    return own if own not in files.values() else f"{own}, predicted by {named(metrics.by)}"
 
 
 def judge_of(metrics: Sequence[Metrics]) -> str | None:

@@ -8,6 +8,10 @@ TERMS = {
     "verdict": "good: the estimates may be used within their intervals. Doubtful: a reason is "
     "stated why they may be wrong by more than their intervals. Not identifiable: the log does not "
     "determine the parameters.",
+    "unchanged": "the log, or the other identification, differs from the identification by no more "
+    "than noise, errors of the model and the stated intervals explain. Changed: a cause is found. "
+    "Unexplained: it differs, and no cause explains it. Differ: some parameters are apart by more "
+    "than their errors.",
     "known within 30 %": "the standard error of a parameter, robust to autocorrelated residuals, "
     "is at most 30 % of its estimate.",
     "model torque within": "half the 95 % interval of the torque that the estimates give on a "

@@ -1,0 +1,85 @@
+"""What `validate` and `compare` have said of a robot: whether it has changed, and against what."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from scarid_cli.algorithms.changes.wording import CHANGED, UNCHANGED, UNEXPLAINED
+from scarid_cli.io.table import Metadata
+from scarid_cli.printable import printable
+from scarid_cli.stages.compare import DIFFER, SAME
+
+FINE = (UNCHANGED, SAME)
+ALARMING = (CHANGED, DIFFER, UNEXPLAINED)  # the worst first
+PARAMETERS = "--parameters"
+
+
+@dataclass(frozen=True)
+class Said:
+    """A verdict and its reason; `what` it is on, and `against` which parameters, for a person."""
+
+    verdict: str
+    reason: str
+    what: str
+    against: str
+
+    @property
+    def title(self) -> str:
+        return f"{self.what} beside {self.against}" if self.against else self.what
+
+
+def files_of(meta: Metadata) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The logs and the parameter tables that the last command, `validate`, was given.
+
+    Both are empty where the table has no history.
+    """
+    if not meta.history:
+        return (), ()
+    entry = meta.history[-1]
+    words = shlex.split(entry["command"])
+    by = [after for word, after in pairwise(words) if word == PARAMETERS]
+    logs = [file for file in entry["inputs"] if file not in by and not file.endswith(".toml")]
+    return tuple(logs), tuple(by)
+
+
+def of_validation(meta: Metadata, label: str) -> Said | None:
+    """What `validate` said, if it could say anything."""
+    change: dict[str, Any] = meta.extra.get("change") or {}
+    if not change:
+        return None
+    logs, by = files_of(meta)
+    what = named(logs) or label
+    return Said(change["verdict"], printable(change["reason"]), what, named(by))
+
+
+def of_comparison(meta: Metadata, label: str) -> tuple[Said, ...]:
+    """What `compare` said of each table beside the first one."""
+    first = shlex.split(meta.history[-1]["command"])[2:3] if meta.history else []
+    return tuple(
+        Said(
+            DIFFER if pair["differ"] else SAME,
+            printable(pair["reason"]),
+            named([pair["table"]]) or label,
+            named(first),
+        )
+        for pair in meta.extra.get("comparisons", ())
+    )
+
+
+def named(files: Sequence[str]) -> str:
+    """Files by their own names: `monday.csv and tuesday.csv`; of many, the first and the number."""
+    names = [printable(Path(file).name) for file in files if file != "-"]
+    if len(names) > 2:
+        return f"{names[0]} and {len(names) - 1} others"
+    return " and ".join(names)
+
+
+def worst(said: Sequence[Said]) -> Said | None:
+    """The first of the most alarming verdicts; None if all are fine."""
+    found = [one for one in said if one.verdict in ALARMING]
+    return min(found, key=lambda one: ALARMING.index(one.verdict), default=None)
