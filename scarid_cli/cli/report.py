@@ -30,7 +30,7 @@ from scarid_cli.cli.declare import declare
 @options.side_output("--figures", metavar="FOLDER", help="Write each figure as an SVG file.")
 @click.option(
     "--title",
-    help="Title of the documents.  [default: Identification report, with --fleet Fleet report]",
+    help="Title of the documents.  [default: Identification of ROBOT, with --fleet Fleet report]",
 )
 @options.common
 def command() -> None:

@@ -9,10 +9,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from scarid_cli.algorithms.statistics.comparison import LEVEL
 from scarid_cli.reporting.fleet_history import History
 
 # What may be found in a log, from the most serious finding to none; the numbers are ranks.
 FAILED, CHANGED, DOUBTFUL, CHECK, FINE = range(5)
+
+
+AMOUNTS = re.compile(r"\s*\([^()]*(?:\([^()]*\)[^()]*)*\)")  # in brackets, which may hold others
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,15 @@ class Log:
         return self["change"] in ("changed", "unexplained")
 
     @property
+    def cause(self) -> str:
+        """What has changed, in a few words without amounts; empty if nothing has."""
+        if not self._changed:
+            return ""
+        if self["change"] == "unexplained":
+            return "an unexplained change"
+        return AMOUNTS.sub("", str(self["change_reason"]).partition(";")[0]).strip()
+
+    @property
     def notes(self) -> tuple[tuple[str, str], ...]:
         """What was found and by which command, the most serious first; empty if nothing was."""
         found = (
@@ -83,7 +96,7 @@ class Log:
         p = self["p_value"]
         text = f"the parameters differ from those of {self['reference']}"
         text += f": {', '.join(self.differing)}" if self.differing else ""
-        return text if p is None else f"{text} (p = {p:.1g})"
+        return text if p is None or p > LEVEL else f"{text} (p = {p:.1g})"
 
 
 @dataclass(frozen=True)
@@ -113,6 +126,11 @@ class FleetRobot:
     @property
     def needs_look(self) -> bool:
         return bool(self.trending) or any(self.counts[:FINE])
+
+    @property
+    def causes(self) -> Counter[str]:
+        """In how many logs validate found each cause of a change."""
+        return Counter(log.cause for log in self.logs if log.cause)
 
     @property
     def differing(self) -> Counter[str]:

@@ -16,6 +16,7 @@ from scarid_cli.reporting.fleet_data import embedded, href
 from scarid_cli.reporting.fleet_sections import (
     NOTE,
     WORDS,
+    causes,
     counted,
     failures,
     joints,
@@ -41,6 +42,7 @@ class Card:
     index: int
     counts: tuple[str, ...]
     trend: str
+    causes: str
     differing: str
     joints: str
     failures: tuple[tuple[str, Log], ...]
@@ -95,6 +97,7 @@ def _card(index: int, robot: FleetRobot) -> Card:
         index=index,
         counts=named(robot.counts),
         trend=trend(robot),
+        causes=causes(robot),
         differing=", ".join(f"{name} in {n}" for name, n in robot.differing.most_common(6)),
         joints=joints(robot),
         failures=failures(robot),

@@ -12,6 +12,7 @@ from scarid_cli.reporting.fleet import FINE, FleetRobot, Log
 from scarid_cli.reporting.fleet_history import History
 from scarid_cli.reporting.parts import NONE, Section
 
+CAUSES = 3  # of a robot that are named at most
 WORDS = ("failed", "changed", "verdict not good", "check not ok", "nothing found")
 NOTE = (
     "Failed: a command ended with an error. Changed: validate found a change against other logs of "
@@ -29,6 +30,14 @@ def sections(robots: Sequence[FleetRobot]) -> list[Section]:
             NOTE,
             ("robot", "logs", *WORDS, "trend"),
             tuple(_summary(robot) for robot in robots),
+            prose=True,
+        ),
+        Section(
+            "What has changed",
+            "The causes that validate found, those of most logs first.",
+            ("robot", "causes"),
+            tuple((printable(robot.name), causes(robot)) for robot in robots if robot.causes),
+            texts=2,
             prose=True,
         ),
         Section(
@@ -50,6 +59,12 @@ def _summary(robot: FleetRobot) -> tuple[str, ...]:
     counts = (len(robot.logs), *robot.counts)
     trending = ", ".join(robot.trending) or NONE
     return (printable(robot.name), *map(str, counts), printable(trending))
+
+
+def causes(robot: FleetRobot) -> str:
+    """What validate found to have changed, the most frequent first: `another payload in 2 logs`."""
+    found = robot.causes.most_common()
+    return printable("; ".join(f"{cause} in {counted(n, 'log')}" for cause, n in found[:CAUSES]))
 
 
 def _labels(log: Log) -> str:

@@ -34,12 +34,20 @@ def name_of(file: str, kind: str) -> Name:
     """`p2smd.direct.metrics.parquet`: method p2smd, experiment direct; `p2smd.csv`: none."""
     if file == STDIN:
         return Name("stdin", "")
-    last = printable(Path(file).name)
+    path = Path(file)
+    if of_a_folder(path):
+        return Name(printable(path.parent.name), "")
+    last = printable(path.name)
     label, *middle = last.split(".")
     middle = middle[:-1]
     if middle and middle[-1].rstrip("s") == kind.rstrip("s"):
         middle.pop()
     return Name(label or last, ".".join(middle))
+
+
+def of_a_folder(path: Path) -> bool:
+    """Whether the folder has the name of the log, as in the outcome of a batch: logs/ROBOT/LOG."""
+    return path.parts[-4:-3] == ("logs",)
 
 
 def names_of(files: Sequence[str], kinds: Sequence[str]) -> list[Name]:

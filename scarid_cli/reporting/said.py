@@ -12,11 +12,13 @@ from typing import Any
 from scarid_cli.algorithms.changes.wording import CHANGED, UNCHANGED, UNEXPLAINED
 from scarid_cli.io.table import Metadata
 from scarid_cli.printable import printable
+from scarid_cli.reporting.naming import of_a_folder
 from scarid_cli.stages.compare import DIFFER, SAME
 
 FINE = (UNCHANGED, SAME)
 ALARMING = (CHANGED, DIFFER, UNEXPLAINED)  # the worst first
 PARAMETERS = "--parameters"
+MAKERS = ("trajgen", "simulate")  # what they read is no log
 
 
 @dataclass(frozen=True)
@@ -34,17 +36,28 @@ class Said:
 
 
 def files_of(meta: Metadata) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The logs and the parameter tables that the last command, `validate`, was given.
+    """The logs, as they were recorded, and the parameter tables that predicted their torques.
 
-    Both are empty where the table has no history.
+    The logs are those that the first command of the history read, the parameters those of the last
+    one, `validate`. Both are empty where the table has no history.
     """
     if not meta.history:
         return (), ()
-    entry = meta.history[-1]
-    words = shlex.split(entry["command"])
+    words = shlex.split(meta.history[-1]["command"])
     by = [after for word, after in pairwise(words) if word == PARAMETERS]
-    logs = [file for file in entry["inputs"] if file not in by and not file.endswith(".toml")]
-    return tuple(logs), tuple(by)
+    for entry in meta.history:
+        if entry["command"].split()[1] in MAKERS:
+            continue
+        logs = [f for f in entry["inputs"] if f not in by and not f.endswith((".toml", ".urdf"))]
+        if logs and logs != ["-"]:
+            return tuple(logs), tuple(by)
+    return (), tuple(by)
+
+
+def same_table(one: str, other: str) -> bool:
+    """Whether two paths may be of one file, as seen from different folders."""
+    pair = zip(reversed(Path(one).parts), reversed(Path(other).parts), strict=False)
+    return all(a == b for a, b in pair if a not in ("..", "."))
 
 
 def of_validation(meta: Metadata, label: str) -> Said | None:
@@ -73,10 +86,15 @@ def of_comparison(meta: Metadata, label: str) -> tuple[Said, ...]:
 
 def named(files: Sequence[str]) -> str:
     """Files by their own names: `monday.csv and tuesday.csv`; of many, the first and the number."""
-    names = [printable(Path(file).name) for file in files if file != "-"]
+    names = [printable(_own_name(Path(file))) for file in files if file != "-"]
     if len(names) > 2:
         return f"{names[0]} and {len(names) - 1} others"
     return " and ".join(names)
+
+
+def _own_name(path: Path) -> str:
+    """The name of a file, or that of its folder where all folders hold a file of this name."""
+    return path.parent.name if of_a_folder(path) else path.name
 
 
 def worst(said: Sequence[Said]) -> Said | None:

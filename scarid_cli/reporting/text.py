@@ -40,7 +40,7 @@ def terminal(sections: Sequence[Section], *, plain: bool = False) -> str:
             console.print(section.title, style="bold")
             if section.note:
                 console.print(section.note, style="dim")
-            for part in split(section, width if console.is_terminal else TABLE_WIDTH):
+            for part in _parts(section, width if console.is_terminal else TABLE_WIDTH):
                 # A part that is still too wide keeps its width: no number is cut.
                 console.width = width if part.prose else max(width, sum(_widths(part)))
                 console.print(_table(part))
@@ -48,6 +48,11 @@ def terminal(sections: Sequence[Section], *, plain: bool = False) -> str:
     # A name with characters that the terminal cannot show must not end the report.
     text = capture.get().encode(console.encoding, "replace").decode(console.encoding)
     return text if console.is_terminal else _stripped(text)
+
+
+def _parts(section: Section, width: int) -> list[Section]:
+    """The parts of a table that are not too wide; running text is wrapped in its column."""
+    return [section] if section.prose else split(section, width)
 
 
 def _with_rows(sections: Sequence[Section]) -> Iterator[Section]:

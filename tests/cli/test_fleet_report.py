@@ -156,10 +156,14 @@ def test_a_fleet_of_failures_has_a_page(tmp_path: Path, scarid: Run) -> None:
 def test_the_terminal_and_markdown_say_what_needs_a_look(outcome: Path, scarid: Run) -> None:
     result = scarid("report", "--fleet", outcome)
     assert (result.status, result.err) == (0, "")
-    assert result.out.index("failed: convert") < result.out.index("friction of joint 2")
+    listed = result.out.partition("Logs that need a look")[2]
+    assert listed.index("failed: convert") < listed.index("friction of joint 2")
+    causes = result.out.partition("What has changed")[2].partition("Logs that need a look")[0]
+    assert "friction of joint 2 in" in causes
     rows = markdown_rows(scarid("report", "--fleet", outcome, "--markdown", "-").out)
     assert [row for row in rows if row[0] == "drifting"] == [
         ["drifting", "3", "0", "1", "0", "0", "2", "Fs2"],
+        ["drifting", "friction of joint 2 in 1 log"],
         ["drifting", "2026-01-03", "changed", "friction of joint 2"],
     ]
 

@@ -14,6 +14,7 @@ from scarid_cli.reporting import naming, results
 from scarid_cli.reporting import published as values_of
 from scarid_cli.reporting import repeated as repetitions
 from scarid_cli.reporting.content import sections
+from scarid_cli.reporting.kinds import Result
 from scarid_cli.reporting.parts import Section
 
 
@@ -38,13 +39,13 @@ def run(
         _require_alone(files, others)
         of_fleet(job, fleet, title or "Fleet report", html, markdown, place)
         return
-    title = title or "Identification report"
     paths = files or ("-",)
     _require_distinct(paths)
     documents = Documents.opened(job, html, markdown, place)
     tables = _reportable(job, paths)
     values = values_of.read(job.read(published, "published")) if published else None
     collected = results.collect(tables, repeated=repeated)
+    title = title or _title(collected)
     found = (repetitions.sections if repeated else sections)(collected, values)
     if figures:
         _save(job, Path(figures), found)
@@ -59,6 +60,12 @@ def run(
     documents.write(title, found)
     if not html and any(not section.rows for section in found):
         job.say("some tables have figures only; draw them with --html FILE")
+
+
+def _title(found: Sequence[Result]) -> str:
+    """The title of a report, with its robots."""
+    robots = dict.fromkeys(r.robot_name for r in found if r.robot_name)
+    return f"Identification of {', '.join(robots)}" if robots else "Identification report"
 
 
 def _reportable(job: Job, paths: Sequence[str]) -> list[Table]:

@@ -55,16 +55,17 @@ def opening(ranking: Ranking, colours: dict[str, int], said: Sequence[Said] = ()
     `said` is what validate and compare have said; of the validations, those of the best count.
     """
     best = ranking.best
-    others_said = {one.said for s in ranking.standings[1:] for one in s.metrics.values()}
+    rivals = [s for s in ranking.standings[1:] if s.parameters]
+    others_said = {one for s in rivals for one in s.said}
     own = [one for one in said if one not in others_said]
     alarm = worst(own)
     answers = [
         ("How well?", _how_well(ranking)),
-        ("May I believe it?", _belief(best, alarm)),
+        ("May I believe it?", _belief(ranking, alarm)),
         ("Has the robot changed?", _changed(own, alarm)),
     ]
-    if len(ranking.standings) > 1:
-        grades = [(standing.name, standing.grade) for standing in ranking.standings]
+    if rivals:
+        grades = [(standing.name, standing.grade) for standing in ranking.identified]
         answers.append(("And the others?", counted(grades)))
     grade = alarm.verdict if alarm and best.grade in (GOOD, "") else best.grade
     if alarm and alarm.verdict != UNEXPLAINED:
@@ -91,7 +92,7 @@ def _headline(ranking: Ranking, alarm: Said | None) -> str:
         return f"The robot of {alarm.what} has changed"
     if alarm and alarm.verdict == DIFFER:
         return f"{alarm.what} and {alarm.against} differ by more than their errors"
-    best, count = ranking.best.name, len(ranking.standings)
+    best, count = ranking.best.name, len(ranking.identified)
     if count == 1:
         grade = ranking.best.grade
         return f"The estimates of {best} are {grade}" if grade else f"The estimates of {best}"
@@ -125,8 +126,9 @@ def _known(best: Standing) -> str:
     return percents([best.vagueness()])
 
 
-def _belief(best: Standing, alarm: Said | None) -> str:
+def _belief(ranking: Ranking, alarm: Said | None) -> str:
     """The answer from the verdicts of identify, validate and compare together."""
+    best = ranking.best
     if not best.grade:
         if alarm:
             return f"Not for {alarm.what}: it is {alarm.verdict}."
@@ -136,6 +138,8 @@ def _belief(best: Standing, alarm: Said | None) -> str:
     why = f": {reasons}" if reasons else ""
     if not alarm:
         return f"{belief}{why}."
+    if any(alarm in s.said for s in ranking.standings if not s.parameters):
+        return f"{belief}{why}. They are of the robot as this log has it, which is {alarm.verdict}."
     if best.grade == GOOD:
         return (
             f"For the robot as it was identified, within the stated intervals{why}. Not for "
@@ -160,7 +164,7 @@ def counted(methods: Sequence[tuple[str, str]]) -> str:
 def _figure(ranking: Ranking, colours: dict[str, int]) -> League:
     """Torque errors of the methods, or, where there are none, the errors of the parameters."""
     judge = ranking.judge
-    if judge is None or (len(ranking.standings) == 1 and ranking.best.parameters):
+    if judge is None or (len(ranking.identified) == 1 and ranking.best.parameters):
         return _of_parameters(ranking, colours)
     ranked = [s for s in ranking.standings if s.errors(judge)][:ROWS]
     joints = next(iter(ranked)).metrics[judge].joints
@@ -178,7 +182,7 @@ def _figure(ranking: Ranking, colours: dict[str, int]) -> League:
 def _of_parameters(ranking: Ranking, colours: dict[str, int]) -> League:
     """Errors of each parameter of the best, or the median of each method."""
     best = ranking.best.parameters
-    if best is None or len(ranking.standings) > 1:
+    if best is None or len(ranking.identified) > 1:
         places = tuple(
             Place(s.name, f"m{colours[s.label]}", s.grade, (s.vagueness(),))
             for s in ranking.standings[:ROWS]

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, inf, isfinite, log
-from pathlib import Path
 
 from scarid_cli.algorithms.statistics.verdict import DOUBTFUL, GOOD, NOT_IDENTIFIABLE
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
 from scarid_cli.reporting.naming import COMMON
-from scarid_cli.reporting.said import named
+from scarid_cli.reporting.said import Said, named, same_table
 from scarid_cli.reporting.wording import experiment_of, of_kind
 
 GRADES = (GOOD, DOUBTFUL, NOT_IDENTIFIABLE)
@@ -40,6 +39,11 @@ class Standing:
     @property
     def reasons(self) -> tuple[str, ...]:
         return tuple(self.parameters.extra.get("reasons", ())) if self.parameters else ()
+
+    @property
+    def said(self) -> tuple[Said, ...]:
+        """What validate has said of the robot."""
+        return tuple(one.said for one in self.metrics.values() if one.said)
 
     def errors(self, experiment: str) -> tuple[float, ...]:
         """The relative error of each predicted torque [%]; empty if there are none."""
@@ -71,6 +75,11 @@ class Ranking:
     def best(self) -> Standing:
         return self.standings[0]
 
+    @property
+    def identified(self) -> tuple[Standing, ...]:
+        """The methods whose parameters are here; all if none are."""
+        return tuple(s for s in self.standings if s.parameters) or self.standings
+
     def places(self) -> dict[str, int]:
         """The place of each label, from 0."""
         labels = dict.fromkeys(standing.label for standing in self.standings)
@@ -98,7 +107,7 @@ def _standings(parameters: Sequence[Parameters], metrics: Sequence[Metrics]) -> 
     Without a history they belong to the parameters of their label, the first ones if there are
     several; beside the parameters of one label, metrics of one other label are of these.
     """
-    files = {Path(each.file).name: each.name.label for each in parameters}
+    files = {each.file: each.name.label for each in parameters}
     by_label: dict[str, dict[str, Metrics]] = {}
     for one in metrics:
         by_label.setdefault(_owner(one, files), {})[experiment_of(one)] = one
@@ -117,9 +126,9 @@ def _owner(metrics: Metrics, files: dict[str, str]) -> str:
     """The label of the parameters that predicted the torques."""
     if not metrics.by:
         return metrics.name.label
-    names = [Path(file).name for file in metrics.by]
-    if len(names) == 1 and names[0] in files:
-        return files[names[0]]
+    known = [label for file, label in files.items() if same_table(file, metrics.by[0])]
+    if len(metrics.by) == 1 and known:
+        return known[0]
     own = metrics.name.label
     return own if own not in files.values() else f"{own}, predicted by {named(metrics.by)}"
 
