@@ -10,6 +10,14 @@ from scarid_cli.cli.declare import declare
 
 @declare("compare")
 @click.argument("files", metavar="FIRST SECOND...", nargs=-1, required=True, type=options.INPUT)
+@click.option(
+    "--require",
+    cls=options.Unrecorded,
+    type=click.Choice(("same",)),
+    help="Exit with status 3 if a table differs from the first one; the table of differences is "
+    "written all the same.",
+)
+@options.as_json
 @options.table_output
 @options.common
 def command() -> None:

@@ -30,6 +30,11 @@ def _require_values() -> None:
             raise click.BadParameter(text, param=parameter)
 
 
+def _only_json(given: dict[str, Any]) -> bool:
+    """Whether a JSON document takes the place of the table; with -o FILE, both are written."""
+    return bool(given.get("as_json")) and given.get("output", "-") == "-"
+
+
 def declare(
     name: str, cls: type[click.Command] = Command
 ) -> Callable[[Callable[[], None]], click.Command]:
@@ -51,7 +56,7 @@ def declare(
             with job(given) as run:
                 if name not in WITHOUT_KERNELS:
                     run.say_if_interpreted()
-                if "format" in given:
+                if "format" in given and not _only_json(given):
                     small = name in READABLE
                     run.out = run.output(given.get("output", "-"), given["format"], readable=small)
                 status = action.run(run, **own)

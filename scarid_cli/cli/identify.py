@@ -81,6 +81,7 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
     "doubtful verdict is not-biased unless the soft sensor or a delay changes the estimates, or "
     "the log fails a check.",
 )
+@options.as_json
 @options.side_output("--trace", help="Write the estimates after every sample (rls, ekf).")
 @options.side_output(
     "--save",

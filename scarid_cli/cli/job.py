@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import stat
 from collections.abc import Callable, Iterator, Sequence
@@ -77,6 +78,11 @@ class Job:
 
             return self._new(path, lambda: Readable(path))
         return self._new(path, lambda: Output(path, wanted))
+
+    @property
+    def writes_csv(self) -> bool:
+        """Whether the command's table is written as CSV, which has no metadata."""
+        return hasattr(self, "out") and self.out.format == "csv"
 
     def text(self, path: str) -> Document:
         """The output for a document beside the tables, which is opened early as well."""
@@ -256,9 +262,30 @@ class Job:
         self.sources.append(source)
         return source
 
+    def write_or_print(self, table: Table, document: Callable[[Table], Any] | None) -> None:
+        """Send a small table to the command's output; print its JSON `document`, if there is one.
+
+        The document takes the place of the table, unless that goes to a file.
+        """
+        if not document:
+            self.write(table)
+            return
+        if self.place.following:
+            raise UsageFault("--json prints a document, and can only be the last command of `then`")
+        batches = list(table.batches)
+        if hasattr(self, "out"):
+            self.out.take(replace(table, batches=iter(batches)))
+        self._tell_of_reading()
+        text = json.dumps(document(replace(table, batches=iter(batches))), allow_nan=False)
+        click.echo(text)
+
     def write(self, table: Table, output: Output | None = None) -> None:
         """Send a table to an output, by default the command's, and report omitted segments."""
         (output or self.out).take(table)
+        self._tell_of_reading()
+
+    def _tell_of_reading(self) -> None:
+        """Report what was noted on the inputs, and what was left out of them."""
         self.say_notes()
         if self.left_out:
             count = len(self.left_out)
@@ -292,6 +319,10 @@ class Job:
 
         if not self.quiet and self.place.source is None and (text := notice()):
             self.place.say(text)
+
+    def demand(self, message: str) -> None:
+        """Report that the result is not what --require asks for, even if the run is quiet."""
+        self.remarks.keep(message, "", "")
 
     def say(self, message: str, verdict: str = "", command: str = "") -> None:
         """Report a line to the user, on standard error, once the run has ended well.

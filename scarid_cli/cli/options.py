@@ -210,7 +210,13 @@ def table_output(function: F) -> F:
 
 def as_json(function: F) -> F:
     """Print a JSON document in place of text."""
-    option = click.option("--json", "as_json", is_flag=True, help="Print a JSON document.")
+    option = click.option(
+        "--json",
+        "as_json",
+        cls=Unrecorded,
+        is_flag=True,
+        help="Print a JSON document, in place of the text or table on standard output.",
+    )
     return all_of(heading(OUTPUT), option)(function)
 
 

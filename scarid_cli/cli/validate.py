@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import click
+
 from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 from scarid_cli.cli.headings import DATA, OUTPUT, heading
@@ -20,6 +22,14 @@ from scarid_cli.cli.headings import DATA, OUTPUT, heading
 @selecting.selection
 @options.treatment
 @heading(OUTPUT)
+@click.option(
+    "--require",
+    cls=options.Unrecorded,
+    type=click.Choice(("unchanged",)),
+    help="Exit with status 3 if the verdict is another one, or if there is none; the table is "
+    "written all the same.",
+)
+@options.as_json
 @options.side_output("--predictions", help="Write the measured and the predicted torques.")
 @options.table_output
 @options.common

@@ -102,8 +102,16 @@ def compare(tables: Sequence[Table]) -> tuple[Table, list[str]]:
         {**_facts(label, pair, names), "reason": reason(pair, names, units)}
         for label, pair in zip(labels, pairs, strict=True)
     ]
+    trending = (
+        {
+            "parameters": [names[i] for i in trends.differing],
+            "per_table": {names[i]: trends.difference[i] for i in trends.differing},
+        }
+        if trends
+        else None
+    )
     table = _table(tables[0], labels, names, units, estimates, pairs)
-    extra: dict[str, Any] = {"comparisons": facts, "level": LEVEL}
+    extra: dict[str, Any] = {"comparisons": facts, "level": LEVEL, "trend": trending}
     return replace(table, meta=replace(table.meta, extra=extra)), lines
 
 
@@ -152,6 +160,7 @@ def _facts(label: str, pair: Comparison, names: list[str]) -> dict[str, Any]:
     joint = pair.joint
     return {
         "table": label,
+        "verdict": verdict(pair),
         "differ": pair.differ,
         "parameters": [names[i] for i in pair.differing],
         "joint": joint and {"f": joint.f, "k": joint.k, "n": joint.n, "p_value": joint.p_value},

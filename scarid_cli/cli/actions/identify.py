@@ -34,6 +34,7 @@ from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document
 from scarid_cli.stages import identify as stage
+from scarid_cli.stages.documents import identification
 from scarid_cli.stages.parameters import ADDITIONS, identified
 
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
@@ -57,6 +58,7 @@ def run(
     robot: str | None,
     variance: str,
     require: str | None,
+    as_json: bool,
     **given: Any,
 ) -> int:
     """Write the parameters, and report the verdict; returns the exit status."""
@@ -81,7 +83,8 @@ def run(
         keep=places.append,
         findings=findings,
     )
-    job.write(result)
+    document = partial(identification, estimator=chosen.name) if as_json else None
+    job.write_or_print(result, document)
     if place:
         _save(place, places[0], fixed)
     for finding in findings:
@@ -149,7 +152,7 @@ def _tell(job: Job, table: Table, robot: str, chosen: Chosen, extra: dict[str, A
     report(job, table, chosen.treatment.counting, extra.get("left_out", {}))
     facts, verdict = summary_lines(robot, chosen.name, extra)
     job.say(facts)
-    if chosen.treatment.align and job.out.format == "csv":
+    if chosen.treatment.align and job.writes_csv:
         job.say(f"CSV {_lost(extra)}: write -o FILE.parquet for validate to apply it")
     job.say(verdict, extra["verdict"])
 
@@ -166,7 +169,7 @@ def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
     """The exit status, which tells whether the verdict is what was required."""
     if not require or meets(require, extra["verdict"], biased=extra["biased"]):
         return OK
-    job.say(f"the verdict is worse than --require {require}")
+    job.demand(f"the verdict is {extra['verdict']}, which is worse than --require {require}")
     return REQUIRED
 
 

@@ -22,11 +22,12 @@ from scarid_cli.cli.treatment import (
     report,
     treatment_of,
 )
-from scarid_cli.errors import UsageFault
+from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
 from scarid_cli.stages import validate as stage
 from scarid_cli.stages.changes import Known, known
+from scarid_cli.stages.documents import validation
 from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.parameters import Identified, identified
 from scarid_cli.stages.pooling import Entry, pooled_identifications
@@ -40,9 +41,11 @@ def run(
     parameters: tuple[str, ...],
     robot: str | None,
     predictions: str | None,
+    require: str | None,
+    as_json: bool,
     **given: Any,
-) -> None:
-    """Write the quality of the predicted torques."""
+) -> int:
+    """Write the quality of the predicted torques; returns the exit status."""
     treatment = treatment_of(given)
     if treatment.holds and predictions:
         raise UsageFault("--predictions needs every row and cannot be combined with --decimate")
@@ -65,7 +68,7 @@ def run(
         before=before if before.testable else None,
         failed=lambda: _failed(reach, arm, table),
     )
-    job.write(result)
+    job.write_or_print(result, validation if as_json else None)
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
     if len(tables) > 1:
         job.say(f"pooled the parameters of {len(tables)} identifications, by their information")
@@ -73,6 +76,17 @@ def run(
         for text in _failed(reach, arm, table):
             job.say(f"warning: {text}")
     _tell(job, model, before, result.meta.extra)
+    return _status(job, require, result.meta.extra)
+
+
+def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
+    """The exit status, which tells whether the verdict is what was required."""
+    found = extra.get("change", {}).get("verdict")
+    if not require or found == require:
+        return OK
+    why = f"the verdict is {found}" if found else "there is no verdict"
+    job.demand(f"{why}, not {require} as --require asks")
+    return REQUIRED
 
 
 def _failed(reach: Reach, robot: Robot, table: Table) -> list[str]:
