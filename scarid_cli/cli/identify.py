@@ -76,7 +76,7 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
 @click.option(
     "--require",
     cls=options.Unrecorded,
-    type=click.Choice(("good", "not-biased", "identifiable")),
+    type=click.Choice(("good", "rough", "not-biased", "identifiable")),
     help="Exit with status 3 if the verdict is worse; the table is written all the same. A "
     "doubtful verdict is not-biased unless the soft sensor or a delay changes the estimates, or "
     "the log fails a check.",

@@ -6,7 +6,7 @@ import os
 
 COLOURS = {
     "ok": "32", "good": "32", "unchanged": "32", "same": "32",
-    "warning": "33", "doubtful": "33", "unexplained": "33",
+    "warning": "33", "rough": "33", "doubtful": "33", "unexplained": "33",
     "failed": "31", "not identifiable": "31", "changed": "31", "differ": "31",
 }  # fmt: skip
 NARROWEST, USUAL = 40, 80  # characters

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import takewhile
-from math import floor, isfinite, log10
+from math import floor, inf, isfinite, log10
 from typing import Any
 
 import pyarrow as pa
 
+from scarid_cli.interval import HALF
 from scarid_cli.reporting.parts import NONE, Section
 from scarid_cli.reporting.text import terminal
 
@@ -27,20 +28,36 @@ def readable(title: str, table: pa.Table) -> str:
 
 
 def _parameters(title: str, rows: Sequence[dict[str, Any]]) -> Section:
-    """Each estimate with its error, both to the second digit of the error."""
+    """Each estimate with half its 95 % interval, both to the second digit of this half.
+
+    An interval that contains 0 has no percentage: its half says what is known.
+    """
     headers = ("parameter", "unit", "estimate", "+-", "%", "low", "high")
     lines = []
     for row in rows:
-        error = row["robust_error"] or row["standard_error"]
-        known = error is not None and isfinite(error) and error > 0.0
-        places = KNOWN - 1 - floor(log10(error)) if known else None
+        half = _half(row)
+        places = KNOWN - 1 - floor(log10(half)) if half else None
         numbers = (_rounded(row[key], places) for key in ("estimate", "low", "high"))
         estimate, low, high = numbers
-        share = abs(100.0 * error / row["estimate"]) if known and row["estimate"] else None
-        size = _rounded(error, places)
-        part = NONE if share is None else f"{share:.0f}" if share >= 10.0 else f"{share:.2g}"
+        share = half / abs(row["estimate"]) if half and row["estimate"] else inf
+        size = _rounded(half, places)
+        part = _two_digits(100.0 * share) if share <= 1.0 else NONE
         lines.append((row["parameter"], row["unit"] or NONE, estimate, size, part, low, high))
-    return Section(title, "", headers, tuple(lines), texts=2)
+    note = "+- is half the 95 % interval, from low to high; % is +- in percent of the estimate."
+    return Section(title, note, headers, tuple(lines), texts=2)
+
+
+def _half(row: dict[str, Any]) -> float | None:
+    """Half the 95 % interval, if it is known; without one, by the standard error."""
+    if row.get("low") is not None and row.get("high") is not None:
+        half = 0.5 * float(row["high"] - row["low"])
+    else:
+        half = HALF * float(row["robust_error"] or row["standard_error"] or 0.0)
+    return half if isfinite(half) and half > 0.0 else None
+
+
+def _two_digits(value: float) -> str:
+    return f"{value:.0f}" if value >= 10.0 else f"{value:.2g}"
 
 
 def _rounded(value: float | None, places: int | None) -> str:

@@ -1,4 +1,4 @@
-"""Results as documents for machines, by the schemas in `schemas/*.schema.json`.
+"""Results as documents for machines, by the schemas in `schemas/documents/`.
 
 Numbers are numbers; what is not known, or not finite, is null. Units are named beside the numbers,
 or in the schema. A `half_interval` is half the 95 % interval: what stands behind +- elsewhere.

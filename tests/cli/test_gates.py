@@ -41,7 +41,9 @@ def document(text: str) -> dict[str, Any]:
         raise AssertionError(f"{constant} is no JSON")
 
     found: dict[str, Any] = json.loads(text, parse_constant=refuse)
-    schema = json.loads((ROOT / "schemas" / f"{found['command']}.schema.json").read_text("utf-8"))
+    schema = json.loads(
+        (ROOT / "schemas" / "documents" / f"{found['command']}.schema.json").read_text("utf-8")
+    )
     jsonschema.Draft202012Validator.check_schema(schema)
     jsonschema.validate(found, schema)
     return found

@@ -104,8 +104,9 @@ def test_a_wheel_has_every_package_and_every_file_of_data() -> None:
     assert set(declared["packages"]) == packages | {"scarid_cli.schemas"}
     data = declared["package-data"]
     for name in tracked:
-        package = ".".join(Path(name).parent.parts).replace("schemas", "scarid_cli.schemas")
-        patterns = [*data.get(package, []), "*.py"]
+        folders = [folder for folder in Path(name).parents if folder.parts]
+        owners = (".".join(f.parts).replace("schemas", "scarid_cli.schemas") for f in folders)
+        patterns = [*(pattern for owner in owners for pattern in data.get(owner, [])), "*.py"]
         assert any(Path(name).match(pattern) for pattern in patterns), name
 
 

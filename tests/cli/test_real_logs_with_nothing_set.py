@@ -110,7 +110,7 @@ def test_identify_reports_the_r2_of_a_bag_that_validate_finds(
     ur10_log(bag, body.joint_names, tmp_path / "bag.csv")
     assert shell("scarid resample -q --rate 125 bag.csv -o log.csv").status == 0
     said = identified(str(urdf), "log.csv", shell)
-    found = re.search(r"R2 ((?:[\d.]+, )*[\d.]+)", said)
+    found = re.search(r"R2 joints 1 to \d+ ((?:[\d.]+, )*[\d.]+)", said)
     assert found
     reported = [float(x) for x in found[1].split(", ")]
     r2 = r2_of(tmp_path)

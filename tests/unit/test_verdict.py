@@ -90,9 +90,9 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         (
             {},
             "good",
-            "8 of 8 parameters known within 30 %, model torque within 0.2, 0.4 % on motions like "
-            "this one, residual 0.1, 0.1 %, inertia within 0.61, 0.81 %, R2 0.9990, 0.9990, "
-            "condition number 20",
+            "8 of 8 parameters known within 30 %; model torque within joint 1 0.2 %, joint 2 0.4 % "
+            "on motions like this one; residual joint 1 0.1 %, joint 2 0.1 %; inertia within joint "
+            "1 0.61 %, joint 2 0.81 %; R2 joint 1 0.9990, joint 2 0.9990; condition number 20",
         ),
         (
             {"effects": (effect(PARALLEL, **FAR),)},
@@ -145,7 +145,7 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         (
             {"joints": (GOOD, replace(GOOD, r2=np.nan, torque=0.5))},
             "doubtful",
-            "R2 0.9990, undefined, condition number 20",
+            "R2 joint 1 0.9990, joint 2 undefined; condition number 20",
         ),
         (
             {"errors": np.full(8, np.nan), **consequence(noise=NOT_KNOWN)},
@@ -159,9 +159,14 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             "torque of joint 1 is known only within 20 %",
         ),
         (
-            consequence(torque=np.array([0.1, 0.1])),
+            consequence(torque=np.array([0.049, 0.049])),
             "good",
-            "model torque within 20, 20 % on motions like this one",
+            "model torque within joint 1 9.9 %, joint 2 9.9 % on motions like this one",
+        ),
+        (
+            consequence(torque=np.array([0.049, 0.1])),
+            "rough",
+            "the torque of joint 2 is known within 20 % only",
         ),
         (
             consequence(torque=np.array([0.1, 0.2])),
@@ -270,7 +275,7 @@ def test_a_parameter_of_zero_is_named_but_no_reason_for_doubt() -> None:
     estimates[5] = 1e-3
     judged = verdict(evidence(estimates=estimates), SCARA)
     assert judged.grade == "good"
-    assert judged.reasons[-1].startswith("7 of 8 parameters known within 30 % (all but L1MY2), ")
+    assert judged.reasons[-1].startswith("7 of 8 parameters known within 30 % (all but L1MY2); ")
 
 
 def test_the_weakest_direction_is_that_of_the_smallest_singular_value() -> None:

@@ -13,9 +13,9 @@ from steps.plan import Log, Plan, Robot
 
 from scarid_cli.arrays import Array
 
-VERDICTS = {"good": 0, "doubtful": 1, "not identifiable": 2}
+VERDICTS = {"good": 0, "rough": 1, "doubtful": 2, "not identifiable": 3}
 POOLED = 4  # logs against which another one is validated, at most
-SETTLED = 2  # the rank from which a log does not count for the trend
+SETTLED = 3  # the rank from which a log does not count for the trend
 NEIGHBOURS = 3  # logs before and after one
 FAR = 6.0  # usual distances
 MAD = 1.4826  # standard deviations of a normal distribution per median absolute deviation

@@ -20,8 +20,9 @@ from scarid_cli.algorithms.changes.hypotheses import (
     ZERO,
     Hypothesis,
 )
-from scarid_cli.algorithms.statistics.sentences import joints_named, percents
+from scarid_cli.algorithms.statistics.sentences import joints_named, percents, percents_of_joints
 from scarid_cli.arrays import Array
+from scarid_cli.interval import plus_minus
 
 SHOWN = 4  # amounts that a message names at most
 CLEAR = 3.0  # errors: a smaller amount is not named
@@ -85,7 +86,7 @@ def of_change(
     if not change.changed:
         tests = f"{change.tests} tests find no change (smallest p-value {change.p_value:.2g})"
         if ratios is None:
-            return Verdict(UNCHANGED, f"{tests}, residual {percents(residuals)}", facts)
+            return Verdict(UNCHANGED, f"{tests}; residual {percents_of_joints(residuals)}", facts)
         lost = np.flatnonzero(residuals > np.maximum(NOISIER * fitted, LOST)).tolist()
         if lost and not noise:
             why = "but the parameters are known too little to say why"
@@ -166,20 +167,22 @@ def _amounts(e: Explanation, values: dict[str, float]) -> str:
     """The clearest amounts with their errors."""
     hypothesis = e.hypothesis
     if hypothesis.kind in (MOTOR, SCALE):
-        return f"torques {100.0 * e.amounts[0]:+.3g} +- {100.0 * e.errors[0]:.2g} %"
+        return f"torques {100.0 * e.amounts[0]:+.3g} {plus_minus(100.0 * e.errors[0])} %"
     if hypothesis.kind == DELAY:
         when = "earlier" if e.amounts[0] > 0.0 else "later"
-        amount = f"{1e3 * abs(e.amounts[0]):.3g} +- {1e3 * e.errors[0]:.2g} ms"
+        amount = f"{1e3 * abs(e.amounts[0]):.3g} {plus_minus(1e3 * e.errors[0])} ms"
         return f"torques {amount} {when} than at the identification"
     if hypothesis.kind == LOW_PASS:
         lag, error = 1e3 * abs(e.amounts[0]), 1e3 * e.errors[0]
-        return f"torques {'lead' if e.amounts[0] > 0.0 else 'lag'} by {lag:.3g} +- {error:.2g} ms"
+        return (
+            f"torques {'lead' if e.amounts[0] > 0.0 else 'lag'} by {lag:.3g} {plus_minus(error)} ms"
+        )
     if hypothesis.kind == TILT:
         tilt = np.degrees(np.linalg.norm(e.amounts))
-        return f"by {tilt:.2g} +- {np.degrees(np.max(e.errors)):.1g} degrees"
+        return f"by {tilt:.2g} {plus_minus(np.degrees(np.max(e.errors)), 1)} degrees"
     if hypothesis.kind == ZERO:
         size = "large" if e.amounts[0] < 0.0 else "small"
-        amount = f"{abs(e.amounts[0]):.3g} +- {e.errors[0]:.2g} {hypothesis.units[0]}"
+        amount = f"{abs(e.amounts[0]):.3g} {plus_minus(e.errors[0])} {hypothesis.units[0]}"
         return f"its positions are {amount} too {size}"
     if not np.isfinite(e.errors).any():
         return "amounts that the motion does not tell apart"
@@ -193,7 +196,7 @@ def _amounts(e: Explanation, values: dict[str, float]) -> str:
 def _amount(e: Explanation, i: int, values: dict[str, float]) -> str:
     name, unit = e.hypothesis.names[i], e.hypothesis.units[i]
     amount, error, before = e.amounts[i], e.errors[i], values.get(name, 0.0)
-    text = f"{name} {amount:+.3g} +- {error:.2g} {unit}"
+    text = f"{name} {amount:+.3g} {plus_minus(error)} {unit}"
     if e.hypothesis.kind == DRIFT and before:
         text += f" ({100.0 * amount / before:+.2g} %)"
     return text

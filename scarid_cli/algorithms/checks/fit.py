@@ -13,6 +13,7 @@ from scarid_cli.algorithms.checks.motion import Motion
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.verdict import POOR, WEAK, combination
 from scarid_cli.arrays import Array
+from scarid_cli.interval import plus_minus
 
 STEPS = 6  # fits of the delay, each from the delay of the one before
 NEAR = 0.75  # of a row: a remaining delay up to this is small enough
@@ -76,8 +77,8 @@ def delay(seconds: float, error: float, motion: Motion) -> Finding:
     rows = seconds / motion.h
     phase = 2.0 * pi * motion.bandwidths.max() * abs(seconds)
     how = "lag" if seconds >= 0.0 else "lead"
-    known = float(f"{1e3 * error:.1g}")
-    figure = f"torques {how} by {1e3 * abs(seconds):.3g} +- {known:g} ms ({abs(rows):.2g} rows)"
+    known = plus_minus(1e3 * error, 1)
+    figure = f"torques {how} by {1e3 * abs(seconds):.3g} {known} ms ({abs(rows):.2g} rows)"
     if abs(rows) <= LATE or abs(seconds) <= DEVIATIONS * error or phase <= PHASE:
         return ok("delay", figure)
     advice = "positions and torques are not of one instant: `scarid identify --align` fits it"

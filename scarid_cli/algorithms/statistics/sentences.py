@@ -30,9 +30,11 @@ from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import REVERSALS, Effect, level_among
 from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, ZEROS
 from scarid_cli.arrays import Array, Marks
+from scarid_cli.interval import plus_minus
 
 # The alternatives whose shapes have names of their own.
 KINDS = {**dict.fromkeys(DECAYED, CURVATURE), SINE: RIPPLE, COSINE: RIPPLE}
+EACH = 3  # joints, of which each figure has its own label at most
 NAMED = 2  # estimates whose change is written out
 DECREASES = (
     "friction of {joints} decreases with speed (add Stribeck friction with --estimator separable)"
@@ -253,8 +255,8 @@ def _amounts(effect: Effect, robot: Robot, level: float, cycles: Array) -> dict[
 
 def _zero(effect: Effect, robot: Robot, joint: int) -> str:
     """`-0.102 +- 0.0018 rad`."""
-    error = f"{effect.noise[joint]:.2g}"
-    return f"{effect.amounts[joint]:.3g} +- {error} {robot.joints[joint].unit}"
+    error = plus_minus(effect.noise[joint])
+    return f"{effect.amounts[joint]:.3g} {error} {robot.joints[joint].unit}"
 
 
 def _vector(values: Array) -> str:
@@ -271,6 +273,23 @@ def _wide(effect: Effect, least: Array) -> Marks:
 def percents(parts: Iterable[float]) -> str:
     """Parts of one, as percents with two digits: `0.31, 2.5 %`."""
     return f"{', '.join(_two_digits(100.0 * part) for part in parts)} %"
+
+
+def of_joints(texts: Sequence[str], unit: str = "") -> str:
+    """A list with a text for each joint: `joint 1 0.31 %, joint 2 2.5 %`.
+
+    Of many joints, `joints 1 to 6 0.31, 2.5, ... %`.
+    """
+    if len(texts) > EACH:
+        return f"joints 1 to {len(texts)} {', '.join(texts)}{unit}"
+    if len(texts) == 1:
+        return f"{texts[0]}{unit}"
+    return ", ".join(f"joint {i} {text}{unit}" for i, text in enumerate(texts, start=1))
+
+
+def percents_of_joints(parts: Iterable[float]) -> str:
+    """Parts of one, a number for each joint: `joint 1 0.31 %, joint 2 2.5 %`."""
+    return of_joints([_two_digits(100.0 * part) for part in parts], " %")
 
 
 def _two_digits(x: float) -> str:

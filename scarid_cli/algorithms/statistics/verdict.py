@@ -22,11 +22,14 @@ from scarid_cli.algorithms.statistics.sentences import (
     joints_named,
     listed,
     notes_of,
+    of_joints,
     percents,
+    percents_of_joints,
 )
 from scarid_cli.arrays import Array
 
-GOOD, DOUBTFUL, NOT_IDENTIFIABLE = "good", "doubtful", "not identifiable"
+GOOD, ROUGH, DOUBTFUL, NOT_IDENTIFIABLE = "good", "rough", "doubtful", "not identifiable"
+GRADES = (GOOD, ROUGH, DOUBTFUL, NOT_IDENTIFIABLE)  # from the best
 DOUBT = 30.0  # %: half the width of the interval above which a parameter counts as unknown
 WEAK = 1e4  # scaled condition number above which a combination of parameters is undetermined
 POOR = 0.8  # R2 below which the model does not explain the torque of a joint
@@ -35,8 +38,10 @@ PART = 0.01  # of an estimate, by which it may move however small its error is
 NOISE = 3.0  # times the torque noise: a joint with a smaller torque counts as not driven
 BLOCKS = 5.0  # effective blocks, below which errors cannot be stated
 HELD_OUT = 1.5  # times the residual of the fit that the one of held-out parts may reach
-VAGUE = 0.1  # of the torque: half the interval from noise above which it counts as not known
-UNKNOWN = 0.3  # of the torque: the same, of the interval that allows for all alternatives
+# Of the torque, half its interval: what `validate` takes for a slight change, so that a good model
+# is one beside which a change that matters is seen; noise alone must not make more.
+VAGUE = 0.1
+UNKNOWN = 0.3  # the same, with all alternatives allowed for: beyond it a torque is not known
 UNMATCHED = " (if the motion was not matched, use scarid differentiate --match)"
 CAUSE = "`scarid check LOG` looks for the cause (units, signs, order of joints)"
 LASTING = 0.2  # s: what friction makes that the model lacks at a reversal is shorter
@@ -58,13 +63,13 @@ class Verdict:
 
 # What --require can ask for, from the least to the most.
 IDENTIFIABLE, NOT_BIASED = "identifiable", "not-biased"
-REQUIREMENTS = (GOOD, NOT_BIASED, IDENTIFIABLE)
+REQUIREMENTS = (GOOD, ROUGH, NOT_BIASED, IDENTIFIABLE)
 
 
 def meets(required: str, grade: str, *, biased: bool) -> bool:
     """Whether a verdict is as good as one of REQUIREMENTS."""
-    if required == GOOD:
-        return grade == GOOD
+    if required in GRADES:
+        return GRADES.index(grade) <= GRADES.index(required)
     return grade != NOT_IDENTIFIABLE and not (required == NOT_BIASED and biased)
 
 
@@ -112,7 +117,20 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     notes = [*_inertia_unknown(evidence), *notes]
     if not wrong and any(x.end - x.start >= LASTING for x in evidence.diagnostics.bursts):
         notes = [*([evidence.unexplained] if evidence.unexplained else []), *notes]
-    return Verdict(DOUBTFUL if wrong else GOOD, (*wrong, summary, *notes), bool(bias))
+    rough = [] if wrong else _rough(evidence)
+    grade = DOUBTFUL if wrong else ROUGH if rough else GOOD
+    return Verdict(grade, (*wrong, *rough, summary, *notes), bool(bias))
+
+
+def _rough(evidence: Evidence) -> list[str]:
+    """Why estimates that are right within their intervals are of little use: these are wide."""
+    torque = _width(evidence) * evidence.diagnostics.consequences.torque
+    reasons = [
+        f"the torque of joint {i} is known within {percents([x])} only"
+        for i, x in enumerate(torque, start=1)
+        if x > VAGUE
+    ]
+    return [*reasons, "take a longer log, or one that moves more"] if reasons else []
 
 
 def _idle(joints: Sequence[JointResidual], robot: Robot) -> list[str]:
@@ -341,19 +359,18 @@ def _summary(evidence: Evidence) -> str:
     found, width = evidence.diagnostics.consequences, _width(evidence)
     parts = [known]
     if np.isfinite(found.torque).all():
-        parts.append(
-            f"model torque within {percents(width * found.torque)} on motions like this one"
-        )
+        torques = percents_of_joints(width * found.torque)
+        parts.append(f"model torque within {torques} on motions like this one")
     residuals = np.array([joint.relative_error for joint in evidence.diagnostics.joints])
     if np.isfinite(residuals).all():
-        parts.append(f"residual {percents(0.01 * residuals)}")
+        parts.append(f"residual {percents_of_joints(0.01 * residuals)}")
     if np.isfinite(found.inertia).all():
-        parts.append(f"inertia within {percents(width * found.inertia)}")
+        parts.append(f"inertia within {percents_of_joints(width * found.inertia)}")
     r2 = [joint.r2 for joint in evidence.diagnostics.joints]
-    parts.append(f"R2 {', '.join('undefined' if np.isnan(x) else f'{x:.4f}' for x in r2)}")
+    parts.append(f"R2 {of_joints(['undefined' if np.isnan(x) else f'{x:.4f}' for x in r2])}")
     if np.isfinite(evidence.condition):
         parts.append(f"condition number {evidence.condition:.3g}")
-    return ", ".join(parts)
+    return "; ".join(parts)
 
 
 def combination(direction: Array, names: Sequence[str]) -> str:

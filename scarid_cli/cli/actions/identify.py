@@ -31,6 +31,7 @@ from scarid_cli.cli.treatment import (
     treatment_of,
 )
 from scarid_cli.errors import OK, REQUIRED, UsageFault
+from scarid_cli.interval import plus_minus
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document
 from scarid_cli.stages import identify as stage
@@ -308,7 +309,7 @@ def _led(extra: dict[str, Any]) -> str:
             "torques taken as in step with the motion, because the log does not show a delay "
             "(--no-align if there is none)"
         )
-    text = f"{lead(delay)} ({'error unknown' if error is None else f'+- {1e3 * error:.2g}'})"
+    text = f"{lead(delay)} ({'error unknown' if error is None else plus_minus(1e3 * error)})"
     text += behind_low_pass(delay) if extra["low_pass"] else ""
     if error is not None and delay < -CLEAR * error:
         text += ", as if logged late, or as if the positions were commands"

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from scarid_cli.algorithms.changes.wording import CHANGED, UNEXPLAINED
-from scarid_cli.algorithms.statistics.verdict import DOUBT, DOUBTFUL, GOOD
+from scarid_cli.algorithms.statistics.verdict import DOUBT, DOUBTFUL, GOOD, GRADES, ROUGH
 from scarid_cli.reporting.said import FINE, Said, worst
 from scarid_cli.reporting.study import league
 from scarid_cli.reporting.study.league import League, Place, percents
-from scarid_cli.reporting.study.ranking import GRADES, Ranking, Standing
+from scarid_cli.reporting.study.ranking import Ranking, Standing
 from scarid_cli.stages.compare import DIFFER
 
 ROWS = 12  # of the figure at most
@@ -26,6 +26,7 @@ EXPERIMENTS = {
 }
 BELIEF = {
     GOOD: "Yes, within the stated intervals",
+    ROUGH: "Yes, but the intervals are wide",
     DOUBTFUL: "Not without a look at the reason",
 }
 
@@ -67,7 +68,7 @@ def opening(ranking: Ranking, colours: dict[str, int], said: Sequence[Said] = ()
     if rivals:
         grades = [(standing.name, standing.grade) for standing in ranking.identified]
         answers.append(("And the others?", counted(grades)))
-    grade = alarm.verdict if alarm and best.grade in (GOOD, "") else best.grade
+    grade = alarm.verdict if alarm and best.grade in (GOOD, ROUGH, "") else best.grade
     if alarm and alarm.verdict != UNEXPLAINED:
         grade = alarm.verdict
     return Opening.of(grade, _headline(ranking, alarm), answers, _figure(ranking, colours))
@@ -140,7 +141,7 @@ def _belief(ranking: Ranking, alarm: Said | None) -> str:
         return f"{belief}{why}."
     if any(alarm in s.said for s in ranking.standings if not s.parameters):
         return f"{belief}{why}. They are of the robot as this log has it, which is {alarm.verdict}."
-    if best.grade == GOOD:
+    if best.grade in (GOOD, ROUGH):
         return (
             f"For the robot as it was identified, within the stated intervals{why}. Not for "
             f"{alarm.what}, which is {alarm.verdict}."

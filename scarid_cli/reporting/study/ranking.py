@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, inf, isfinite, log
 
-from scarid_cli.algorithms.statistics.verdict import DOUBTFUL, GOOD, NOT_IDENTIFIABLE
+from scarid_cli.algorithms.statistics.verdict import GRADES
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
 from scarid_cli.reporting.naming import COMMON
 from scarid_cli.reporting.said import Said, named, same_table
 from scarid_cli.reporting.wording import experiment_of, of_kind
 
-GRADES = (GOOD, DOUBTFUL, NOT_IDENTIFIABLE)
 # Experiments by how fair a judge of methods they are: one motion for all, then another log than
 # that of the identification. Those of other names come between.
 FAIREST, FAIR, UNFAIR = COMMON, "cross", ("direct", "")

@@ -8,11 +8,11 @@ from math import inf, isfinite
 
 import numpy as np
 
-from scarid_cli.algorithms.statistics.verdict import DOUBT, GOOD
+from scarid_cli.algorithms.statistics.verdict import DOUBT, GOOD, GRADES
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
 from scarid_cli.reporting.study.league import League, Place, percents
 from scarid_cli.reporting.study.opening import BELIEF, EXPERIMENTS, ROWS, Opening, counted, others
-from scarid_cli.reporting.study.ranking import GRADES, Standing, judge_of
+from scarid_cli.reporting.study.ranking import Standing, judge_of
 from scarid_cli.reporting.wording import of_kind
 
 QUARTILES = (0.25, 0.5, 0.75)
