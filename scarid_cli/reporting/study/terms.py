@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 TERMS = {
     "verdict": "good: the estimates may be used within their intervals, and give each torque "
-    "within 10 %. Rough: the same, but some torque is known less well. Doubtful: a reason is stated "
-    "why they may be wrong by more than their intervals. Not identifiable: the log does not "
-    "determine the parameters.",
+    "within 10 %. Rough: the same, but some torque is known less well. Doubtful: a reason is "
+    "stated why they may be wrong by more than their intervals. Not identifiable: the log does "
+    "not determine the parameters.",
     "unchanged": "the log, or the other identification, differs from the identification by no more "
     "than noise, errors of the model and the stated intervals explain. Changed: a cause is found. "
     "Unexplained: it differs, and no cause explains it. Differ: some parameters are apart by more "
