@@ -7,6 +7,7 @@
 # make lint     ruff and mypy
 # make faults   inject every kind of fault, and write docs/faults.md (a quarter of an hour)
 # make bench    start-up, time per sample, memory
+# make bench-latency      from a row written to its estimates read (a minute)
 # make bench-excitation   optimised excitations of several robots beside random ones (an hour)
 # make bench-experiments  expected errors, sequences of experiments, arms of URDFs (an hour)
 # make bench-differentiators   every differentiator and its peers on known signals
@@ -35,7 +36,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -94,6 +95,9 @@ $(VENV)/compared: $(VENV)/tested
 
 bench: $(VENV)/compared
 	$(BIN)/python benchmarks/bench.py
+
+bench-latency: $(VENV)/tested
+	$(BIN)/python benchmarks/latency.py
 
 bench-excitation: $(VENV)/tested
 	$(BIN)/python benchmarks/excitation.py

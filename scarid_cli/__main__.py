@@ -7,7 +7,6 @@ import os
 import signal
 import sys
 import warnings
-from types import FrameType
 
 # Until all is imported, an interrupt ends the process without a traceback.
 _interrupted = signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -28,14 +27,11 @@ from scarid_cli.errors import (  # noqa: E402
     USAGE,
     ScaridError,
 )
+from scarid_cli.io.stop import STOP, Terminated  # noqa: E402
 from scarid_cli.printable import printable  # noqa: E402
 
 TERMINATED = 128 + signal.SIGTERM
 signal.signal(signal.SIGINT, _interrupted)
-
-
-class Terminated(BaseException):
-    """The process was asked to end; it cleans up as after any failure."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -96,8 +92,13 @@ def run() -> None:
     sys.meta_path.insert(0, WithoutPandas())
     if not sys.warnoptions:  # python -W, PYTHONWARNINGS
         warnings.simplefilter("ignore")  # those of libraries are for programmers
-    signal.signal(signal.SIGTERM, _terminate)
+    # A command in the background of a script ignores SIGINT, as it should.
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, STOP.asked)
+    signal.signal(signal.SIGTERM, STOP.asked)
     status = _flushed(main())
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)  # all is done; what comes now comes too late
     for number, code in (
         (signal.SIGINT, INTERRUPTED),
         (signal.SIGPIPE, BROKEN_PIPE),
@@ -116,10 +117,6 @@ class WithoutPandas:
     def find_spec(self, name: str, _path: object = None, _target: object = None) -> None:
         if name in ("pandas", "cloudpickle"):
             raise ModuleNotFoundError(f"scarid uses no {name}", name=name)
-
-
-def _terminate(_number: int, _frame: FrameType | None) -> None:
-    raise Terminated
 
 
 def _mend_streams() -> None:

@@ -28,6 +28,7 @@ from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
 from scarid_cli.io.selection import REFUSE, SPLIT, Lacking, within
 from scarid_cli.io.stated import in_file, stated_robot
+from scarid_cli.io.stop import STOP
 from scarid_cli.io.table import Table
 from scarid_cli.io.target import same_place
 from scarid_cli.io.writer import Document, Handover, InFolder, Output, all_or_none
@@ -60,6 +61,7 @@ class Job:
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
         self.notes: list[str] = []
+        self.watched = ""  # what a person sees beside the number of rows
         self.remarks = Remarks(place.say)
         self._selection = selection_of(options)
         self._lacking: list[tuple[str, Lacking]] = []
@@ -224,7 +226,8 @@ class Job:
             return table
         from scarid_cli.cli.progress import counted
 
-        return replace(table, batches=counted(table.batches, table.length, source.part_read))
+        found = counted(table.batches, table.length, source.part_read, lambda: self.watched)
+        return replace(table, batches=found)
 
     def read_source(self, source: ByteSource) -> Table:
         """A table of any kind from bytes that are open already."""
@@ -342,6 +345,8 @@ def job(options: dict[str, Any]) -> Iterator[Job]:
         with all_or_none(run.outputs):
             yield run
             run.say_notes()
+            if STOP.told and run.place.source is None:
+                run.say(STOP.told)
         run.remarks.tell()
     finally:
         for source in run.sources:

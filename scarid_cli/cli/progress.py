@@ -51,11 +51,12 @@ def counted(
     batches: Iterator[pa.RecordBatch],
     length: int | None,
     part_read: Callable[[], float | None],
+    note: Callable[[], str] = str,
 ) -> Iterator[pa.RecordBatch]:
     """Pass batches on, and show how many rows they had.
 
     The percentage and the remaining time are shown as well, by the number of all rows (`length`) if
-    it is known, else by the part of the input that was read.
+    it is known, else by the part of the input that was read. A `note` stands at the end.
     """
     start = time.monotonic()
     held = 0
@@ -72,27 +73,29 @@ def counted(
 
     text = "{task.fields[rows]:,} rows"
     with _bar(text, known=part(held) is not None, since=time.monotonic() - start) as show:
-        show(part(held), held)
+        show(part(held), held, note())
         for batch in batches:
             yield batch
             held += batch.num_rows
-            show(part(held), held)
+            show(part(held), held, note())
 
 
 @contextlib.contextmanager
-def _bar(text: str, *, known: bool, since: float) -> Iterator[Callable[[float | None, int], None]]:
+def _bar(
+    text: str, *, known: bool, since: float
+) -> Iterator[Callable[[float | None, int, str], None]]:
     """A progress line, with a percentage if the end is `known`; `since` [s] it has been running.
 
-    The function takes the part that is done, and the number of rows.
+    The function takes the part that is done, the number of rows, and a note.
     """
     texts = ("{task.fields[percent]:.0f} %", text) if known else (text,)
-    left_of = ("{task.fields[left]} left",) if known else ()
-    with _line(*texts, behind=left_of, rows=0, percent=0.0, left="?") as update:
+    behind = (*(("{task.fields[left]} left",) if known else ()), "{task.fields[note]}")
+    with _line(*texts, behind=behind, rows=0, percent=0.0, left="?", note="") as update:
         begun = time.monotonic() - since
 
-        def show(part: float | None, rows: int) -> None:
+        def show(part: float | None, rows: int, note: str) -> None:
             left = (time.monotonic() - begun) * (1.0 / part - 1.0) if part else 0.0
-            update(rows=rows, percent=100.0 * (part or 0.0), left=_clock(left))
+            update(rows=rows, percent=100.0 * (part or 0.0), left=_clock(left), note=note)
 
         yield show
 

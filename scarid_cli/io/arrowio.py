@@ -16,6 +16,7 @@ from scarid_cli.io.incoming import END_OF_STREAM, Incoming
 from scarid_cli.io.messages import MAGIC, PREFIX, RECORDS, Message
 from scarid_cli.io.parts import parts
 from scarid_cli.io.schemas import column_type
+from scarid_cli.io.stop import STOP
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
 from scarid_cli.io.weight import Blocks
 
@@ -34,8 +35,11 @@ def read_stream(source: ByteSource) -> Table:
         try:
             yield from reader
         except (pa.ArrowException, OSError):
+            if STOP.number:  # in the middle of a batch
+                return
             raise cut_short(source.name) from None
-        incoming.require_whole()
+        if not STOP.number:
+            incoming.require_whole()
 
     return _table(source.name, reader.schema, batches())
 

@@ -7,6 +7,7 @@ import stat
 from typing import BinaryIO
 
 from scarid_cli.errors import BadData, OutputFailure, UsageFault
+from scarid_cli.io.stop import STOP
 
 STDIN = "<stdin>"
 CHUNK = 1 << 20
@@ -59,6 +60,7 @@ class ByteSource:
         self.closed = False
         self._ahead = b""
         self._spool: BinaryIO | None = None
+        self._live: bool | None = None
 
     @classmethod
     def open(cls, path: str) -> ByteSource:
@@ -184,16 +186,28 @@ class ByteSource:
         return digest.hexdigest()
 
     def _fetch(self, size: int) -> bytes:
+        if not self._arrives():
+            return b""
         try:
-            return os.read(self.fd, size)
+            data = os.read(self.fd, size)
         except OSError as error:
             raise OutputFailure(f"{self.name}: {error.strerror}") from None
+        STOP.live |= bool(self._live and data)
+        return data
 
     def _fetch_into(self, view: memoryview) -> int:
+        if not self._arrives():
+            return 0
         try:
             return os.readv(self.fd, [view])
         except OSError as error:
             raise OutputFailure(f"{self.name}: {error.strerror}") from None
+
+    def _arrives(self) -> bool:
+        """Wait for bytes, or for the end; False if a signal has ended the input."""
+        if self._live is None:
+            self._live = not stat.S_ISREG(os.fstat(self.fd).st_mode)
+        return not self._live or STOP.readable(self.fd)
 
 
 class Wrapped(ByteSource):

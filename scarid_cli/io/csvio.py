@@ -15,7 +15,10 @@ import pyarrow.csv as pacsv
 from scarid_cli.errors import BadData, bad_data, cut_short
 from scarid_cli.io.bytesource import ByteSource, require_moderate_row
 from scarid_cli.io.schemas import column_type
+from scarid_cli.io.stop import STOP
 from scarid_cli.io.table import Metadata, Table
+
+pa.enable_signal_handlers(False)  # noqa: FBT003 (its own would cancel the reading of a block)
 
 # CSV has no end mark: a command that fails after its first rows ends its table with this line, so
 # that the next command does not mistake a short table for a complete one.
@@ -103,7 +106,8 @@ def _complete_lines(source: ByteSource) -> Iterator[bytes]:
         size = len(data) if end else size + len(data)
         require_moderate_row(source.name, size)
         inside ^= bool(data.count(b'"') % 2)
-    if rest := b"".join(held):
+    # A signal that ends the input may have ended its writer in the middle of a row as well.
+    if (rest := b"".join(held)) and not STOP.number:
         yield rest + b"\n"
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from scarid_cli.errors import OutputFailure, UsageFault
 from scarid_cli.io import FORMATS
+from scarid_cli.io.stop import STOP
 from scarid_cli.io.table import Table
 from scarid_cli.io.target import Target, is_regular
 
@@ -192,6 +193,7 @@ def all_or_none(outputs: list[Output | Document]) -> Iterator[None]:
     """
     try:
         yield
+        STOP.require_not_lost()
         files = [output for output in outputs if output.is_file]
         for output in files:
             output.finish()

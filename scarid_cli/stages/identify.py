@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import pyarrow as pa
 
@@ -39,13 +40,15 @@ def identify(
     checkpoint: Checkpoint | None = None,
     keep: Callable[[Checkpoint], None] | None = None,
     findings: list[Finding] | None = None,
+    watch: Callable[[Callable[[], Array]], None] | None = None,
 ) -> Table:
     """The table of parameters, estimated from all rows of a motion.
 
     `initial` are the initial parameters, or zeros. `trace` receives the estimates after every
     sample (Fig. 6). `checkpoint` is the checkpoint of an earlier estimation that is continued, and
     `keep` receives that of this one. `findings` receives what is not in order with the log; what
-    makes the result wrong enters the verdict as well.
+    makes the result wrong enters the verdict as well. `watch` is offered the estimates so far after
+    each batch of rows, unless they are all held.
     """
     findings = [] if findings is None else findings
     treatment = treatment or Treatment()
@@ -57,7 +60,7 @@ def identify(
         checkpoint = Checkpoint.at_start(state, table.period, holds=holds, thins=thins)
     times, reach = Times(table, checkpoint.seen), Reach(len(robot.joints))
     watched = times.watched(reach.watched(table))
-    checkpoint = _after_all_rows(watched, robot, estimator, treatment, checkpoint, trace)
+    checkpoint = _after_all_rows(watched, robot, estimator, treatment, checkpoint, trace, watch)
     _check_enough(table, robot, checkpoint.subsample.counted)
     try:
         found = outcome(estimator, initial, checkpoint, treatment, robot)
@@ -95,6 +98,7 @@ def _after_all_rows(
     treatment: Treatment,
     checkpoint: Checkpoint,
     trace: Sink | None,
+    watch: Callable[[Callable[[], Array]], None] | None,
 ) -> Checkpoint:
     """The checkpoint after the last row; the trace receives the estimates after every row."""
     schema = _trace_schema(robot, table)
@@ -107,12 +111,19 @@ def _after_all_rows(
             checkpoint = _with_sample(checkpoint, rows)
             continue
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
+        if watch and not estimator.HOLDS:
+            watch(partial(_estimates, estimator, checkpoint))
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))
             trace.write(with_columns(batch, schema, new))
     if treatment.align:  # only then are there many rows, and none that follow
         checkpoint = replace(checkpoint, subsample=checkpoint.subsample.packed())
     return checkpoint
+
+
+def _estimates(estimator: BaseEstimator, checkpoint: Checkpoint) -> Array:
+    """The estimates from the rows so far."""
+    return estimator.fit(checkpoint.state).fit.estimates
 
 
 def _matched(table: Table) -> bool:

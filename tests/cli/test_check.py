@@ -179,7 +179,9 @@ def test_a_worse_verdict_than_required_exits_with_3_and_writes_the_table(
         assert (plain.status, found.status) == (0, status)
         assert found.out == plain.out
         extra = found.err.removeprefix(plain.err)
-        expected = f"scarid identify: the verdict is worse than --require {required}\n"
+        expected = (
+            f"scarid identify: the verdict is doubtful, which is worse than --require {required}\n"
+        )
         assert extra == (expected if status else "")
     assert "all friction that is known is negative: the torques' sign seems reversed" in plain.err
 

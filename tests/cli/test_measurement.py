@@ -240,7 +240,7 @@ def test_a_constant_torque_has_no_r2_and_does_not_disturb_the_other_joint(
     one = shell(
         f"cut -d, -f-5 $SAMPLES/scara2.csv | sed -E '2,$s/[^,]+$/{torque}/' | scarid identify"
     )
-    assert re.search(rf"identify: {told}: .*R2 0\.99\d\d, undefined", one.err)
+    assert re.search(rf"identify: {told}: .*R2 joint 1 0\.99\d\d, joint 2 undefined", one.err)
     _, _, expected, *_ = whole.out.splitlines()[1].split(",")
     *_, low, high = one.out.splitlines()[1].split(",")
     assert float(low) < float(expected) < float(high)

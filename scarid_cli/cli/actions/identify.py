@@ -22,6 +22,7 @@ from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import is_motion, motion, read
 from scarid_cli.cli.pairs import require_known, single_settings
 from scarid_cli.cli.resampled import Resampled
+from scarid_cli.cli.terminal import is_terminal
 from scarid_cli.cli.treatment import (
     behind_low_pass,
     for_motion,
@@ -30,6 +31,7 @@ from scarid_cli.cli.treatment import (
     report,
     treatment_of,
 )
+from scarid_cli.cli.watching import watcher
 from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.interval import plus_minus
 from scarid_cli.io.table import Table
@@ -83,6 +85,7 @@ def run(
         checkpoint=_restored(given["resumed"], fixed),
         keep=places.append,
         findings=findings,
+        watch=watcher(job, arm.names) if is_terminal(2) else None,
     )
     document = partial(identification, estimator=chosen.name) if as_json else None
     job.write_or_print(result, document)
