@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from scarid_cli.cli.command_line import inputs
+from scarid_cli.cli.command_line import inputs, other_inputs, outputs
 from scarid_cli.cli.options import InputFile
 from scarid_cli.cli.terminal import told
 from scarid_cli.errors import OK
@@ -77,6 +77,7 @@ def run(group: click.Group, words: Sequence[str]) -> int:
         for before, after in pairwise(contexts):
             _require_output(before)
             _require_input(after)
+        _require_different_outputs(contexts)
         return Chain(contexts).run()
 
 
@@ -96,6 +97,23 @@ def _require_output(context: click.Context) -> None:
         context.fail(
             f"-o {place}: the table goes to the next command; write it with `{THEN} tee {place}`"
         )
+
+
+def _require_different_outputs(contexts: Sequence[click.Context]) -> None:
+    """Refuse a line of stages that writes a file twice, or one that it reads."""
+    if len(contexts) < 2:
+        return  # the job of a single command sees to it
+    from scarid_cli.io.target import same_place
+
+    read = [file for context in contexts for file in other_inputs(context)]
+    written: list[str] = []
+    for context in contexts:
+        for path in outputs(context):
+            if any(same_place(path, other) for other in written):
+                context.fail(f"{path}: two outputs cannot share it; give one of them another FILE")
+            if any(same_place(path, file) for file in read):
+                context.fail(f"{path}: this is the input; give the output another FILE")
+            written.append(path)
 
 
 def _require_input(context: click.Context) -> None:

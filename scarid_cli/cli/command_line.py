@@ -7,7 +7,9 @@ from typing import Any
 
 import click
 
-from scarid_cli.cli.options import InputFile, Unrecorded
+from scarid_cli.cli.options import InputFile, OutputFile, Unrecorded
+
+PLACE = "place"  # the argument of `tee`
 
 
 def command_line(*, without: Collection[str] = ()) -> str:
@@ -33,6 +35,25 @@ def inputs(context: click.Context) -> list[str]:
     read = [p for p in context.command.params if _is_argument(p) and isinstance(p.type, InputFile)]
     values = [context.params[p.name or ""] for p in read]
     return [str(v) for value in values for v in (value if isinstance(value, tuple) else (value,))]
+
+
+def outputs(context: click.Context) -> list[str]:
+    """The files that a command writes beside standard output, as its command line names them."""
+    written = [
+        p
+        for p in context.command.params
+        if isinstance(p, OutputFile) or (_is_argument(p) and p.name == PLACE)
+    ]
+    values = [context.params[p.name or ""] for p in written]
+    return [str(value) for value in values if value and value != "-"]
+
+
+def other_inputs(context: click.Context) -> list[str]:
+    """The files that the options of a command read."""
+    read = [p for p in context.command.params if isinstance(p.type, InputFile)]
+    values = [context.params[p.name or ""] for p in read]
+    listed = [str(v) for value in values for v in (value if isinstance(value, tuple) else (value,))]
+    return [file for file in listed if file not in ("None", "-")]
 
 
 def _is_argument(parameter: click.Parameter) -> bool:

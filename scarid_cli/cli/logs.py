@@ -53,6 +53,11 @@ def read_logs(
 
 def _require_different(files: Sequence[str]) -> None:
     """Refuse a log that is given twice: its rows would count as new information."""
-    for one, other in combinations([file for file in files if file != "-"], 2):
-        if os.path.samefile(one, other):  # noqa: PTH121 (pathlib takes a while to import)
+    for one, other in combinations(files, 2):
+        if one == other or os.path.samestat(_found(one), _found(other)):
             raise UsageFault(f"{other}: the log is given twice; give each one once")
+
+
+def _found(file: str) -> os.stat_result:
+    """What tells files apart; of standard input, the file that it was redirected from."""
+    return os.fstat(0) if file == "-" else os.stat(file)  # noqa: PTH116 (pathlib takes a while)

@@ -27,6 +27,10 @@ class Unrecorded(click.Option):
     """An option that changes nothing in the table: the history leaves it out."""
 
 
+class OutputFile(Unrecorded):
+    """An option that names a file, or a folder, to write."""
+
+
 class InputFile(click.ParamType[str]):
     """A file to read, or - for standard input, or one of a few other words.
 
@@ -166,7 +170,7 @@ def log_input(function: F) -> F:
 
 def side_output(*names: str, help: str, metavar: str = "FILE") -> Callable[[F], F]:
     """A file to write beside the table, which the table does not depend on."""
-    return click.option(*names, cls=Unrecorded, metavar=metavar, help=help)
+    return click.option(*names, cls=OutputFile, metavar=metavar, help=help)
 
 
 def input_file(
@@ -195,7 +199,7 @@ def table_output(function: F) -> F:
     return all_of(
         heading(OUTPUT),
         click.option(
-            "-o", "--output", cls=Unrecorded, default="-", metavar="FILE",
+            "-o", "--output", cls=OutputFile, default="-", metavar="FILE",
             help="Write the table to FILE, in the format of its extension "
             "(.csv, .parquet, .arrow for a file, .arrows for a stream).  "
             "[default: standard output]",

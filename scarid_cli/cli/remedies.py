@@ -56,6 +56,8 @@ def remedies(path: str, *, regular: bool) -> Remedies:
 
 
 def _text(start: str, pipe: Pipe, rows: pa.RecordBatch) -> str:
+    if "t" not in rows.schema.names:  # a table of parameters has no rate
+        return CORRECT
     from scarid_cli.stages.rates import advised_rate
 
     return f"{start} `{pipe.through(f'scarid resample --rate {advised_rate(rows)}')}`"

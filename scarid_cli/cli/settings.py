@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass
-from pathlib import Path
 
+from scarid_cli.algorithms.robots.files import text_of
 from scarid_cli.errors import BadData, UsageFault
 
 PerJoint = dict[str, list[float]]  # the values of each setting, one per joint
@@ -52,7 +52,7 @@ def document(best: str, methods: dict[str, PerJoint], origin: str) -> str:
 def read(path: str) -> SavedSettings:
     """Read a file of settings."""
     try:
-        content = tomllib.loads(Path(path).read_text("utf-8"))
+        content = tomllib.loads(text_of(path))
         best = content.pop("method")
         methods = {
             method: {name: [float(x) for x in values] for name, values in table.items()}

@@ -71,7 +71,16 @@ def read_archive(path: str, named: Collection[str] = ()) -> tuple[Table, list[st
         kept = arrays
     columns: dict[str, Any] = {}
     for name, array in kept.items():
-        columns |= _columns(path, name, array)
+        own = _columns(path, name, array)
+        if both := sorted({*own} & {*columns}):
+            raise bad_data(
+                path,
+                f"a vector {both[0]} and a matrix with a column of this name",
+                expected="one array for each column",
+                remedy="rename one of them where the file is saved, or save only one",
+                column=both[0],
+            )
+        columns |= own
     if not _are_a_table(kept):
         found = ", ".join(f"{name} ({_size(x)})" for name, x in kept.items()) or "no numbers"
         remedy = "name those of the log, such as `--map 't=time,q*=pos'`"

@@ -6,6 +6,7 @@ import contextlib
 import errno
 import fcntl
 import os
+import re
 import stat
 import sys
 import time
@@ -19,6 +20,8 @@ STDOUT = "<stdout>"
 # Ends of names: of a file that is being written, and of the one that it replaces.
 PART, BEFORE = ".part", ".before"
 YOUNG = 60.0  # s
+STEM = 100  # bytes of the name of an output that those of its parts begin with
+MADE = re.compile(r"[0-9a-f]{12}\.(part|before)")  # the end of such a name
 PIPE = 1 << 20  # bytes in a pipe at most
 
 
@@ -39,17 +42,24 @@ class Target:
         elif _is_stdout(path):
             self._fd = os.dup(1)
         elif is_regular(self._place):
-            self._part = self._place.with_name(f".{self._place.name}.{os.getpid()}{PART}")
-            self._fd = self._open(self._part, os.O_CREAT | os.O_TRUNC)
+            self._part = self._place.with_name(_part_name(self._place.name))
+            # Exclusive: a file or link that somebody has put there is never written to.
+            self._fd = self._open(self._part, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW)
+            self._take_mode()
         else:
             self._fd = self._open(self._place)
         _widen(self._fd)
+
+    def _take_mode(self) -> None:
+        """Give the part the mode of the file that it replaces, before anything is in it."""
+        with contextlib.suppress(OSError):
+            os.fchmod(self._fd, stat.S_IMODE(self._place.stat().st_mode))
 
     def _remove_abandoned(self) -> None:
         """Remove what runs to the same output have left that were killed, and tell it."""
         with contextlib.suppress(OSError):
             for name in os.listdir(self._place.parent):  # noqa: PTH208 (no paths are needed)
-                if _abandoned(self._place.with_name(name), f".{self._place.name}."):
+                if _abandoned(self._place.with_name(name), _start(self._place.name)):
                     self._place.with_name(name).unlink()
                     text = printable(f"scarid: removed {name}, left by a run that was killed")
                     print(text, file=sys.stderr)  # noqa: T201
@@ -85,8 +95,6 @@ class Target:
         assert self._part
         try:
             self._close()
-            with contextlib.suppress(FileNotFoundError):
-                self._part.chmod(stat.S_IMODE(self._place.stat().st_mode))
             if keep and self._place.exists():
                 self._before = self._part.with_suffix(BEFORE)
                 self._before.hardlink_to(self._place)
@@ -160,18 +168,27 @@ def _is_stdout(path: str) -> bool:
     return path in ("/dev/stdout", "/dev/fd/1", "/proc/self/fd/1")
 
 
+def _start(name: str) -> str:
+    """How the parts of an output begin: with its name, shortened so that their names can be."""
+    short = name.encode(errors="surrogateescape")[:STEM].decode(errors="ignore")
+    return f".{short}."
+
+
+def _part_name(name: str) -> str:
+    """A name that nobody can guess, with the number of the process that makes it."""
+    return f"{_start(name)}{os.getpid()}.{os.urandom(6).hex()}{PART}"
+
+
 def _abandoned(part: Path, start: str) -> bool:
     """Whether this is a part of an output of a run that is gone.
 
     A young part may be that of a run on another machine, whose processes are not known here.
     """
     name = part.name
-    number = name.removeprefix(start).removesuffix(PART).removesuffix(BEFORE)
-    if (
-        name not in (f"{start}{number}{PART}", f"{start}{number}{BEFORE}")
-        or not number.isdecimal()
-        or _runs(int(number))
-    ):
+    if not name.startswith(start) or not name.endswith((PART, BEFORE)):
+        return False
+    number, _, rest = name[len(start) :].partition(".")
+    if not MADE.fullmatch(rest) or not number.isdecimal() or _runs(int(number)):
         return False
     return time.time() - part.stat().st_mtime > YOUNG
 

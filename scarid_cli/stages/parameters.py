@@ -26,6 +26,7 @@ from scarid_cli.io.table import Metadata, Table, table_of
 EVIDENCE = "evidence"  # key of the metadata
 BIASES = "biases"  # key of the evidence
 ADDITIONS = "additions"  # key of the metadata
+LARGEST = 1e15  # of an estimate, in any unit: beyond it sums of squares overflow
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,13 @@ def identified(table: Table, robot: Robot) -> Identified:
     """
     batches = list(table.batches)
     names = [name for batch in batches for name in batch.column("parameter").to_pylist()]
-    values = np.concatenate([batch.column("estimate").to_numpy() for batch in batches])
+    if not names:
+        raise bad_data(
+            table.name, "no rows", expected="one for each parameter",
+            remedy="give the table that identify wrote",
+        )  # fmt: skip
+    columns = [batch.column("estimate").to_numpy(zero_copy_only=False) for batch in batches]
+    values = np.concatenate(columns).astype(float)
     found = dict(zip(names, values.tolist(), strict=True))
     joints = range(1, len(robot.joints) + 1)
     velocities = {i: found[f"vs{i}"] for i in joints if f"vs{i}" in found}
@@ -78,6 +85,16 @@ def identified(table: Table, robot: Robot) -> Identified:
             expected=f"those of {robot.name}: {', '.join(robot.names)}",
             remedy="give the robot that they were identified for with --robot",
             column="parameter",
+        )
+    sound = np.abs(values) <= LARGEST
+    if not sound.all():
+        worst = int(np.flatnonzero(~sound)[0])
+        raise bad_data(
+            table.name,
+            f"the estimate {values[worst]:g} of {names[worst]}",
+            expected="finite numbers of a robot",
+            remedy="give the table that identify wrote",
+            column="estimate",
         )
     theta = values[: len(values) - len(velocities)]
     delay = float(table.meta.extra.get("delay") or 0.0)

@@ -82,10 +82,14 @@ def test_the_rest_of_a_killed_run_is_told_and_removed(shell: Run, tmp_path: Path
 
     A run that is refused says nothing but why.
     """
-    mine = tmp_path / f".a.csv.{os.getpid()}.part"
-    others = [mine, tmp_path / ".a.csv.x.part", tmp_path / ".b.csv.999999999.part"]
-    abandoned = tmp_path / ".a.csv.999999999.part"
-    young = tmp_path / ".a.csv.999999998.part"
+    mine = tmp_path / f".a.csv.{os.getpid()}.0123456789ab.part"
+    others = [
+        mine,
+        tmp_path / ".a.csv.x.0123456789ab.part",
+        tmp_path / ".b.csv.999999999.0123456789ab.part",
+    ]
+    abandoned = tmp_path / ".a.csv.999999999.0123456789ab.part"
+    young = tmp_path / ".a.csv.999999998.0123456789ab.part"
     for path in (abandoned, *others):
         path.write_text("a part")
         os.utime(path, (0.0, 0.0))
@@ -96,7 +100,7 @@ def test_the_rest_of_a_killed_run_is_told_and_removed(shell: Run, tmp_path: Path
     assert abandoned.exists()
     result = shell("scarid trajgen --duration 3 -q -o a.csv")
     assert result.status == 0
-    assert ".a.csv.999999999.part" in result.err
+    assert ".a.csv.999999999.0123456789ab.part" in result.err
     assert not abandoned.exists()
     assert all(path.exists() for path in (*others, young))
 

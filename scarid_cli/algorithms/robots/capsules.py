@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import cos, sin
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
 from scarid_cli.algorithms.robots import values
+from scarid_cli.algorithms.robots.files import text_of
 from scarid_cli.arrays import Array
 
 KEYS = ("link", "from", "to", "radius")
@@ -36,7 +36,7 @@ class Capsule:
 
 def capsules_of(path: str) -> Iterator[Capsule]:
     """The spheres, cylinders and capsules of a URDF; boxes and meshes are left out."""
-    for own in ElementTree.fromstring(Path(path).read_text("utf-8")).findall("link"):
+    for own in ElementTree.fromstring(text_of(path)).findall("link"):
         for collision in own.findall("collision"):
             for shape in collision.findall("geometry/*"):
                 if shape.tag in ("sphere", "cylinder", "capsule"):

@@ -12,6 +12,7 @@ from scarid_cli.algorithms.imperfections.registry import imperfections_of
 from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.controls import control_of
 from scarid_cli.algorithms.robots.description import Parameter, Robot
+from scarid_cli.algorithms.robots.files import require_shallow, text_of
 from scarid_cli.algorithms.robots.joints import joint_of
 from scarid_cli.algorithms.robots.logs import log_of
 from scarid_cli.algorithms.robots.planar import PLANAR_TERMS, PlanarTerm
@@ -49,9 +50,9 @@ def _loaded(name: str) -> Robot:
         choice = ", ".join(known)
         raise UsageFault(f"unknown robot {name!r}; choose {choice}, or a .toml or .urdf file")
     path = ROBOTS / f"{name}.toml" if name in known else Path(name)
-    if not path.exists():
-        raise UsageFault(f"{name}: no such file")
-    document = tomllib.loads(path.read_text("utf-8"))
+    text = text_of(path)
+    require_shallow(text)
+    document = tomllib.loads(text)
     if "urdf" in document:
         return _arm(name, document, path.parent)
     return _robot(name, document)

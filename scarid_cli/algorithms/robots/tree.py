@@ -8,11 +8,12 @@ import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 from scarid_cli.algorithms.robots import values
+from scarid_cli.algorithms.robots.files import text_of
+from scarid_cli.algorithms.robots.sound import require_tree
 from scarid_cli.errors import UsageFault
 
 ENDLESS = 1e9  # rad: urdfdom does not read inf
@@ -44,10 +45,10 @@ def read(path: str) -> Tree:
         raise UsageFault(
             f"{path}: a URDF needs Pinocchio: pip install 'scarid[urdf]', or '.[urdf]' in a clone"
         ) from None
-    if not Path(path).exists():
-        raise UsageFault(f"{path}: no such file")
+    text = text_of(path)
     try:
-        tree = ElementTree.fromstring(Path(path).read_text("utf-8"))
+        tree = ElementTree.fromstring(text)
+        require_tree(tree)
         _turn_endless_joints_into_angles(tree)
         _drop_shapes(tree)
         model = _model(pinocchio, ElementTree.tostring(tree, encoding="unicode"))

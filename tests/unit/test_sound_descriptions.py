@@ -1,0 +1,112 @@
+"""Descriptions that are no robot are refused in a moment, and name what is wrong."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scarid_cli.algorithms.robots import reading
+from scarid_cli.algorithms.robots.files import LARGEST
+from scarid_cli.algorithms.robots.sound import JOINTS, require_tree
+from scarid_cli.errors import UsageFault
+
+
+def urdf(parents: list[int], origin: str = "0 0 1") -> str:
+    """A URDF whose link k hangs on link parents[k - 1]; link 0 is the base."""
+    links = "".join(f'<link name="l{k}"/>' for k in range(len(parents) + 1))
+    joints = "".join(
+        f'<joint name="j{k}" type="revolute"><parent link="l{parent}"/><child link="l{k}"/>'
+        f'<origin xyz="{origin}"/><axis xyz="0 1 0"/>'
+        '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+        for k, parent in enumerate(parents, start=1)
+    )
+    return f'<robot name="r">{links}{joints}</robot>'
+
+
+@st.composite
+def hanging(draw: st.DrawFn) -> list[int]:
+    """Where each link hangs: anywhere, also on itself or on a later one."""
+    count = draw(st.integers(1, 8))
+    return [draw(st.integers(0, count)) for _ in range(count)]
+
+
+@given(hanging())
+def test_a_tree_is_accepted_and_a_cycle_is_not(parents: list[int]) -> None:
+    """By the other definition: from every link the base is reached."""
+
+    def reaches(link: int) -> bool:
+        for _ in parents:
+            link = parents[link - 1] if link else 0
+        return link == 0
+
+    tree = ElementTree.fromstring(urdf(parents))
+    if all(map(reaches, range(len(parents) + 1))):
+        require_tree(tree)
+    else:
+        with pytest.raises(ValueError, match="no way leads from the base l0 to joint"):
+            require_tree(tree)
+
+
+def test_a_link_that_two_joints_carry_is_refused() -> None:
+    double = urdf([0, 0]).replace('child link="l2"', 'child link="l1"')
+    with pytest.raises(ValueError, match="link l1 has two parents"):
+        require_tree(ElementTree.fromstring(double))
+
+
+@pytest.mark.parametrize("origin", ["0 0 1e100", "nan 0 0", "0 -inf 0", "1e7 0 0"])
+def test_origins_out_of_this_world_are_refused(origin: str, tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(urdf([0, 1], origin))
+    with pytest.raises(UsageFault, match="the origin of joint j1 has xyz"):
+        reading.load(str(path))
+
+
+def test_a_long_chain_is_refused_before_its_parser_recurses(tmp_path: Path) -> None:
+    path = tmp_path / "chain.urdf"
+    path.write_text(urdf(list(range(5 * JOINTS))))
+    with pytest.raises(UsageFault, match=f"more than {JOINTS}"):
+        reading.load(str(path))
+
+
+def test_an_element_with_very_many_attributes_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "many.urdf"
+    many = " ".join(f'a{k}="1"' for k in range(40_000))
+    path.write_text(urdf([0]).replace('<robot name="r">', f'<robot name="r" {many}>'))
+    with pytest.raises(UsageFault, match="40001 attributes"):
+        reading.load(str(path))
+
+
+@pytest.mark.parametrize("key", ["a.a", '"b".c', "a . b"])
+def test_a_key_of_very_many_parts_is_refused(key: str, tmp_path: Path) -> None:
+    path = tmp_path / "bomb.toml"
+    path.write_text("title = 'x'\n" + ".".join([key] * 6000) + " = 1\n")
+    with pytest.raises(UsageFault, match="line 2: a key of more than"):
+        reading.load(str(path))
+
+
+def test_numbers_with_points_are_no_key(tmp_path: Path) -> None:
+    path = tmp_path / "arm.toml"
+    path.write_text("joint = [" + ", ".join(["0.5"] * 500) + "]\n")
+    with pytest.raises(UsageFault) as refused:
+        reading.load(str(path))
+    assert "parts" not in str(refused.value)
+
+
+def test_only_files_of_some_size_are_read(tmp_path: Path) -> None:
+    robot = tmp_path / "robot.toml"
+    for other in ("/dev/zero", str(tmp_path / "pipe"), str(tmp_path)):
+        if other.endswith("pipe"):
+            os.mkfifo(other)
+        robot.write_text(f'urdf = "{other}"\n')
+        with pytest.raises(UsageFault, match="not a regular file"):
+            reading.load(str(robot))
+    huge = tmp_path / "huge.urdf"
+    with huge.open("wb") as file:
+        file.truncate(LARGEST + 1)
+    with pytest.raises(UsageFault, match="MB are no description"):
+        reading.load(str(huge))
