@@ -8,6 +8,7 @@ import pyarrow as pa
 
 from scarid_cli.io.table import METADATA_KEY, Metadata
 from scarid_cli.io.writer import Output
+from scarid_cli.printable import utf8
 
 
 class Readable(Output):
@@ -36,7 +37,7 @@ class Printer:
 
         kind = Metadata.from_json(self._schema.metadata[METADATA_KEY]).kind or "table"
         table = pa.Table.from_batches(self._batches, self._schema)
-        self._write(readable(kind.capitalize(), table).encode())
+        self._write(utf8(readable(kind.capitalize(), table)).encode())
 
     def abort(self) -> None:
         """Nothing was written yet."""

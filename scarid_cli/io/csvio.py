@@ -6,6 +6,7 @@ import csv
 import io
 import re
 import shlex
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 
@@ -171,9 +172,10 @@ def _spaced(header: str, body: bytes) -> bool:
 
 def _require_different(names: list[str], name: str) -> None:
     """Refuse columns of one name, and without a name."""
-    for column in names if len(set(names)) < len(names) or not all(names) else ():
-        if not column or names.count(column) > 1:
-            found = f"{names.count(column)} columns of this name" if column else "no name"
+    counts = Counter(names)
+    for column in names if len(counts) < len(names) or not all(names) else ():
+        if not column or counts[column] > 1:
+            found = f"{counts[column]} columns of this name" if column else "no name"
             raise bad_data(
                 name,
                 found,
@@ -281,6 +283,7 @@ class CsvWriter:
 
 def _require_writable(schema: pa.Schema) -> None:
     """Refuse columns whose name or values would not be read back."""
+    twice = {name for name, count in Counter(schema.names).items() if count > 1}
     for index, field in enumerate(schema):
         if not _writable(field.type):
             raise bad_data(
@@ -290,7 +293,7 @@ def _require_writable(schema: pa.Schema) -> None:
                 remedy="write Parquet or Arrow, or leave the column out",
                 column=field.name,
             )
-        if not _readable_name(field.name, index) or schema.names.count(field.name) > 1:
+        if not _readable_name(field.name, index) or field.name in twice:
             raise bad_data(
                 "the table",
                 f"the name {field.name!r}",

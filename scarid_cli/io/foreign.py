@@ -16,6 +16,7 @@ from scarid_cli.io.bytesource import ByteSource, Wrapped, max_batch, require_mod
 from scarid_cli.io.matfile import COPIES, TOO_LARGE
 from scarid_cli.io.notation import SPACE, Notation
 from scarid_cli.io.table import Metadata, Table, doubles
+from scarid_cli.printable import printable
 
 ARCHIVES = (".npz", ".mat")
 END_OF_ZIP = struct.Struct("<4s6xH10x")  # the last bytes: a mark, and how many files there are
@@ -130,7 +131,11 @@ def require_moderate_archive(path: str) -> None:
 def _npz(path: str) -> dict[str, Any]:
     require_moderate_archive(path)
     with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-        return {name: arrays[name] for name in arrays.files}
+        found = {name: arrays[name] for name in arrays.files}
+    other = next((name for name, x in found.items() if not isinstance(x, np.ndarray)), None)
+    if other is not None:
+        raise ValueError(f"it contains {printable(other)}, which is not an array")
+    return found
 
 
 def _require_all(path: str, found: int) -> None:

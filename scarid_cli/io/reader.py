@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from math import isfinite
 
 import numpy as np
 import pyarrow as pa
@@ -20,6 +21,7 @@ from scarid_cli.io.table import SEGMENT, Table, cast
 # From the columns of a table, those whose values a command reads.
 Reads = Callable[[list[str]], Iterable[str]]
 Fault = tuple[str, str, str, str]  # the column, what was found, expected, and the remedy
+LARGEST = 1e100  # of a value: no robot has such a value, and the product of three does not overflow
 ROW_MARKS = ("t", SEGMENT, "settled")  # columns that every command reads
 
 
@@ -64,9 +66,9 @@ def checked(
     if lacking:
         table = lacking(columns).removed(table)
     remedies = remedies or Remedies()
+    if not schema.sampled:  # no resampling mends it
+        return replace(table, batches=_valued(table, columns, Remedies().value))
     batches = _valued(table, columns, remedies.value)
-    if not schema.sampled:
-        return replace(table, batches=batches)
     return clocked(replace(table, batches=batches), regular=regular, remedy=remedies.clock)
 
 
@@ -195,8 +197,9 @@ def _fault_of(column: pa.Array) -> tuple[int, str, str] | None:
     if column.null_count:
         empty = column.is_null().to_numpy(zero_copy_only=False)
         return int(np.argmax(empty)), "no value", expected
-    finite = np.isfinite(column.to_numpy()) if floating else np.ones(1, dtype=np.bool_)
-    if finite.all():
+    moderate = np.abs(column.to_numpy()) < LARGEST if floating else np.ones(1, dtype=np.bool_)
+    if moderate.all():
         return None
-    at = int(np.argmin(finite))
-    return at, str(column[at].as_py()), expected
+    at = int(np.argmin(moderate))
+    found = column[at].as_py()
+    return at, str(found), f"a number below {LARGEST:g}" if isfinite(found) else expected

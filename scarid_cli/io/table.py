@@ -15,6 +15,7 @@ import pyarrow as pa
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import bad_data
 from scarid_cli.io import facts
+from scarid_cli.printable import utf8
 
 METADATA_KEY = b"scarid"
 UNIT_KEY = b"unit"
@@ -146,12 +147,21 @@ def integers(values: Any) -> pa.Array:
 def table_of(
     name: str, schema: pa.Schema, rows: Iterable[tuple[Any, ...]], meta: Metadata
 ) -> Table:
-    """A small table of these rows; numbers that are not finite become empty cells."""
+    """A small table of these rows; numbers that are not finite become empty cells.
+
+    Names of files that are not UTF-8 are written with escapes such as \\xff.
+    """
     columns = (
-        pa.array([None if isinstance(x, float) and not isfinite(x) else x for x in values], f.type)
+        pa.array([_cell(x) for x in values], f.type)
         for f, values in zip(schema, zip(*rows, strict=True), strict=True)
     )
     return Table(name, schema, meta, iter([pa.RecordBatch.from_arrays([*columns], schema=schema)]))
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, str):
+        return utf8(value)
+    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def cast(batch: pa.RecordBatch, schema: pa.Schema, name: str) -> pa.RecordBatch:

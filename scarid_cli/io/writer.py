@@ -13,6 +13,7 @@ from scarid_cli.io import FORMATS
 from scarid_cli.io.stop import STOP
 from scarid_cli.io.table import Table
 from scarid_cli.io.target import Target, is_regular
+from scarid_cli.printable import utf8
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -146,7 +147,7 @@ class Document(Committable):
         self.target = Target(path)
 
     def write(self, content: str | bytes) -> None:
-        self.target.write(content if isinstance(content, bytes) else content.encode())
+        self.target.write(content if isinstance(content, bytes) else utf8(content).encode())
 
     def finish(self) -> None:
         """A document has no end mark."""

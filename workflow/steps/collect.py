@@ -15,6 +15,7 @@ from steps.plan import Log, Plan, Robot
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, table_of
 from scarid_cli.io.writer import Output, all_or_none
+from scarid_cli.printable import utf8
 
 STEPS = ("identify", "validate")
 LEVEL = 0.05  # of `compare`
@@ -153,4 +154,4 @@ def _say(plan: Plan, robot: Robot, log: Log, steps: list[Result]) -> None:
     lines = [line for found in steps for line in found.get("messages", ())]
     folder = places.folder_of(plan, robot, log)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "messages.txt").write_text("\n".join([*lines, ""]), "utf-8")
+    (folder / "messages.txt").write_text(utf8("\n".join([*lines, ""])), "utf-8")

@@ -61,7 +61,8 @@ def table(folder: Path, log: Log) -> Path:
 
 def columns(path: Path) -> pa.Table:
     """A table that a command wrote; `pyarrow.parquet.read_table` would import twice as much."""
-    with pq.ParquetFile(path) as file:
+    # pyarrow takes a path only if it is UTF-8.
+    with path.open("rb") as source, pq.ParquetFile(source) as file:
         return file.read(use_threads=False)
 
 

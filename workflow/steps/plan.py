@@ -12,6 +12,9 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from scarid_cli.algorithms.robots.files import require_shallow, text_of
+from scarid_cli.errors import ScaridError
+
 # The commands, with the options that they get unless the configuration says otherwise.
 PIPE = {
     "convert": "",
@@ -86,9 +89,12 @@ class Plan:
 def read(path: str) -> Plan:
     """Read a configuration. Globs and paths in it are relative to the present folder."""
     try:
-        with Path(path).open("rb") as file:
-            given = tomllib.load(file)
-    except (OSError, tomllib.TOMLDecodeError) as error:
+        text = text_of(path)
+        require_shallow(text)
+        given = tomllib.loads(text)
+    except ScaridError as fault:
+        raise PlanError(str(fault)) from None
+    except (RecursionError, ValueError) as error:
         raise PlanError(f"{path}: {error}") from None
     _known(given, KEYS, path)
     robots = given.get("robots")

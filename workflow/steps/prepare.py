@@ -9,6 +9,8 @@ from pathlib import Path
 from steps.commands import Result, failure, run
 from steps.plan import Log, Robot
 
+from scarid_cli.printable import utf8
+
 
 def prepare(robot: Robot, log: Log, measurement: Path, findings: Path) -> Result:
     """Write the measurement of a log, and what `check` says of it."""
@@ -21,7 +23,7 @@ def prepare(robot: Robot, log: Log, measurement: Path, findings: Path) -> Result
     ran = run(f"{convert} then {tee} then check --json {described}", messages)
     if not ran.out:
         return {**failure(ran), "messages": messages}
-    findings.write_text(ran.out, "utf-8")
+    findings.write_text(utf8(ran.out), "utf-8")
     found = {"status": 0, "messages": messages, **_findings(ran.out)}
     if resample:
         words = ["resample", str(first), *shlex.split(resample), "-o", str(measurement)]

@@ -12,6 +12,7 @@ from steps.commands import Result, run
 from steps.plan import Log, Plan, Robot
 
 from scarid_cli.arrays import Array
+from scarid_cli.printable import utf8
 
 VERDICTS = {"good": 0, "rough": 1, "doubtful": 2, "not identifiable": 3}
 POOLED = 4  # logs against which another one is validated, at most
@@ -137,8 +138,9 @@ def _compared(plan: Plan, robot: Robot, first: Log, logs: list[Log], messages: l
         }
         for fact in facts
     }
+    written = {utf8(path): name for path, name in paths.items()}
     for row in table.to_pylist():
-        entry = compared[paths[row["table"]]]
+        entry = compared[written[row["table"]]]
         entry["parameters"][row["parameter"]] = [row["errors"], row["p_value"]]
     return {"compared": compared}
 

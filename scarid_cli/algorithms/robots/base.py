@@ -36,6 +36,8 @@ def with_base_parameters(robot: Robot) -> Robot:
     states = min(RANDOM_STATES, -(-max(ROWS, MARGIN * len(robot.parameters)) // joints))
     W = robot.regressor(*motion[:, :, :states]).reshape(-1, len(robot.parameters))
     kept, parts = independent(W)
+    if not kept:
+        raise ValueError("its torques depend on no parameter; correct its masses and lengths")
     parameters = []
     for row, i in enumerate(kept):
         own = robot.parameters[i]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection
 from math import isfinite
 from typing import Any
@@ -75,6 +76,6 @@ def only(what: str, entry: dict[str, Any], known: Collection[str]) -> None:
 
 def distinct(what: str, values: list[Any]) -> None:
     """Refuses a list in which a value appears twice."""
-    twice = next((value for value in values if values.count(value) > 1), None)
+    twice = next((value for value, count in Counter(values).items() if count > 1), None)
     if twice is not None:
         raise ValueError(f"the {what} {twice!r} appears twice")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -91,7 +92,7 @@ def _require_alone(files: Sequence[str], others: Mapping[str, object]) -> None:
 
 
 def _require_distinct(paths: Sequence[str]) -> None:
-    twice = next((path for path in paths if paths.count(path) > 1), None)
+    twice = next((path for path, count in Counter(paths).items() if count > 1), None)
     if twice:
         raise UsageFault(f"{twice} is given twice; each table can be read once")
 

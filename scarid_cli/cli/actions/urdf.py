@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 from scarid_cli.algorithms.regression.treatment import Treatment
+from scarid_cli.algorithms.robots.files import text_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.job import Job
@@ -33,7 +33,7 @@ def run(
     arm = load(job.described(robot))
     if not arm.body:
         raise UsageFault(f"{robot}: has no URDF to write parameters into")
-    text = Path(arm.body.path).read_text("utf-8")
+    text = text_of(arm.body.path)
     arm, treatment = for_robot(arm, treatment, given)
     out, side = job.text(place), job.side_table(base)
     table = job.read(parameters, "parameters")
