@@ -6,20 +6,23 @@ import io
 import json
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast, get_type_hints
 
 import numpy as np
 
 from scarid_cli.algorithms.estimators.ekf import FilterState
 from scarid_cli.algorithms.estimators.rls import WeightedInformation
 from scarid_cli.algorithms.regression.counting import LeftOut, Speeds
+from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.information import Information
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.subsample import Subsample
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.io.foreign import require_moderate_archive
+from scarid_cli.stages.soundness import require_state
 
 KNOWN = {
     kind.__name__: kind
@@ -49,29 +52,41 @@ def saved(checkpoint: Checkpoint, settings: dict[str, Any]) -> bytes:
     return out.getvalue()
 
 
-def restored(path: str, settings: dict[str, Any]) -> Checkpoint:
-    """The checkpoint in a file, which must be that of an estimation with the same settings."""
+def restored(
+    path: str, settings: dict[str, Any], estimator: BaseEstimator, robot: Robot
+) -> Checkpoint:
+    """The checkpoint in a file, which must be that of an estimation with the same settings.
+
+    What is no state of this estimator for this robot is BadData.
+    """
     try:
         require_moderate_archive(path)
         with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
             document = json.loads(str(archive["tree"]))
             checkpoint = _unpacked(document["checkpoint"], archive)
             before = dict(document["settings"])
-            if not isinstance(checkpoint, Checkpoint):
-                raise TypeError("another structure")
     except FileNotFoundError:
         raise UsageFault(f"{path}: no such file; make one with `scarid identify --save`") from None
     except Exception:  # damage shows in whatever a reader does with it
-        raise BadData(
-            f"{path}: this is not a saved estimation; make one with `scarid identify --save`"
-        ) from None
+        raise _no_state(path) from None
     for key, value in settings.items():
         if before.get(key) != value:
             raise UsageFault(
                 f"{path}: the estimation was saved with {key} {before.get(key)}, not {value}; "
                 "continue it with the same"
             )
-    return checkpoint
+    try:
+        state = get_type_hints(type(estimator).init)["return"]
+        require_state(checkpoint, state, len(robot.joints), len(robot.parameters))
+    except (AttributeError, TypeError, ValueError):
+        raise _no_state(path) from None
+    return cast("Checkpoint", checkpoint)
+
+
+def _no_state(path: str) -> BadData:
+    return BadData(
+        f"{path}: this is not a saved estimation; make one with `scarid identify --save`"
+    )
 
 
 def _packed(value: Any, arrays: dict[str, Any]) -> Any:

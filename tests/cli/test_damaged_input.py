@@ -12,6 +12,8 @@ import pytest
 from conftest import Result, refused
 from scipy.io import savemat
 
+from scarid_cli.algorithms.choices.registry import ESTIMATORS
+from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages.continuation import restored
 
@@ -270,7 +272,7 @@ def test_a_decimation_by_more_than_there_are_rows_is_refused(
 
 def test_a_state_that_is_not_there_is_asked_for(scarid: Run, samples: Path, tmp_path: Path) -> None:
     with pytest.raises(UsageFault, match="no such file; make one with `scarid identify --save`"):
-        restored(str(tmp_path / "state.npz"), {})
+        restored(str(tmp_path / "state.npz"), {}, ESTIMATORS.load("ls")(), load("scara2"))
     motion = tmp_path / "motion.parquet"
     assert scarid("differentiate", samples / "scara2.csv", "-o", motion).status == 0
     refused(scarid("identify", motion, "--from", tmp_path / "state.npz"), 2, "no such file")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from faults import bombs, damage, processes, settings
+from faults import bombs, crafted, damage, processes, settings
 from faults.trials import FORBIDDEN, KILLED, REFUSAL, RIGHT, UNNOTICED, Count, Trial, counted
 
 SECONDS = 16.0  # of each class at most
@@ -56,6 +56,9 @@ def classes(share: float, seconds: float) -> Iterator[tuple[str, Callable[[], Co
         "malformed metadata",
         lambda: trials("malformed metadata", damage.metadata(int(200 * share))),
     )
+    for kind, made in crafted.KINDS.items():
+        yield kind, lambda k=kind, m=made: trials(k, m(int(300 * share)))  # type: ignore[misc]
+    yield "outputs across `then`", lambda: trials("outputs across `then`", crafted.outputs())
     yield "option values", lambda: trials("option values", settings.options(int(500 * share)))
     yield "environments", lambda: trials("environments", settings.environments())
     yield "full disks", lambda: trials("full disks", processes.limits(int(200 * share)))

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Iterator
 
 import pytest
-from faults import damage, processes, settings
+from faults import crafted, damage, processes, settings
 from faults.trials import RIGHT, Trial, outcome
 
 FEW = 2
@@ -18,6 +18,9 @@ def quick() -> Iterator[tuple[str, Iterator[Trial]]]:
         yield f"{name} cut", damage.cuts(name, FEW)
         yield f"{name} with a flipped bit", damage.flips(name, FEW)
     yield "metadata", damage.metadata(FEW)
+    for kind, made in crafted.KINDS.items():
+        yield kind, made(4 * FEW)
+    yield "outputs", itertools.islice(crafted.outputs(), 2 * FEW)
     yield "options", settings.options(2 * FEW)
     yield "environments", itertools.islice(settings.environments(), 2 * FEW)
     yield "full disks", processes.limits(FEW)

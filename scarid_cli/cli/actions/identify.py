@@ -12,6 +12,7 @@ import numpy as np
 from scarid_cli.algorithms.checks.finding import WARNING, Finding
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
@@ -82,7 +83,7 @@ def run(
         treatment=chosen.treatment,
         variance=variance,
         trace=side,
-        checkpoint=_restored(given["resumed"], fixed),
+        checkpoint=_restored(given["resumed"], fixed, solver, arm),
         keep=places.append,
         findings=findings,
         watch=watcher(job, arm.names) if is_terminal(2) else None,
@@ -191,13 +192,15 @@ def _options(name: str, treatment: Treatment) -> list[str]:
     return [f"--estimator {name}", *(["--align"] if treatment.align else [])]
 
 
-def _restored(resumed: str | None, fixed: dict[str, Any]) -> Checkpoint | None:
+def _restored(
+    resumed: str | None, fixed: dict[str, Any], solver: BaseEstimator, arm: Robot
+) -> Checkpoint | None:
     """The checkpoint to continue from, if one was given."""
     if not resumed:
         return None
     from scarid_cli.stages.continuation import restored  # zipfile takes a while to import
 
-    return restored(resumed, fixed)
+    return restored(resumed, fixed, solver, arm)
 
 
 def _require_possible(asked: Chosen, given: dict[str, Any]) -> None:
