@@ -33,7 +33,6 @@ from scarid_cli.stages.trajgen import tabulate
 
 REFERENCE = 100.0  # Hz, of the trajectories
 CONTROL = 1000.0  # Hz
-RESAMPLED = {"lost-rows", "position-rate", "torque-rate"}
 FLEXIBLE, CONSTANTS = "flexible joint", "motor constant"
 Given = dict[str, tuple[float, ...]]
 
@@ -229,7 +228,7 @@ def log(robot: Robot, condition: Condition, seed: int, *, truth: bool = False) -
     table = simulate(
         trajectory(robot, seed, condition), loop, condition.rate, truth=truth, given=known
     )
-    if RESAMPLED & set(condition.given):  # the last two by `identify` itself
+    if "lost-rows" in condition.given:
         table = resample(table, condition.rate)
     batches = list(table.batches)
     if condition.altered:

@@ -49,9 +49,8 @@ from conditions import (
     truth_of,
 )
 
-from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.estimators import rls, wls
-from scarid_cli.algorithms.regression.counting import Counting
 from scarid_cli.algorithms.regression.rows import joined
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
@@ -60,9 +59,9 @@ from scarid_cli.algorithms.tuning.equivalent import chain
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, ScaridError
 from scarid_cli.io.table import Table, matrix
+from scarid_cli.stages.blind import Choices, counted, estimated, evened, prepared
 from scarid_cli.stages.differentiate import matched
 from scarid_cli.stages.identify import identify
-from scarid_cli.stages.recommended import motion_of
 from scarid_cli.stages.rows import treated
 
 ARMS = ("ur10", "panda", "xarm7", "so101")  # whose URDFs are not in the repository
@@ -124,12 +123,10 @@ def blind(name: str, measured: Table, gain_error: float = 0.0) -> tuple[Table, f
 
     `gain_error` is the relative error of the torque constants that is stated to it.
     """
-    robot = robot_named(name)
-    motion, found, _ = motion_of(again(measured), robot, lambda: None, [])
-    treatment = Treatment(counting=_counting(motion), align=True, gain_error=gain_error)
-    solver = ESTIMATORS.load("gls")()
-    zeros = np.zeros(len(robot.names))
-    return identify(motion, robot, solver, zeros, treatment=treatment), found.noise
+    robot, choices = robot_named(name), Choices(treatment=Treatment(gain_error=gain_error))
+    found = prepared([again(measured)], robot, choices)
+    noise = found.smoothed.noise if found.smoothed else 0.0
+    return estimated(found, robot, choices.settings), noise
 
 
 def judged(name: str, truth: Array, measured: Table, seed: int, gain_error: float = 0.0) -> Judged:
@@ -176,6 +173,7 @@ def run(name: str, condition: Condition, seed: int) -> Run:
     measured, truth = log(robot, condition, seed), truth_of(robot, condition)
     found = judged(name, truth, measured, seed, condition.gain_error)
     off_by = partial(torque_error, name, truth, seed)
+    measured = replace(even := evened(again(measured))[0], batches=list(even.batches))
     others = hindsight(robot, measured, found.noise)
     return Run(
         blind=found,
@@ -190,17 +188,12 @@ def _many(parameters: int) -> float:
     return -normal.inv_cdf(normal.cdf(-3.0) * min(1.0, 8.0 / parameters))
 
 
-def _counting(motion: Table) -> Counting:
-    extra = motion.meta.extra
-    return Counting(extra.get("bandwidth"), tuple(extra.get("velocity_noise") or ()))
-
-
 def hindsight(robot: Robot, measured: Table, noise: float) -> Iterator[Array | None]:
     """The estimates of all cut-offs; None where too few rows are left."""
     for cutoff in (f for f in CUTOFFS.tolist() if f < HIGHEST / measured.period):
         smoother = chain(DIFFERENTIATORS.load("rts")(), noise, cutoff, measured.period)
         motion = matched(again(measured), [smoother] * len(robot.joints), [])
-        treatment = Treatment(counting=_counting(motion), align=True)
+        treatment = Treatment(counting=counted(motion.meta, None), align=True)
         try:
             parts = [rows for _, rows in treated(motion, robot, treatment)]
             rows, solver = joined(parts), wls.Estimator()

@@ -20,15 +20,15 @@ Reading = Callable[[str, "str | Robot | None"], "tuple[Table, Robot]"]
 
 def read_logs(
     job: Job, files: Sequence[str], robot: str | None, reading: Reading, *, skip: object = None
-) -> tuple[Table, Robot]:
-    """The logs as one table, and their robot, which is that of the first log if none is given.
+) -> tuple[list[Table], Robot]:
+    """The logs, and their robot, which is that of the first log if none is given.
 
     Each is opened by `reading`, given its path and the robot; without files, this is standard
-    input. A single log stays as it is. `skip` is what was given to --skip.
+    input. `skip` is what was given to --skip.
     """
     first, arm = reading(files[0] if files else "-", robot)
     if len(files) < 2:
-        return first, arm
+        return [first], arm
     if skip:
         raise UsageFault("--skip counts the rows of one log; choose rows of each with --rows")
     _require_different(files)
@@ -40,15 +40,13 @@ def read_logs(
                 "--robot"
             )
         job.notes.append(remark)
-    from scarid_cli.stages.several import joined  # only needed for several
-
     found = [float(table.meta.extra.get("bandwidth") or 0.0) for table in tables]
     if 0.0 < min(found) < max(found):
         job.notes.append(
             f"the bandwidths of the motions differ, from {min(found):.3g} to {max(found):.3g} Hz; "
             "the rows are chosen by the lowest one"
         )
-    return joined(tables), arm
+    return tables, arm
 
 
 def _require_different(files: Sequence[str]) -> None:

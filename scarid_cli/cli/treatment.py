@@ -12,6 +12,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job, per_joint
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Metadata, Table
+from scarid_cli.stages.blind import counted
 
 
 def treatment_of(given: dict[str, Any]) -> Treatment:
@@ -74,9 +75,7 @@ def for_motion(motion: Metadata, treatment: Treatment, given: dict[str, Any]) ->
     """The treatment, with the rows of this motion that count."""
     if given["all_rows"]:
         return treatment
-    noise = tuple(motion.extra.get("velocity_noise") or ())
-    bandwidth = given["bandwidth"] or motion.extra.get("bandwidth")
-    return replace(treatment, counting=Counting(bandwidth, noise))
+    return replace(treatment, counting=counted(motion, given["bandwidth"]))
 
 
 def report(job: Job, table: Table, counting: Counting | None, left_out: dict[str, Any]) -> None:

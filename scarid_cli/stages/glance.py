@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from dataclasses import replace
 from math import isfinite
 
@@ -12,6 +14,7 @@ from scarid_cli.algorithms.checks.finding import FAILED, OK, WARNING, Finding
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
+from scarid_cli.errors import BadData
 from scarid_cli.io.table import Table
 from scarid_cli.stages.logs import log_of
 
@@ -40,6 +43,17 @@ def of_rate(period: float) -> Finding | None:
     """What is not in order in a clock with this period [s], if anything."""
     finding, _ = clock.unit(clock.Clock(np.array([period]), period))
     return finding if finding.status != OK else None
+
+
+@contextlib.contextmanager
+def in_seconds(log: Table) -> Iterator[None]:
+    """A log that cannot be used because its time is not in seconds is refused for this reason."""
+    try:
+        yield
+    except BadData:
+        if finding := of_rate(log.period):
+            raise BadData(f"{log.name}: {finding.text}") from None
+        raise
 
 
 def of_measurement(table: Table, robot: Robot) -> list[Finding]:

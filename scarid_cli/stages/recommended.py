@@ -2,50 +2,82 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
+import contextlib
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
+from scarid_cli.algorithms.checks.finding import Finding
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import TWO_SIDED
 from scarid_cli.errors import TooShort
 from scarid_cli.io.table import Table
-from scarid_cli.stages.bandwidth import Bandwidth, bandwidth, recommended, smoother_at
+from scarid_cli.stages.bandwidth import bandwidth, recommended, smoother_at
 from scarid_cli.stages.differentiate import matched
+from scarid_cli.stages.glance import in_seconds, of_measurement
 from scarid_cli.stages.record import Record
 
+if TYPE_CHECKING:
+    from scarid_cli.stages.blind import Passed
 
-def motion_of(
-    measurement: Table,
-    robot: Robot,
-    progress: Callable[[], object],
-    left_out: list[TooShort],
-) -> tuple[Table, Bandwidth, Any]:
+Step = Callable[[], object]
+Progress = Callable[[], AbstractContextManager[Step]]
+
+
+@dataclass(frozen=True)
+class Smoothed:
+    """The motion of a measurement, its smoother, and why this one.
+
+    `findings` are what is not in order with the measurement, `left_out` the reason for each segment
+    that was left out, and `noise` [rad or m] that of the positions.
+    """
+
+    motion: Table
+    smoother: Any
+    text: str
+    cutoff: float
+    noise: float
+    left_out: list[TooShort]
+    findings: list[Finding]
+
+
+def smoothed_motion(
+    measurement: Table, robot: Robot, progress: Progress | None = None, before: Passed | None = None
+) -> Smoothed:
     """The motion of a measurement, behind the smoother at which the parameters scatter least.
 
-    Also the bandwidth and the smoother. The measurement is held in memory. `left_out` receives the
-    reason for each segment that was left out.
+    The measurement is held in memory. The smoother is that of the identification `before`, unless
+    this lets through more noise than then and the parameters scatter least behind a stronger one.
     """
-    held, log = _in_memory(measurement, robot)
-    found = bandwidth(held, robot, progress)
-    smoother = recommended(found, measurement.period)
-    return matched(log, [smoother] * held.joints, left_out), found, smoother
+    measurement = replace(measurement, batches=iter(batches := list(measurement.batches)))
+    findings = of_measurement(measurement, robot)
+
+    def motion(smoother: Any, text: str, cutoff: float, noise: float) -> Smoothed:
+        left_out: list[TooShort] = []
+        again = replace(measurement, batches=iter(batches))
+        found = matched(again, [smoother] * held.joints, left_out)
+        return Smoothed(found, smoother, text, cutoff, noise, left_out, findings)
+
+    with (progress or _unseen)() as step, in_seconds(measurement):
+        log = replace(measurement, batches=iter(batches))
+        held = Record.of(log, len(robot.joints), torques=True)
+        if before:
+            cutoff = before.hertz / TWO_SIDED
+            smoother = smoother_at(held, cutoff)
+            text = f"cut-off {cutoff:.3g} Hz for all joints, as at the identification"
+            same = motion(smoother, text, cutoff, smoother.noise)
+            if not before.quieter(same.motion):
+                return same
+        found = bandwidth(held, robot, step)
+        if before and not found.cutoff < cutoff:
+            return same
+        text = found.text
+        text += ", and positions are noisier than at the identification" if before else ""
+        smoother = recommended(found, measurement.period)
+        return motion(smoother, text, found.cutoff, found.noise)
 
 
-def motion_passing(
-    measurement: Table, robot: Robot, hertz: float, left_out: list[TooShort]
-) -> tuple[Table, Any]:
-    """The motion of a measurement, behind the smoother that passes half the power at hertz [Hz].
-
-    Also the smoother. The measurement is held in memory. `left_out` is as for `motion_of`.
-    """
-    held, log = _in_memory(measurement, robot)
-    smoother = smoother_at(held, hertz / TWO_SIDED)
-    return matched(log, [smoother] * held.joints, left_out), smoother
-
-
-def _in_memory(measurement: Table, robot: Robot) -> tuple[Record, Table]:
-    """The positions and torques of a measurement, and the measurement once more."""
-    batches = list(measurement.batches)
-    first, again = (replace(measurement, batches=iter(batches)) for _ in range(2))
-    return Record.of(first, len(robot.joints), torques=True), again
+@contextlib.contextmanager
+def _unseen() -> Iterator[Step]:
+    yield lambda: None

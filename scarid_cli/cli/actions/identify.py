@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -13,20 +13,17 @@ from scarid_cli.algorithms.checks.finding import WARNING, Finding
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
-from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
-from scarid_cli.cli.measured import is_motion, motion, read
+from scarid_cli.cli.measured import read, searching, tell_of
 from scarid_cli.cli.pairs import require_known, single_settings
-from scarid_cli.cli.resampled import Resampled
 from scarid_cli.cli.terminal import is_terminal
 from scarid_cli.cli.treatment import (
     behind_low_pass,
-    for_motion,
     for_robot,
     lead,
     report,
@@ -37,22 +34,12 @@ from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.interval import plus_minus
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document
-from scarid_cli.stages import identify as stage
+from scarid_cli.stages import blind
+from scarid_cli.stages.blind import FOR_MOTION, Choices, Chosen, Prepared
 from scarid_cli.stages.documents import identification
 from scarid_cli.stages.parameters import ADDITIONS, identified
 
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
-FOR_MOTION, FOR_MEASUREMENT = "rls", "gls"  # the estimator if none is given
-
-
-@dataclass(frozen=True)
-class Chosen:
-    """An estimator with its settings, and how it takes the rows."""
-
-    name: str
-    method: Any
-    values: dict[str, float]
-    treatment: Treatment
 
 
 def run(
@@ -66,21 +53,26 @@ def run(
     **given: Any,
 ) -> int:
     """Write the parameters, and report the verdict; returns the exit status."""
-    asked = _asked(given)
+    choices = _choices(given)
     side, place = job.side_table(given["trace"]), job.side_text(given["save"])
-    table, arm, chosen = _read_logs(job, files, robot, asked, given)
-    chosen = _for_motion(table, chosen, given)
-    solver = chosen.method(**chosen.values, **_single(given["forgetting"], arm.names))
+    reading = partial(_read, job, choices.of_motion().method)
+    logs, arm = read_logs(job, files, robot, reading, skip=given["skip"])
+    arm, treatment = for_robot(arm, choices.treatment, given)
+    settings = {**choices.settings, **_single(given["forgetting"], arm.names)}
+    choices = replace(choices, treatment=treatment)
+    prepared = blind.prepared(logs, arm, choices, progress=searching(job))
+    chosen = prepared.chosen
+    tell_of(job, prepared, logs, _options(chosen))
     start = _initial(job, given["initial"], arm)
-    fixed = _fixed(table, arm, chosen, solver, given["smooth_sign"])
+    solver = chosen.method(**settings)
+    fixed = _fixed(prepared, arm, solver, given["smooth_sign"])
     places: list[Checkpoint] = []
     findings: list[Finding] = []
-    result = stage.identify(
-        job.recorded(table),
+    result = blind.estimated(
+        replace(prepared, motion=job.recorded(prepared.motion)),
         arm,
-        solver,
+        settings,
         start,
-        treatment=chosen.treatment,
         variance=variance,
         trace=side,
         checkpoint=_restored(given["resumed"], fixed, solver, arm),
@@ -95,54 +87,28 @@ def run(
     for finding in findings:
         if finding.status == WARNING:
             job.say(f"warning: {finding.text}")
-    _tell(job, table, arm.name, chosen, result.meta.extra)
+    _tell(job, prepared.motion, arm.name, chosen, result.meta.extra)
     return _status(job, require, result.meta.extra)
 
 
-def _asked(given: dict[str, Any]) -> Chosen:
-    """What the options ask for; refuses what is impossible before anything is read."""
+def _choices(given: dict[str, Any]) -> Choices:
+    """What the options choose; refuses what is impossible before anything is read."""
     name = given["estimator"] or FOR_MOTION
     method = ESTIMATORS.load(name)
     values = _settings(method, name, given)
     method(**values)
-    asked = Chosen(name, method, values, treatment_of(given))
+    asked = Chosen(name, method, treatment_of(given))
     _require_possible(asked, given)
-    return asked
-
-
-def _read_logs(
-    job: Job, files: tuple[str, ...], robot: str | None, asked: Chosen, given: dict[str, Any]
-) -> tuple[Table, Robot, Chosen]:
-    """The motion of the logs, its robot, and what it is identified by."""
-    resampled = Resampled(job)
-    reading = partial(_read, job, asked.method, resampled)
-    table, arm = read_logs(job, files, robot, reading, skip=given["skip"])
-    arm, treatment = for_robot(arm, asked.treatment, given)
-    chosen = replace(asked, treatment=treatment)
-    if chosen.method.FOLLOWS or is_motion(table):
-        return table, arm, chosen
-    chosen = _for_measurement(chosen, given)
-    options = _options(chosen.name, chosen.treatment)
-    return motion(job, table, arm, options, resampled.rates), arm, chosen
-
-
-def _for_measurement(asked: Chosen, given: dict[str, Any]) -> Chosen:
-    """What the recommended procedure adds, unless the rows have to be taken one by one."""
-    if any(given[option] for option in ("trace", "resumed", "save")):
-        return asked
-    chosen = asked
-    if not (given["estimator"] or asked.values or given["forgetting"] or given["initial"]):
-        chosen = replace(asked, name=FOR_MEASUREMENT, method=ESTIMATORS.load(FOR_MEASUREMENT))
-    if given["align"] is None and chosen.method.ALIGNS:
-        chosen = replace(chosen, treatment=replace(chosen.treatment, align=True))
-    return chosen
-
-
-def _for_motion(table: Table, chosen: Chosen, given: dict[str, Any]) -> Chosen:
-    """The same, with the rows of this motion that count; of a reference all do."""
-    all_rows = given["all_rows"] or chosen.method.FOLLOWS
-    treatment = for_motion(table.meta, chosen.treatment, {**given, "all_rows": all_rows})
-    return replace(chosen, treatment=treatment)
+    one_by_one = any(given[option] for option in ("trace", "resumed", "save"))
+    for_rows = one_by_one or given["forgetting"] or given["initial"]
+    return Choices(
+        estimator=name if for_rows else given["estimator"],
+        settings=values,
+        align=asked.treatment.align if one_by_one else given["align"],
+        treatment=asked.treatment,
+        bandwidth=given["bandwidth"],
+        all_rows=given["all_rows"],
+    )
 
 
 def _save(place: Document, checkpoint: Checkpoint, fixed: dict[str, Any]) -> None:
@@ -178,18 +144,16 @@ def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
     return REQUIRED
 
 
-def _read(
-    job: Job, method: Any, resampled: Resampled, file: str, robot: str | Robot | None
-) -> tuple[Table, Robot]:
+def _read(job: Job, method: Any, file: str, robot: str | Robot | None) -> tuple[Table, Robot]:
     """The motion or measurement, or whatever else the estimator reads, and the robot."""
     if method.FOLLOWS:
         return job.read_for(file, "trajectory", robot, torques=True, reference=method.REFERENCE)
-    return read(job, resampled, file, robot, reference=method.REFERENCE)
+    return read(job, file, robot, reference=method.REFERENCE)
 
 
-def _options(name: str, treatment: Treatment) -> list[str]:
+def _options(chosen: Chosen) -> list[str]:
     """What is used with a measurement and has to be stated for a motion."""
-    return [f"--estimator {name}", *(["--align"] if treatment.align else [])]
+    return [f"--estimator {chosen.name}", *(["--align"] if chosen.treatment.align else [])]
 
 
 def _restored(
@@ -236,14 +200,15 @@ def _initial(job: Job, initial: str | None, arm: Robot) -> Array:
 
 
 def _fixed(
-    table: Table, arm: Robot, chosen: Chosen, solver: Any, sign: float | None
+    prepared: Prepared, arm: Robot, solver: BaseEstimator, sign: float | None
 ) -> dict[str, Any]:
     """What must stay the same when a saved estimation is continued, as JSON holds it."""
+    chosen = prepared.chosen
     known = {name: getattr(solver, name) for name in names_of(solver)}
     return {
         "robot": arm.name,
         "estimator": chosen.name,
-        "period": table.meta.period,
+        "period": prepared.motion.meta.period,
         "settings": json.loads(json.dumps(known)),
         "slow": list(chosen.treatment.slow),
         "smooth_sign": sign,

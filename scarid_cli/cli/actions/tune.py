@@ -5,7 +5,6 @@ from __future__ import annotations
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.job import Job
-from scarid_cli.cli.measured import explained
 from scarid_cli.cli.progress import steps
 from scarid_cli.cli.settings import document
 from scarid_cli.io.reader import require
@@ -13,7 +12,7 @@ from scarid_cli.io.schemas import joints_of, numbered, of_joints
 from scarid_cli.io.table import Table
 from scarid_cli.stages import bandwidth, record
 from scarid_cli.stages import tune as stage
-from scarid_cli.stages.glance import of_rate
+from scarid_cli.stages.glance import in_seconds, of_rate
 
 FOR_ROBOT, FOR_POSITIONS = ("rts", "kalman"), ("kalman",)
 
@@ -36,7 +35,7 @@ def run(
     joints = _joints(table, arm)
     names = _names(methods or (FOR_ROBOT if arm else FOR_POSITIONS))
     held = record.Record.of(table, joints, torques=arm is not None)
-    with steps(quiet=job.quiet) as progress, explained(table):
+    with steps(quiet=job.quiet) as progress, in_seconds(table):
         if arm:
             found = bandwidth.bandwidth(held, arm, progress)
             rows = list(bandwidth.tune_for(held, found, names, seed, progress))

@@ -12,11 +12,9 @@ from scarid_cli.algorithms.checks.finding import FAILED
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
-from scarid_cli.cli.measured import Passed, is_motion, motion, read
-from scarid_cli.cli.resampled import Resampled
+from scarid_cli.cli.measured import read, searching, tell_of
 from scarid_cli.cli.treatment import (
     behind_low_pass,
-    for_motion,
     for_robot,
     lead,
     report,
@@ -25,7 +23,9 @@ from scarid_cli.cli.treatment import (
 from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
+from scarid_cli.stages import blind
 from scarid_cli.stages import validate as stage
+from scarid_cli.stages.blind import Choices, Passed
 from scarid_cli.stages.changes import Known, known
 from scarid_cli.stages.documents import validation
 from scarid_cli.stages.estimates import errors_of
@@ -52,12 +52,15 @@ def run(
     side = job.side_table(predictions)
     tables = [job.read(file, "parameters") for file in parameters]
     stated = robot or stated_robot(tables[0])
-    resampled = Resampled(job)
-    table, arm = read_logs(job, files, stated, partial(read, job, resampled), skip=given["skip"])
+    logs, arm = read_logs(job, files, stated, partial(read, job), skip=given["skip"])
     arm, treatment = for_robot(arm, treatment, given)
-    if not is_motion(table):
-        table = motion(job, table, arm, [], resampled.rates, before=Passed.of(tables))
-    treatment = for_motion(table.meta, treatment, given)
+    choices = Choices(
+        align=False, treatment=treatment, bandwidth=given["bandwidth"], all_rows=given["all_rows"]
+    )
+    passed = Passed.of(tables)
+    prepared = blind.prepared(logs, arm, choices, progress=searching(job), before=passed)
+    tell_of(job, prepared, logs, [])
+    table, treatment = prepared.motion, prepared.chosen.treatment
     model, before = pooled_identifications([_stored(table, arm) for table in tables])
     reach = Reach(len(arm.joints))
     result = stage.validate(
