@@ -19,7 +19,7 @@ from scarid_cli.cli.chain import Place
 from scarid_cli.cli.command_line import command_line, inputs
 from scarid_cli.cli.remarks import Remarks
 from scarid_cli.cli.remedies import remedies, require_our_names
-from scarid_cli.cli.robots import another, misfit
+from scarid_cli.cli.robots import another, misfit, require_as_many
 from scarid_cli.cli.selecting import selection_of
 from scarid_cli.cli.terminal import is_terminal
 from scarid_cli.errors import TooShort, UsageFault
@@ -108,7 +108,8 @@ class Job:
             raise UsageFault(f"{place}: two outputs cannot share it; give one of them another FILE")
         if path != "-" and any(same_place(path, x) for x in self._inputs if x != "-"):
             raise UsageFault(f"{path}: this is the input; give the output another FILE")
-        self.outputs.append(output := opened())
+        with STOP.postponed():
+            self.outputs.append(output := opened())
         return output
 
     def read(
@@ -174,7 +175,7 @@ class Job:
         the command can do `without_derivatives`, this is the kind of a table that has none. Values
         and clock of a table `as_recorded` are not checked.
         """
-        opened = self._opened_table(path)
+        opened = self._as_described(self._opened_table(path), robot)
         if without_derivatives and not schemas.numbered(opened.columns, "ddq"):
             kind = without_derivatives
         require_our_names(path, opened)
@@ -192,16 +193,40 @@ class Job:
             columns += [name for name in table.columns if name.endswith("_ref")]
         return self._checked(path, table, kind, lambda _: columns, regular=True), arm
 
+    def _as_described(self, table: Table, robot: str | Robot | None) -> Table:
+        """A log of motors or by other names, converted as [log] of the robot's TOML file says."""
+        name = robot or os.environ.get("SCARID_ROBOT") or ""
+        if isinstance(name, str) and not name.endswith(".toml"):
+            return table
+        from scarid_cli.algorithms.robots.reading import load
+
+        arm = load(name) if isinstance(name, str) else name
+        if not arm.log:
+            return table
+        if arm.log.is_of(table.columns):
+            from scarid_cli.stages.joints import as_described
+
+            self.notes.append(f"{table.name}: columns, units and motors by [log] of {arm.name}")
+            return as_described(table, arm, {}, [], None)
+        if not arm.log.columns and arm.log.converts and not table.meta.history:
+            self.notes.append(
+                f"{table.name}: taken as positions and torques of the joints, as `scarid convert "
+                f"--robot {arm.name}` writes them; if it is a log of the motors, convert it first"
+            )
+        return table
+
     def robot(self, name: str | None, *tables: Table) -> Robot:
         """The robot of this name, else as the first table states, else as SCARID_ROBOT does.
 
-        Reports which one is assumed if none is stated, and a table that states another one.
+        Reports which one is assumed if none is stated, and a table that states another one. None
+        is assumed for a table with another number of joints.
         """
         from scarid_cli.algorithms.robots.reading import DEFAULT_ROBOT, load
 
         found = name or next(filter(None, map(stated_robot, tables)), None)
         found = found or os.environ.get("SCARID_ROBOT")
         if not found:
+            require_as_many(load(DEFAULT_ROBOT), tables)
             self.notes.append(
                 f"no robot is stated, {DEFAULT_ROBOT} is assumed (state it with --robot or "
                 "SCARID_ROBOT)"

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from scarid_cli.errors import bad_data
+from scarid_cli.errors import UsageFault, bad_data
+from scarid_cli.io.schemas import numbered
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -21,6 +22,19 @@ def another(robot: Robot, tables: Iterable[Table]) -> str:
                 f"and not of {robot.name}, which is used"
             )
     return ""
+
+
+def require_as_many(assumed: Robot, tables: Iterable[Table]) -> None:
+    """Refuse to assume a robot for a table of another number of joints."""
+    joints = len(assumed.joints)
+    for table in tables:
+        found = len(numbered(table.columns, "q"))
+        if found and found != joints:
+            many = f"{found} joint{'s' if found > 1 else ''}"
+            raise UsageFault(
+                f"{table.name}: no robot is stated for this table of {many}; state it with --robot "
+                "(a URDF or TOML file, or a name) or SCARID_ROBOT"
+            )
 
 
 def _file(name: str) -> str:

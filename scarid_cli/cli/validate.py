@@ -12,11 +12,14 @@ from scarid_cli.cli.headings import DATA, OUTPUT, heading
 @declare("validate")
 @options.table_inputs
 @heading(DATA)
-@options.input_file(
+@click.option(
     "--parameters",
+    type=options.InputFile("apriori"),
+    metavar="FILE",
     required=True,
     multiple=True,
-    help="The parameter table that `scarid identify` wrote; repeatable: several are pooled.",
+    help="The parameter table that `scarid identify` wrote, or `apriori` for the a priori values "
+    "(CAD) of the robot's description; repeatable: several are pooled.",
 )
 @options.robot
 @selecting.selection

@@ -16,6 +16,7 @@ import os
 import select
 import signal
 import time
+from collections.abc import Iterator
 from types import FrameType
 
 GRACE = 1.0  # s: for what is on its way, where the writer does not end by itself
@@ -37,6 +38,7 @@ class Stop:
         self.live = False
         self._at = 0.0
         self._lost: BaseException | None = None
+        self._postponed = False
         self._wakes: tuple[int, int] | None = None
 
     def asked(self, number: int, _frame: FrameType | None) -> None:
@@ -48,7 +50,19 @@ class Stop:
                     os.write(self._wakes[1], b"x")
             return
         self._lost = KeyboardInterrupt() if number == signal.SIGINT else Terminated()
-        raise self._lost
+        if not self._postponed:
+            raise self._lost
+
+    @contextlib.contextmanager
+    def postponed(self) -> Iterator[None]:
+        """Stop only after this block, which opens a file and notes it, or puts files in places."""
+        before, self._postponed = self._postponed, True
+        try:
+            yield
+        finally:
+            self._postponed = before
+        if not before:
+            self.require_not_lost()
 
     def require_not_lost(self) -> None:
         """Stop now if an earlier exception of the handler came to nothing."""

@@ -199,13 +199,16 @@ def all_or_none(outputs: list[Output | Document]) -> Iterator[None]:
         for output in files:
             output.finish()
         for output in files:
-            output.commit(keep=len(outputs) > 1)
+            with STOP.postponed():
+                output.commit(keep=len(outputs) > 1)
         for output in outputs:
             if output not in files:
                 output.finish()
-        for output in outputs:
-            output.settle()
+        with STOP.postponed():
+            for output in outputs:
+                output.settle()
     except BaseException:
-        for output in reversed(outputs):
-            output.abort()
+        with STOP.postponed():
+            for output in reversed(outputs):
+                output.abort()
         raise

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 
 from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.regression.information import weakest
@@ -101,6 +102,13 @@ def identified(table: Table, robot: Robot) -> Identified:
     low_pass = bool(table.meta.extra.get("low_pass"))
     additions = tuple(Addition(**addition) for addition in table.meta.extra.get(ADDITIONS, []))
     return Identified(robot.with_stribeck(velocities), theta, delay, low_pass, additions)
+
+
+def apriori(robot: Robot) -> Table:
+    """The a priori values of a description (CAD) as a parameter table, without any errors."""
+    schema = pa.schema([schemas.load("parameters").arrow().field(i) for i in range(3)])
+    rows = [(p.name, p.unit, p.apriori) for p in robot.parameters]
+    return table_of("apriori", schema, rows, Metadata("parameters", robot=robot.name))
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ QUANTITIES = {
     TORQUE: {"effort", "efforts", "force", "forces", "tau", "torque", "torques", "trq"},
     CURRENT: {"current", "currents"},
 }
+AMPERES = {"amp", "ampere", "amperes", "amps", "cur", "curr"}  # words of currents only
 CLOCK = {
     "date",
     "datetime",
@@ -108,6 +109,13 @@ def renamable(columns: Sequence[str]) -> bool:
     except Unclear:
         return False
     return found is not None and {"t", "q1"} <= {*columns, *found.columns}
+
+
+def is_current(name: str) -> bool:
+    """Whether the words of a name say a current, and no other quantity."""
+    words = {word.lower() for word in WORD.findall(name)}
+    known = QUANTITIES[POSITION] | QUANTITIES[VELOCITY] | QUANTITIES[TORQUE]
+    return bool(words & {*AMPERES, *QUANTITIES[CURRENT]}) and words.isdisjoint(known)
 
 
 def in_short(found: Recognised) -> str:

@@ -173,7 +173,8 @@ def test_a_log_of_motors_becomes_one_of_joints(shell: Shell, tmp_path: Path) -> 
         header="enc1,enc2,amp1,amp2",
         comments="",
     )
-    refused = shell("scarid identify --robot robot.toml log.csv")
+    (tmp_path / "part.csv").write_text("enc1,enc2,amp1\n1,2,3\n")
+    refused = shell("scarid identify --robot robot.toml part.csv")
     assert "rename them with `scarid convert --robot robot.toml --format arrow" in refused.err
     result = shell("scarid convert --robot robot.toml log.csv")
     assert result.status == 0, result.err

@@ -18,6 +18,8 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from scarid_cli.io.stop import Stop, Terminated
+
 SCARID = str(Path(sys.executable).with_name("scarid"))
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 STEP = 0.001  # s between rows of the producer
@@ -66,6 +68,22 @@ def rows(tmp_path_factory: pytest.TempPathFactory) -> list[bytes]:
     return log.read_bytes().splitlines(keepends=True)
 
 
+def wait_for_estimates(folder: Path) -> None:
+    """Until identify has written rows of its trace, which it does as they come."""
+    deadline = time.monotonic() + 60
+    while not any(part.stat().st_size > 2000 for part in folder.glob(".trace.csv.*")):
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def wait_for_output(folder: Path) -> None:
+    """Until the file of an output is open."""
+    deadline = time.monotonic() + 60
+    while not list(folder.glob(".*")):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
 @pytest.mark.parametrize("number", SIGNALS)
 @pytest.mark.parametrize("form", ["csv", "arrow"])
 @pytest.mark.parametrize("seed", range(2))
@@ -76,13 +94,16 @@ def test_a_pipe_that_is_stopped_at_any_time_keeps_its_result(
     environment = {**os.environ, "SCARID_FORMAT": form}
     first = start("filter -q --cutoff 40", subprocess.PIPE, env=environment)
     second = start("differentiate -q", first.stdout, env=environment)
-    third = start("identify --robot scara2 -o p.parquet", second.stdout, cwd=tmp_path)
+    third = start(
+        "identify --robot scara2 --trace trace.csv -o p.parquet", second.stdout, cwd=tmp_path
+    )
     stages = (first, second, third)
     for stage in stages[:2]:
         stage.stdout.close()
     rng = random.Random(seed)
     with producing(rows, lambda row: (first.stdin.write(row), first.stdin.flush())) as over:
-        time.sleep(rng.uniform(0.9, 1.6))
+        wait_for_estimates(tmp_path)
+        time.sleep(rng.uniform(0.0, 0.4))
         for stage in rng.sample(stages, 3):
             stage.send_signal(number)
         over.set()
@@ -99,10 +120,13 @@ def test_a_pipe_that_is_stopped_at_any_time_keeps_its_result(
 
 
 def test_the_result_is_that_of_the_rows_that_had_arrived(rows: list[bytes], tmp_path: Path) -> None:
-    line = "differentiate -q - then tee motion.arrow then identify -q --robot scara2 -o p.parquet"
+    line = (
+        "differentiate -q - then tee motion.arrow then "
+        "identify -q --robot scara2 --trace trace.csv -o p.parquet"
+    )
     run = start(line, subprocess.PIPE, cwd=tmp_path)
     with producing(rows, lambda row: (run.stdin.write(row), run.stdin.flush())) as over:
-        time.sleep(1.3)
+        wait_for_estimates(tmp_path)
         run.send_signal(signal.SIGTERM)
         over.set()
     run.stdin.close()
@@ -120,7 +144,7 @@ def test_a_writer_that_goes_on_is_left_behind(
     transport: str, rows: list[bytes], tmp_path: Path
 ) -> None:
     """Neither end of the input nor silence: the signal alone ends it."""
-    words = "identify -q --robot scara2 -o p.parquet"
+    words = "identify -q --robot scara2 --trace trace.csv -o p.parquet"
     if transport == "socket":
         ours, theirs = socket.socketpair()
         run = start(f"differentiate -q - then {words}", theirs, cwd=tmp_path)
@@ -135,7 +159,7 @@ def test_a_writer_that_goes_on_is_left_behind(
         run = start(f"differentiate -q - then {words}", subprocess.PIPE, cwd=tmp_path, bufsize=0)
         write = run.stdin.write
     with producing(rows, write):
-        time.sleep(1.3)
+        wait_for_estimates(tmp_path)
         begun = time.monotonic()
         run.send_signal(signal.SIGINT)
         assert run.wait(30) == 0, run.stderr.read()
@@ -151,9 +175,10 @@ def test_a_writer_that_goes_on_is_left_behind(
 
 
 def test_a_second_signal_stops_at_once(rows: list[bytes], tmp_path: Path) -> None:
-    run = start("differentiate -o motion.parquet", subprocess.PIPE, cwd=tmp_path)
+    line = "differentiate - then identify --robot scara2 --trace trace.csv -o p.parquet"
+    run = start(line, subprocess.PIPE, cwd=tmp_path)
     with producing(rows, lambda row: (run.stdin.write(row), run.stdin.flush())):
-        time.sleep(1.5)
+        wait_for_estimates(tmp_path)
         run.send_signal(signal.SIGINT)
         time.sleep(0.2)
         run.send_signal(signal.SIGINT)
@@ -172,13 +197,20 @@ def test_a_run_on_a_file_stops_at_once(number: int, rows: list[bytes], tmp_path:
     longer = [rows[0], *(row for row in rows[1:] for _ in range(1))]
     log.write_bytes(b"".join(longer))
     run = start("identify --robot scara2 log.csv -o p.parquet", subprocess.DEVNULL, cwd=tmp_path)
-    deadline = time.monotonic() + 30
-    while not list(tmp_path.glob("*.part")) + list(tmp_path.glob(".*")) and (
-        time.monotonic() < deadline
-    ):
-        time.sleep(0.01)
+    wait_for_output(tmp_path)
     run.send_signal(number)
     assert run.wait(30) == -number
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
     run.stdout.close()
     run.stderr.close()
+
+
+def test_a_stop_waits_for_the_end_of_what_must_not_be_torn() -> None:
+    stop, done = Stop(), []
+    with pytest.raises(KeyboardInterrupt), stop.postponed():  # noqa: PT012
+        with stop.postponed():
+            stop.asked(signal.SIGINT, None)
+        done.append("all of the block")
+    assert done
+    with pytest.raises(Terminated):
+        Stop().asked(signal.SIGTERM, None)

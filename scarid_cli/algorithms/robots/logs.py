@@ -23,6 +23,7 @@ Power is the same on both sides, so tau = R' tau_motor.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -51,6 +52,17 @@ class LogFormat:
     ratios: tuple[tuple[float, ...], ...] = ()
     constants: tuple[float, ...] = ()
     zero: tuple[float, ...] = ()
+
+    @property
+    def converts(self) -> bool:
+        """Whether anything but names and a clock is changed."""
+        return bool(self.units or any(self.zero)) or {self.positions, self.torques} != {JOINT}
+
+    def is_of(self, columns: Collection[str]) -> bool:
+        """Whether a table has the columns that are named here, and not yet their new names."""
+        old = set(self.columns.values())
+        new = set(self.columns) - old
+        return bool(new) and old <= {*columns} and new.isdisjoint(columns)
 
     def positions_of_joints(self, q: Array) -> Array:
         """Positions (joints, samples) [rad or m] from those of the log, of joints or motors."""

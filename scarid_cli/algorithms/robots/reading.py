@@ -14,6 +14,7 @@ from scarid_cli.algorithms.robots.controls import control_of
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.files import require_shallow, text_of
 from scarid_cli.algorithms.robots.joints import joint_of
+from scarid_cli.algorithms.robots.lines import UnknownKey, line_of
 from scarid_cli.algorithms.robots.logs import log_of
 from scarid_cli.algorithms.robots.planar import PLANAR_TERMS, PlanarTerm
 from scarid_cli.algorithms.robots.terms import AXIS_TERMS, Term
@@ -34,9 +35,17 @@ def load(name: str) -> Robot:
     """A built-in robot by name, or one described in a TOML file or a URDF."""
     try:
         return _loaded(name)
+    except UnknownKey as error:
+        line = line_of(text_of(_path(name)), error.table, error.key)
+        where = f"{name}, line {line}" if line else name
+        raise UsageFault(f"{where}: not a robot description: {_line(error)}") from None
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
-        reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
-        raise UsageFault(f"{name}: not a robot description: {' '.join(reason.split())}") from None
+        reason = f"missing {error}" if isinstance(error, KeyError) else _line(error)
+        raise UsageFault(f"{name}: not a robot description: {reason}") from None
+
+
+def _line(error: Exception) -> str:
+    return " ".join(str(error).split())
 
 
 def _loaded(name: str) -> Robot:
@@ -49,13 +58,17 @@ def _loaded(name: str) -> Robot:
     if not name.endswith(".toml") and name not in known:
         choice = ", ".join(known)
         raise UsageFault(f"unknown robot {name!r}; choose {choice}, or a .toml or .urdf file")
-    path = ROBOTS / f"{name}.toml" if name in known else Path(name)
+    path = _path(name)
     text = text_of(path)
     require_shallow(text)
     document = tomllib.loads(text)
     if "urdf" in document:
         return _arm(name, document, path.parent)
     return _robot(name, document)
+
+
+def _path(name: str) -> Path:
+    return ROBOTS / f"{name}.toml" if name in built_in() else Path(name)
 
 
 def _arm(name: str, document: dict[str, Any], folder: Path) -> Robot:

@@ -47,6 +47,8 @@ def _require_connected(robot: ElementTree.Element, joints: list[ElementTree.Elem
     if twice:
         raise ValueError(f"link {twice[0]} has two parents")
     links = [link.get("name", "") for link in robot.findall("link")]
+    if any(end not in links for _, *both in ends for end in both):
+        return  # the reader of URDFs names the link that there is not
     carried = {child for _, _, child in ends}
     roots = [name for name in links if name not in carried]
     if links and len(roots) != 1 and ends:

@@ -7,6 +7,8 @@ from collections.abc import Collection
 from math import isfinite
 from typing import Any
 
+from scarid_cli.algorithms.robots.lines import UnknownKey
+
 MOST_JOINTS = 100  # that a robot may have: beyond, its regressor takes minutes and gigabytes
 
 
@@ -71,7 +73,7 @@ def only(what: str, entry: dict[str, Any], known: Collection[str]) -> None:
     """Refuses a table with any other key than the known ones."""
     for key in entry:
         if key not in known:
-            raise ValueError(f"{key} is not a key of {what}; its keys are {', '.join(known)}")
+            raise UnknownKey(what, key, list(known))
 
 
 def distinct(what: str, values: list[Any]) -> None:

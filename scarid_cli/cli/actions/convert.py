@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
+from scarid_cli.algorithms.robots.logs import CURRENT
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.pairs import pair, renamings
 from scarid_cli.cli.texts import Columns, columns_of, read_log
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bags import bag_extension
 from scarid_cli.io.notation import Notation
+from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages.adapt import adapted
 from scarid_cli.stages.side import episodes_joined
+from scarid_cli.stages.wording import is_current
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -50,6 +54,7 @@ def run(
         notation = _notation(separator, header, decimal_comma=decimal_comma)
         table = read_log(job, file, source, notation, beside, named=pairs.values())
         columns = columns_of(job, table, pairs, given, recorder, arm, order)
+        _require_torques(pairs, columns, arm)
     else:
         from scarid_cli.cli.recordings import Choice, read_recording  # not needed otherwise
 
@@ -67,6 +72,19 @@ def _adapted(table: Table, columns: Columns, rate: float | None, robot: Robot | 
     else:
         table = adapted(table, columns.names, columns.units, rate)
     return episodes_joined(table, EPISODE)
+
+
+def _require_torques(pairs: dict[str, str], columns: Columns, robot: Robot | None) -> None:
+    """Refuse to call a current a torque, unless its torque constant is stated."""
+    if robot and robot.log and robot.log.torques == CURRENT:
+        return
+    for new, old in pairs.items():
+        converted = any(fnmatchcase(new, pattern) for pattern, _ in columns.units)
+        if numbered([new], "tau") and not converted and is_current(old):
+            raise UsageFault(
+                f"--map {new}={old}: by its name a current and no torque; state what one ampere "
+                f"gives, as in --unit '{new}=0.05 N m', or call it current{new[3:]}"
+            )
 
 
 def _notation(separator: str, header: str, *, decimal_comma: bool) -> Notation | None:

@@ -29,9 +29,11 @@ from scarid_cli.stages.blind import Choices, Passed
 from scarid_cli.stages.changes import Known, known
 from scarid_cli.stages.documents import validation
 from scarid_cli.stages.estimates import errors_of
-from scarid_cli.stages.parameters import Identified, identified
+from scarid_cli.stages.parameters import Identified, apriori, identified
 from scarid_cli.stages.pooling import Entry, pooled_identifications
 from scarid_cli.stages.reach import Reach
+
+APRIORI = "apriori"  # a word for the values of the description
 
 
 def run(
@@ -50,9 +52,10 @@ def run(
     if treatment.holds and predictions:
         raise UsageFault("--predictions needs every row and cannot be combined with --decimate")
     side = job.side_table(predictions)
-    tables = [job.read(file, "parameters") for file in parameters]
-    stated = robot or stated_robot(tables[0])
+    tables = [job.read(file, "parameters") for file in parameters if file != APRIORI]
+    stated = robot or (stated_robot(tables[0]) if tables else None)
     logs, arm = read_logs(job, files, stated, partial(read, job), skip=given["skip"])
+    tables += [_described(arm) for _ in range(parameters.count(APRIORI))]
     arm, treatment = for_robot(arm, treatment, given)
     choices = Choices(
         align=False, treatment=treatment, bandwidth=given["bandwidth"], all_rows=given["all_rows"]
@@ -80,6 +83,13 @@ def run(
             job.say(f"warning: {text}")
     _tell(job, model, before, result.meta.extra)
     return _status(job, require, result.meta.extra)
+
+
+def _described(arm: Robot) -> Table:
+    """The a priori values of the robot, if its description has any."""
+    if not arm.apriori.any():
+        raise UsageFault(f"--parameters {APRIORI}: the description of {arm.name} has no values")
+    return apriori(arm)
 
 
 def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
