@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from math import inf
 import re
+from math import inf
 from pathlib import Path
 
 import pytest
