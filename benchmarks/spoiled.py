@@ -240,7 +240,13 @@ SPOILED = {
         "scara", lambda log: log, "model", "is this ", "pendulum"
     ),
     "torques in mN m": Spoiled("arm", torques_times(1e3, 1e3), "torques", "in mN m"),
-    "torques in mN m, no limits": Spoiled("scara", torques_times(1e3, 1e3), "torques", "in mN m"),
+    "torques in mN m, no limits": Spoiled("scara", torques_times(1e3, 1e3), "scale", "in mN m"),
+    "currents, 10 and 7 N m/A": Spoiled("arm", torques_times(0.1, 1 / 7), "scale", "currents"),
+    "torques in percent": Spoiled("pendulum", torques_times(12.0, 25.0), "scale", "percent"),
+    "torques three times too large": Spoiled("scara", torques_times(3.0, 3.0), "scale", "currents"),
+    "currents of joint 2 of 6": Spoiled(
+        "ur10", torques_times(1.0, 0.03, 1.0, 1.0, 1.0, 1.0), "scale", "the torque of joint 2"
+    ),
     "standstill three quarters of the time": Spoiled(
         "scara", mostly_still, "standstill", "cut the log"
     ),

@@ -11,8 +11,17 @@ from collections.abc import Iterator
 import numpy as np
 
 from scarid_cli.algorithms.changes.wiring import Wiring
-from scarid_cli.algorithms.checks import clock, fit, mounting, movement, units, values, wiring
-from scarid_cli.algorithms.checks.finding import OK, Finding, failed, several
+from scarid_cli.algorithms.checks import (
+    clock,
+    fit,
+    mounting,
+    movement,
+    scale,
+    units,
+    values,
+    wiring,
+)
+from scarid_cli.algorithms.checks.finding import FAILED, OK, Finding, failed, several
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.motion import Motion
 from scarid_cli.algorithms.checks.search import Explained
@@ -89,6 +98,8 @@ def _explained(log: Log, robot: Robot, motion: Motion) -> Iterator[Finding]:
     yield from wiring.findings(found)
     seconds, error, samples = fit.aligned(robot, motion, found.case)
     yield fit.delay(seconds, error, motion)
-    findings, ratios = fit.model(robot, samples)
-    yield units.torques(log, robot, ratios)
-    yield from findings
+    torques = units.torques(log, robot)
+    yield torques
+    if torques.status != FAILED:
+        yield scale.finding(robot, scale.scale_of(robot, samples))
+    yield from fit.model(robot, samples)

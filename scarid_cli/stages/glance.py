@@ -25,11 +25,11 @@ def of_extremes(q: Array, tau: Array, robot: Robot, period: float) -> list[Findi
     The rows follow each other every `period` [s]. Only stated limits make a failure of positions
     that are far: a joint without limits may turn many times. A low rate may be that of the log.
     """
-    log, none = Log(np.zeros(2), q, tau), np.full(len(q), np.nan)
+    log = Log(np.zeros(2), q, tau)
     positions, _ = units.positions(log, robot, np.zeros(len(q)))
     if not all(isfinite(joint.lower) and isfinite(joint.upper) for joint in robot.joints):
         positions = _as_warning(positions)
-    found = [positions, units.torques(log, robot, none)]
+    found = [positions, units.torques(log, robot)]
     if rate := of_rate(period):
         found.append(_as_warning(rate))
     return [finding for finding in found if finding.status != OK]

@@ -69,10 +69,9 @@ def identify(
     if keep:
         keep(checkpoint)
     findings += reach.findings(robot, table.period)
-    if not estimator.FOLLOWS:
-        told = {finding.name for finding in findings}
-        of_rows = of_model(checkpoint.subsample.rows(), robot)
-        findings += [finding for finding in of_rows if finding.name not in told]
+    in_units = all(finding.status != FAILED for finding in findings)
+    if in_units and not estimator.FOLLOWS:
+        findings += of_model(checkpoint.subsample.rows(), robot)
     result = parameters(
         found,
         robot,

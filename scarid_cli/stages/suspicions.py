@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from scarid_cli.algorithms.checks import mounting, units, wiring
-from scarid_cli.algorithms.checks.finding import FAILED, WARNING, Finding
-from scarid_cli.algorithms.checks.fit import ratios
-from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.algorithms.checks import mounting, scale, wiring
+from scarid_cli.algorithms.checks.finding import OK, Finding
 from scarid_cli.algorithms.checks.model import Samples, enough
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
@@ -26,7 +22,8 @@ def of_model(rows: Rows, robot: Robot) -> list[Finding]:
         return []
     samples = Samples.of_rows(rows, enough(robot))
     driven = np.all(np.ptp(samples.motion[3], axis=1) > 0.0)
-    return [*(_described(samples, robot) if driven else []), *_torques(samples, robot)]
+    unlike = _described(samples, robot) if driven else []
+    return unlike or _scale(samples, robot)
 
 
 def _described(samples: Samples, robot: Robot) -> list[Finding]:
@@ -45,12 +42,6 @@ def _described(samples: Samples, robot: Robot) -> list[Finding]:
     return mounting.findings(mounted.case)
 
 
-def _torques(samples: Samples, robot: Robot) -> list[Finding]:
-    """A warning only: a priori parameters may be those of the robot whose file was copied."""
-    q, dq, ddq, tau, _ = samples.motion
-    found = units.torques(
-        Log(np.zeros(tau.shape[1]), q, tau),
-        robot,
-        ratios(robot, robot.regressor(q, dq, ddq), samples),
-    )
-    return [replace(found, status=WARNING)] if found.status == FAILED else []
+def _scale(samples: Samples, robot: Robot) -> list[Finding]:
+    found = scale.finding(robot, scale.scale_of(robot, samples))
+    return [found] if found.status != OK else []

@@ -85,26 +85,13 @@ def delay(seconds: float, error: float, motion: Motion) -> Finding:
     return warning("delay", figure, advice)
 
 
-def model(robot: Robot, samples: Samples) -> tuple[list[Finding], Array]:
-    """How much of the torques the model explains, and whether the motion determines it.
-
-    Also the `ratios` of the torques.
-    """
+def model(robot: Robot, samples: Samples) -> list[Finding]:
+    """How much of the torques the model explains, and whether the motion determines it."""
     q, dq, ddq, tau, _ = samples.motion
     W = robot.regressor(q, dq, ddq)
     found = solved(W, tau, samples.counts)
     r2 = 1.0 - found.residuals
-    return [_fit(robot, r2), _identifiable(robot, found)], ratios(robot, W, samples)
-
-
-def ratios(robot: Robot, W: Array, samples: Samples) -> Array:
-    """The torques over those of the a priori parameters (joints), nan where these are 0."""
-    expected = robot.torques(W, robot.apriori)
-    counts = samples.counts
-    sizes = (np.sqrt(np.sum(counts * x**2, axis=1)) for x in (samples.motion[3], expected))
-    measured, known = sizes
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where((known > 0.0) & (measured > 0.0), measured / known, np.nan)
+    return [_fit(robot, r2), _identifiable(robot, found)]
 
 
 def _fit(robot: Robot, r2: Array) -> Finding:

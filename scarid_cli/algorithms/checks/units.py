@@ -123,40 +123,32 @@ def _in_other_unit(q: Array, robot: Robot, i: int, speed: float) -> bool:
     return excess > FAR and _excess(factor * q, robot, i, factor * speed) <= 1.0 + 1.0 / FAR
 
 
-def torques(log: Log, robot: Robot, ratios: Array) -> Finding:
-    """Torques against the limits, and against those of the a priori parameters.
-
-    `ratios` (joints) are the torques over those that the a priori parameters predict, nan where
-    they predict none.
-    """
+def torques(log: Log, robot: Robot) -> Finding:
+    """Torques against the limits; checks.scale compares them with those that the masses need."""
     reach = np.nanmax(np.abs(log.tau), axis=1)
     limits = np.array([joint.torque_limit or np.inf for joint in robot.joints])
     excess = float(np.max(np.where(np.isfinite(limits), reach / limits, 0.0)))
-    known = ratios[np.isfinite(ratios)]
-    most, least = float(known.max(initial=0.0)), float(known.min(initial=np.inf))
     figure = f"up to {', '.join(f'{x:.3g}' for x in reach)} {_torque_units(robot)}"
-    if excess > THOUSAND or THOUSAND < least < np.inf:
-        figure += f", {max(excess, min(least, most)):.2g} times what {robot.short_name} has"
-        advice = _prefixed("m", robot)
+    if excess > THOUSAND:
+        figure += f", {excess:.2g} times what {robot.short_name} has"
+        advice = prefixed("m", robot)
         large = np.flatnonzero(reach / limits > THOUSAND).tolist()
         if 0 < len(large) < log.joints:
             single = " ".join(f"--unit 'tau{i + 1}=mN m'" for i in large)
             advice += f", or `{single}` if all others are in N m"
         return failed("torques", figure, advice)
-    if 0.0 < most < 1.0 / THOUSAND:
-        figure += f", {most:.2g} of what {robot.short_name} needs"
-        return failed("torques", figure, _prefixed("k", robot))
     used = float(np.max(reach / limits))
     if np.isfinite(limits).all() and 0.0 < used < IDLE:
         figure += f", at most {used:.2g} of the limits of {robot.short_name}"
-        return failed("torques", figure, _prefixed("k", robot))
+        return failed("torques", figure, prefixed("k", robot))
     if excess > SPARE:
         advice = "are these torques of the joints, in N m, of this robot?"
         return warning("torques", f"{figure}, {excess:.3g} times the limit", advice)
     return ok("torques", figure)
 
 
-def _prefixed(prefix: str, robot: Robot) -> str:
+def prefixed(prefix: str, robot: Robot) -> str:
+    """What to type for torques in thousandths (m) or thousands (k) of the robot's unit."""
     unit = prefix + robot.joints[0].torque_unit
     text = f"torques seem to be in {unit}: `scarid convert --unit 'tau*={unit}'`"
     motors = ', unless they are those of the motors (torques = "motor" in [log] of the TOML file)'

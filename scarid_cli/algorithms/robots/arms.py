@@ -59,7 +59,9 @@ KEYS = (
     "control",
     "log",
     "imperfections",
+    "masses",
 )
+STATED, PLACEHOLDER = "stated", "placeholder"  # what the masses and inertias of the URDF are
 
 
 def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
@@ -78,7 +80,8 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
     entries = entries or [{} for _ in found]
     if len(entries) != len(found):
         raise ValueError(_wrong_number(len(entries), len(found), body))
-    standard = body.standard
+    stated = values.choice("masses", document.get("masses", STATED), (STATED, PLACEHOLDER))
+    standard = body.standard if stated == STATED else [0.0] * len(body.standard)
     joints, parameters = [], []
     for i, (joint, entry) in enumerate(zip(found, entries, strict=True), start=1):
         own = {key: value for key, value in entry.items() if key not in ("name", "terms")}

@@ -1,0 +1,144 @@
+"""Whether the torques have the size that the described masses need: currents, or another unit.
+
+The torque of each joint is fitted by one factor times the torque of the masses and inertias that
+the description states, beside friction, an offset, the inertia of the motor (where the description
+has links of its own) and the derivative of the torque. In the unit of the description the factor
+is 1. Masses of a CAD model may be wrong, and a tool that it lacks makes the factors of the last
+joints larger: only what neither explains is called another unit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok
+from scarid_cli.algorithms.checks.model import DEVIATIONS, Samples, solved
+from scarid_cli.algorithms.checks.units import prefixed
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.planar import PlanarTerm
+from scarid_cli.algorithms.robots.terms import Mass, StandardTerm
+from scarid_cli.arrays import Array, Marks
+from scarid_cli.interval import plus_minus
+
+MASSES = (StandardTerm, PlanarTerm, Mass)
+WRONG = 2.0  # a factor that the masses of a CAD model, or a tool, may be off by
+KNOWN = 0.1  # of a factor: its standard error, from which on nothing is said of it
+
+ALIKE = 1e6  # by which the other columns may inflate the variance of a factor: beyond is rounding
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The torques over those that the masses need (joints), the errors, and what these need.
+
+    Factors and errors are nan where the masses need no torque; `needed` (joints) is its root mean
+    square.
+    """
+
+    factors: Array
+    errors: Array
+    needed: Array
+
+    @property
+    def known(self) -> list[int]:
+        """The joints (from 0) whose factors are known well enough to be told."""
+        return np.flatnonzero(self.errors < KNOWN * self.factors).tolist()
+
+    @property
+    def low(self) -> list[int]:
+        """The joints (from 0) whose torques are smaller than any mass that is wrong makes them."""
+        most = self.factors + DEVIATIONS * self.errors
+        return [j for j in self.known if most[j] < 1.0 / WRONG]
+
+    @property
+    def high(self) -> list[int]:
+        """The joints (from 0) whose torques are larger than a tool at the tip makes them.
+
+        It adds most to the joints near it, so a joint is compared with those behind it; and it does
+        not double the torque of the joint that carries most.
+        """
+        spread = DEVIATIONS * self.errors
+        least, most = self.factors - spread, np.nan_to_num(self.factors + spread, nan=np.inf)
+        above = [j for j in self.known if least[j] > WRONG]
+        if above == self.known and int(np.argmax(self.needed)) in above:
+            return above
+        last = len(most) - 1
+        return [j for j in above if j < last and least[j] > WRONG * max(1.0, most[j + 1 :].max())]
+
+
+def scale_of(robot: Robot, samples: Samples) -> Scale:
+    """The factors of a robot's torques in these samples."""
+    q, dq, ddq, tau, slope = samples.motion
+    needed = _needed(robot, robot.regressor(q, dq, ddq))
+    beside = [dq, np.sign(dq), np.ones_like(q), slope, *([ddq] if robot.body else [])]
+    found = [
+        _factor(needed[j], [x[j] for x in beside], tau[j], samples.counts[j])
+        for j in range(len(tau))
+    ]
+    sizes = np.sqrt(np.mean(needed**2, axis=1))
+    factors, errors = np.transpose(found)
+    return Scale(factors, errors, sizes)
+
+
+def _needed(robot: Robot, W: Array) -> Array:
+    """The torques (joints, samples) of the described masses and inertias."""
+    masses = np.array([isinstance(p.term, MASSES) for p in robot.parameters])
+    return robot.torques(W, np.where(masses, robot.apriori, 0.0))
+
+
+def _factor(needed: Array, beside: list[Array], tau: Array, counts: Marks) -> tuple[float, float]:
+    """The factor and its standard error; nan where nothing tells it."""
+    if not needed[counts].any():
+        return np.nan, np.nan
+    W = np.column_stack([needed, *beside])[:, None, :]
+    found = solved(W, tau[None], counts[None])
+    if found.inverse[0, 0] * np.sum(found.A[:, 0] ** 2) > ALIKE:
+        return np.nan, np.nan
+    return float(found.theta[0]), float(found.scatter(1)[0])
+
+
+def finding(robot: Robot, scale: Scale) -> Finding:
+    """What the factors say."""
+    if not scale.known:
+        why = "the motion does not show it" if robot.apriori.any() else "no masses are described"
+        return ok("scale", f"not known: {why}")
+    wrong = scale.low or scale.high
+    if not wrong:
+        figure = f"torques {_listed(scale, scale.known)} of what the described masses need"
+        return ok("scale", figure)
+    every = len(wrong) == len(robot.joints)
+    whose = "the torques are" if every else f"the torque of {joints_text(j + 1 for j in wrong)} is"
+    figure = f"{whose} {_listed(scale, wrong)} of what the described masses need"
+    if every and (prefix := _prefix(scale)):
+        return failed("scale", figure, prefixed(prefix, robot))
+    return failed("scale", figure, _advice(robot, wrong, every=every))
+
+
+def _prefix(scale: Scale) -> str:
+    """The prefix of the unit, m or k, if the factors are near to its factor of a thousand."""
+    for prefix, factor in (("m", 1000.0), ("k", 0.001)):
+        if np.all(np.abs(np.log(scale.factors[scale.known] / factor)) < np.log(WRONG)):
+            return prefix
+    return ""
+
+
+def _listed(scale: Scale, joints: list[int]) -> str:
+    """`0.098 +- 0.004`, for each of these joints (from 0)."""
+    return ", ".join(
+        f"{scale.factors[j]:.3g} {plus_minus(scale.errors[j], 1)}"
+        + (f" (joint {j + 1})" if len(joints) > 1 else "")
+        for j in joints
+    )
+
+
+def _advice(robot: Robot, wrong: list[int], *, every: bool) -> str:
+    """What to state: the torque that one unit of the log is, from a data sheet."""
+    columns = "'tau*" if every else f"'tau{wrong[0] + 1}"
+    return (
+        "currents, percent or another unit? State the torque of one unit by the data sheet: "
+        f"`scarid convert --unit {columns}=X {robot.joints[wrong[0]].torque_unit}'`, or "
+        "torque_constant in [log] of the TOML file; if the masses are no real ones, masses = "
+        '"placeholder" in it'
+    )
