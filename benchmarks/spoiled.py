@@ -186,6 +186,40 @@ def deadened(joint: int, share: float) -> Callable[[Log], Log]:
     return spoil
 
 
+def wrapped(joint: int, modulus: float, unit: float = 1.0) -> Callable[[Log], Log]:
+    """An angle in this unit [per rad] that wraps between where it begins and its highest value."""
+
+    def spoil(log: Log) -> Log:
+        q = log.q.copy()
+        x = unit * q[joint - 1]
+        edge = 0.5 * (x[0] + x.max())
+        q[joint - 1] = (x - edge) % modulus + edge - modulus
+        return replace(log, q=q)
+
+    return spoil
+
+
+def leapt(name: str, joint: int, size: float) -> Callable[[Log], Log]:
+    """Three single readings of a column, q or tau, that are so far off."""
+
+    def spoil(log: Log) -> Log:
+        x = getattr(log, name).copy()
+        x[joint - 1, [401, 1203, 2405]] += size
+        return replace(log, **{name: x})
+
+    return spoil
+
+
+def with_velocities(*factors: float, order: tuple[int, ...] = ()) -> Callable[[Log], Log]:
+    """Measured velocities, times factors, in this order of the joints (from 0)."""
+
+    def spoil(log: Log) -> Log:
+        dq = np.gradient(log.q, log.t, axis=1) * np.array(factors)[:, None]
+        return replace(log, dq=dq[list(order)] if order else dq)
+
+    return spoil
+
+
 SPOILED = {
     "degrees": Spoiled("scara", degrees, "positions", "degrees"),
     "degrees, six joints": Spoiled("ur10", degrees, "positions", "degrees"),
@@ -246,6 +280,26 @@ SPOILED = {
     "torques three times too large": Spoiled("scara", torques_times(3.0, 3.0), "scale", "currents"),
     "currents of joint 2 of 6": Spoiled(
         "ur10", torques_times(1.0, 0.03, 1.0, 1.0, 1.0, 1.0), "scale", "the torque of joint 2"
+    ),
+    "angle that wraps": Spoiled("scara", wrapped(1, 2 * np.pi), "wraps", "q1 leaps by 2 pi"),
+    "angle in degrees that wraps": Spoiled(
+        "arm", wrapped(2, 360.0, 180 / np.pi), "wraps", "q2 leaps by 360"
+    ),
+    "counter of 16 bits that wraps": Spoiled(
+        "ur10", wrapped(3, 65536.0, 1e4), "wraps", "q3 leaps by 65536"
+    ),
+    "three glitches of a position": Spoiled("scara", leapt("q", 2, 0.5), "glitches", "q2 leaps"),
+    "three glitches of a torque": Spoiled("ur10", leapt("tau", 2, 900.0), "glitches", "(402, 1204"),
+    "clock at half its rate": Spoiled("ur10", with_velocities(*[2.0] * 6), "clock", "--unit 't=0"),
+    "velocities in deg/s": Spoiled(
+        "scara", with_velocities(57.3, 57.3), "velocities", "velocities in deg/s"
+    ),
+    "velocities in rpm": Spoiled("arm", with_velocities(9.55, 9.55), "velocities", "in rpm"),
+    "velocity of joint 2 reversed": Spoiled(
+        "scara", with_velocities(1.0, -1.0), "velocities", "joint 2 has the other sign"
+    ),
+    "velocities exchanged": Spoiled(
+        "scara", with_velocities(1.0, 1.0, order=(1, 0)), "velocities", "those of other joints"
     ),
     "standstill three quarters of the time": Spoiled(
         "scara", mostly_still, "standstill", "cut the log"

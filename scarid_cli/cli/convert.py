@@ -48,6 +48,17 @@ from scarid_cli.cli.headings import heading
     help="The robot of the log: joints in the order of its axes, and what its description says of "
     "its logs (columns, units, motors).",
 )
+@click.option(
+    "--unwrap",
+    is_flag=True,
+    help="Add the turns that positions and torques lack: of angles that wrap, and of counters.",
+)
+@click.option(
+    "--despike",
+    is_flag=True,
+    help="Put nan for single positions and torques that leap away and return; `scarid resample "
+    "--missing drop` interpolates them.",
+)
 @heading("The file")
 @click.option(
     "--beside",
@@ -108,6 +119,8 @@ def command() -> None:
     t_ms) are found from its first lines and reported. Known recorders are recognised by their
     columns (--from), and other names by their words: arm_2_joint_position, effort_0, Time (s). What
     is ambiguous keeps its name, or is refused. Dates become seconds since the first one.
+
+    --unwrap and --despike hold the log in memory. What they did is reported, with the rows.
 
     Recordings of ROS (MCAP, rosbag2 and ROS 1; extra `logs`) are read from topics of the types
     JointState, JointTrajectoryControllerState and JointTrajectory. Joints are matched by name.

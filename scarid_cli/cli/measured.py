@@ -56,7 +56,7 @@ def tell_of(job: Job, found: Prepared, logs: Sequence[Table], added: list[str]) 
             )
     if not (smoothed := found.smoothed):
         return
-    for finding in smoothed.findings:
+    for finding in (one for one in smoothed.findings if one not in smoothed.failed):
         job.say(f"warning: {finding.text}")
     job.left_out += smoothed.left_out
     job.say(f"velocities and accelerations are estimated from the positions: {smoothed.text}")

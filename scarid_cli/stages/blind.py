@@ -163,6 +163,8 @@ def estimated(
     **further: Any,
 ) -> Table:
     """The table of parameters of a prepared motion; `further` is as for `stages.identify`."""
+    if found.smoothed:  # what makes the result wrong enters the verdict
+        further.setdefault("findings", []).extend(found.smoothed.failed)
     solver = found.chosen.method(**settings)
     start = np.zeros(len(robot.names)) if initial is None else initial
     return identify(found.motion, robot, solver, start, treatment=found.chosen.treatment, **further)

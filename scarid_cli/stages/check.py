@@ -14,11 +14,13 @@ from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.checks import (
     clock,
     fit,
+    leaps,
     mounting,
     movement,
     scale,
     units,
     values,
+    velocities,
     wiring,
 )
 from scarid_cli.algorithms.checks.finding import FAILED, OK, Finding, failed, several
@@ -44,6 +46,12 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
     time = clock.Clock.of(log.t)
     yield from clock.clock(time, log.resampling())
     yield values.missing(log)
+    found = leaps.found_in(log)
+    yield leaps.wraps(found)
+    yield leaps.glitches(found, log.resampling("--missing", "drop"))
+    log = leaps.mended(log, found)
+    if log.dq is not None:
+        yield velocities.finding(velocities.relation(log, time.period), time.period)
     yield clock.held(log)
     yield clock.slower(log)
     empty = [name for name, x in zip(log.names, log.signals, strict=True) if np.isnan(x).all()]

@@ -9,7 +9,7 @@ from math import isfinite
 
 import numpy as np
 
-from scarid_cli.algorithms.checks import clock, units, values
+from scarid_cli.algorithms.checks import clock, leaps, units, values, velocities
 from scarid_cli.algorithms.checks.finding import FAILED, OK, WARNING, Finding
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.description import Robot
@@ -60,4 +60,8 @@ def of_measurement(table: Table, robot: Robot) -> list[Finding]:
     """What is not in order in the values of a measurement in memory."""
     log = log_of(table, len(robot.joints))
     found = [clock.held(log), values.saturation(log.tau)]
+    if log.dq is not None:
+        found.append(velocities.finding(velocities.relation(log, table.period), table.period))
+    if leapt := leaps.found_in(log):
+        found += [leaps.wraps(leapt), leaps.glitches(leapt, log.resampling("--missing", "drop"))]
     return [finding for finding in found if finding.status != OK]

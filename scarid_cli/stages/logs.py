@@ -15,8 +15,22 @@ def log_of(table: Table, joints: int) -> Log:
     names = ["t", *of_joints(joints, "q{i}", "tau{i}")]
     others = [name for name in measured(table.schema) if name not in names]
     names += others
+    velocities = _velocities(table, joints)
+    names += velocities
     parts = [matrix(batch, names) for batch in table.batches]
     whole = np.concatenate(parts, axis=1) if parts else np.empty((len(names), 0))
     whole = np.where(np.isfinite(whole), whole, np.nan)
-    t, q, tau, rest = np.split(whole, [1, joints + 1, 2 * joints + 1])
-    return Log(t[0], q, tau, rest if others else None)
+    ends = np.cumsum([1, joints, joints, len(others)])
+    t, q, tau, rest, dq = np.split(whole, ends)
+    return Log(t[0], q, tau, rest if others else None, dq if velocities else None)
+
+
+def _velocities(table: Table, joints: int) -> list[str]:
+    """The columns of measured velocities, if every joint has one; none of a motion."""
+    if set(of_joints(joints, "ddq{i}")) <= set(table.columns):
+        return []
+    for name in ("dq{i}_measured", "dq{i}"):
+        columns = of_joints(joints, name)
+        if set(columns) <= set(table.columns):
+            return columns
+    return []

@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from scarid_cli.algorithms.checks.finding import Finding
+from scarid_cli.algorithms.checks.finding import FAILED, Finding
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import TWO_SIDED
 from scarid_cli.errors import TooShort
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 Step = Callable[[], object]
 Progress = Callable[[], AbstractContextManager[Step]]
+
+SPOILING = ("wraps", "glitches", "clock")  # checks without which no derivative is one
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,11 @@ class Smoothed:
     noise: float
     left_out: list[TooShort]
     findings: list[Finding]
+
+    @property
+    def failed(self) -> list[Finding]:
+        """Those of the findings that make any result wrong."""
+        return [one for one in self.findings if one.name in SPOILING and one.status == FAILED]
 
 
 def smoothed_motion(

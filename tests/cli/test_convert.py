@@ -236,3 +236,23 @@ def test_the_history_has_the_digest_of_an_archive(
     np.savez(path, **arrays) if extension == "npz" else scipy.io.savemat(path, arrays)
     result = shell(f"scarid convert {path} -o log.parquet && scarid info log.parquet")
     assert hashlib.sha256(path.read_bytes()).hexdigest() in result.out
+
+
+def test_wraps_and_glitches_are_taken_out_and_told(shell: Shell, tmp_path: Path) -> None:
+    t = np.arange(400) / 100.0
+    q, tau = 5.0 * np.sin(1.5 * t), 3.0 * np.cos(t)
+    wrapped, spiked = (q + np.pi) % (2.0 * np.pi) - np.pi, tau.copy()
+    spiked[[50, 300]] = 99.0
+    np.savetxt(tmp_path / "log.csv", np.column_stack((t, wrapped, spiked)), fmt="%.17g",
+               delimiter=",", header="t,angle,load", comments="")  # fmt: skip
+    named = "scarid convert --map q1=angle,tau1=load log.csv"
+    done = shell(f"{named} --unwrap --despike")
+    first = np.flatnonzero(np.abs(np.diff(wrapped)) > np.pi)[0] + 2
+    assert f"angle: unwrapped {np.sum(np.abs(np.diff(wrapped)) > np.pi)} leaps of" in done.err
+    assert f"of 6.28319, the first in row {first}" in done.err
+    assert "load: took out the glitches in rows 51, 301" in done.err
+    found = np.genfromtxt(done.out.splitlines(), delimiter=",", names=True)
+    np.testing.assert_allclose(found["q1"], q, atol=1e-9)
+    assert np.flatnonzero(np.isnan(found["tau1"])).tolist() == [50, 300]
+    np.testing.assert_array_equal(np.delete(found["tau1"], [50, 300]), np.delete(tau, [50, 300]))
+    assert shell(named).err.count("leaps") == 0

@@ -19,13 +19,14 @@ class Log:
     """Time t (rows) [s], positions q and torques tau (joints, rows) [rad or m, N m or N].
 
     Values that are missing are nan. `others` (columns, rows) are further values that sensors fill,
-    if there are any.
+    if there are any. `dq` (joints, rows) are the measured velocities, if every joint has one.
     """
 
     t: Array
     q: Array
     tau: Array
     others: Array | None = None
+    dq: Array | None = None
 
     @property
     def rows(self) -> int:
@@ -67,7 +68,8 @@ class Log:
     def part(self, rows: Numbers | Marks) -> Log:
         """These rows only (indices, or whether each row is kept)."""
         others = None if self.others is None else self.others[:, rows]
-        return Log(self.t[rows], self.q[:, rows], self.tau[:, rows], others)
+        dq = None if self.dq is None else self.dq[:, rows]
+        return Log(self.t[rows], self.q[:, rows], self.tau[:, rows], others, dq)
 
     def in_order(self) -> Log:
         """The log with its rows sorted by time, those without one last, if they are in no order.

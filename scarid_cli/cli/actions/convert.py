@@ -41,6 +41,8 @@ def run(
     separator: str,
     decimal_comma: bool,
     header: str,
+    unwrap: bool,
+    despike: bool,
 ) -> None:
     """Write the table with its new names, units and clock."""
     _require_valid(separator, decimal_comma=decimal_comma)
@@ -61,6 +63,11 @@ def run(
         choice = Choice(topic, torque_topic, join, order)
         table = read_recording(job, file, source, extension, choice, arm)
         columns = Columns(pairs, given)
+    if unwrap or despike:
+        from scarid_cli.stages.leaps import without_leaps
+
+        read = _signals(table, columns, arm)
+        table = without_leaps(table, read, unwrap=unwrap, despike=despike, report=job.notes)
     job.write(job.recorded(job.within(_adapted(table, columns, rate, arm))))
 
 
@@ -85,6 +92,14 @@ def _require_torques(pairs: dict[str, str], columns: Columns, robot: Robot | Non
                 f"--map {new}={old}: by its name a current and no torque; state what one ampere "
                 f"gives, as in --unit '{new}=0.05 N m', or call it current{new[3:]}"
             )
+
+
+def _signals(table: Table, columns: Columns, robot: Robot | None) -> list[str]:
+    """The columns of the log that hold positions and torques."""
+    described = robot.log.columns if robot and robot.log else {}
+    names = {**dict(zip(table.columns, table.columns, strict=True)), **described, **columns.names}
+    found = (old for new, old in names.items() if numbered([new], "q", "tau"))
+    return [old for old in dict.fromkeys(found) if old in table.columns]
 
 
 def _notation(separator: str, header: str, *, decimal_comma: bool) -> Notation | None:
