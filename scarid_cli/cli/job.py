@@ -19,7 +19,7 @@ from scarid_cli.cli.chain import Place
 from scarid_cli.cli.command_line import command_line, inputs
 from scarid_cli.cli.remarks import Remarks
 from scarid_cli.cli.remedies import remedies, require_our_names
-from scarid_cli.cli.robots import another, misfit, require_as_many
+from scarid_cli.cli.robots import another, misfit, require_as_many, require_torques
 from scarid_cli.cli.selecting import selection_of
 from scarid_cli.cli.terminal import is_terminal
 from scarid_cli.errors import TooShort, UsageFault
@@ -181,6 +181,8 @@ class Job:
         require_our_names(path, opened)
         table = conforming(self.within(opened), kind)
         arm = self.robot(robot, table) if isinstance(robot, str | None) else robot
+        if torques:
+            require_torques(table)
         fields = [f.name for f in schemas.load(kind).fields if f.required and f.per_joint]
         fields += ["tau{i}"] if torques else []
         columns = schemas.of_joints(len(arm.joints), *fields)

@@ -37,6 +37,23 @@ def require_as_many(assumed: Robot, tables: Iterable[Table]) -> None:
             )
 
 
+def require_torques(table: Table) -> None:
+    """Refuse a log of positions without any torque or current."""
+    if numbered(table.columns, "q") and not numbered(table.columns, "tau"):
+        currents = numbered(table.columns, "current")
+        raise bad_data(
+            table.name,
+            "currents, and no torques" if currents else "no torques",
+            expected="tau1, tau2, ... beside the positions",
+            remedy='a TOML file with torque_constant and torques = "current" in [log] makes them '
+            "torques (docs/robots.md)"
+            if currents
+            else "log the joints' torques or the motors' currents: every estimator needs them "
+            "(didim does without velocities and accelerations, not without torques)",
+            column="tau1",
+        )
+
+
 def _file(name: str) -> str:
     return name.rpartition("/")[2]
 

@@ -12,6 +12,7 @@ from scarid_cli.io.foreign import ARCHIVES, TranslatedCsv, read_archive
 from scarid_cli.io.notation import Notation, notation_of
 from scarid_cli.io.table import Table
 from scarid_cli.stages.recorders import expanded, recognised, units_in_names
+from scarid_cli.stages.seconds import clock_columns, with_one_clock
 from scarid_cli.stages.side import flattened, side_by_side
 from scarid_cli.stages.wording import Unclear, in_short, in_words
 
@@ -37,7 +38,7 @@ def read_log(
 
     `named` are the columns that are renamed.
     """
-    table = _read(job, file, source, given, named)
+    table = _one_clock(job, _read(job, file, source, given, named), named)
     for other in beside:
         apart = replace(given, header=()) if given else None
         table = side_by_side(table, _read(job, other, job.opened(other), apart, named))
@@ -61,6 +62,15 @@ def _read(
     if not (given and given.separator):
         job.notes.append(f"{source.name}: read with {notation.text}")
     return job.read_source(TranslatedCsv(source, notation))
+
+
+def _one_clock(job: Job, table: Table, named: Collection[str]) -> Table:
+    """The table with one clock, where seconds and their fraction are in columns of their own."""
+    columns = None if "t" in table.columns else clock_columns(table.columns)
+    if columns is None or not {*columns[:2]}.isdisjoint(named):
+        return table
+    job.notes.append(f"the time is that of {columns[0]} and {columns[1]}, from 0")
+    return with_one_clock(table, columns)
 
 
 def columns_of(

@@ -12,6 +12,7 @@ from pathlib import Path
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.csvio import NUMERIC
+from scarid_cli.io.echoed import joint_state_names
 
 SPACE = " "  # any white space between values
 SEPARATORS = (",", ";", "\t", "|", SPACE)
@@ -63,6 +64,8 @@ def notation_of(source: ByteSource, given: Notation | None, *, by_name: bool) ->
     if given.header or not lines:
         return Notation(separator, comma, given.header)
     fields = split(lines[0], separator)
+    if separator == "," and (echoed := joint_state_names(fields)):
+        return Notation(separator, comma, echoed)
     if not all(is_number(field, comma=comma) for field in fields):
         return Notation(separator, comma)
     names = split(comments[-1].lstrip("#% "), separator) if comments else []

@@ -45,7 +45,8 @@ def adapted(
     unit of these columns in the log. A `rate` [Hz] adds a time column to a table without one. Dates
     become seconds since the first one.
     """
-    table = since_start(table, names.get("t", "t"))
+    if not any(fnmatchcase("t", pattern) for pattern, _ in units):
+        table = since_start(table, names.get("t", "t"))
     fields = _renamed(table, names)
     new = [field.name for field in fields]
     scales = _scales(new, units)

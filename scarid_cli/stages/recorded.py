@@ -16,6 +16,7 @@ from scarid_cli.io.table import Metadata, Table, doubles, number
 
 LINEAR, HOLD = "linear", "hold"
 READ_ROWS = 1 << 13
+RUN = 20  # periods by which the time of a new run goes back at least, and of the gap before it
 LATE = 5.0  # periods of the torques' topic after which a row that waits for a value is reported
 
 
@@ -45,12 +46,18 @@ def recorded(name: str, main: Series, other: Series | None, join: str) -> tuple[
     Torques are joined to the times of the positions by linear interpolation, or by holding the
     last value (`join`); rows that have none on one side are left out.
     """
+    notes: list[str] = []
+    main, other = _stamped(main, notes), other and _stamped(other, notes)
     stamps = main.has_stamps and (other is None or other.has_stamps)
     columns = {k: x for k, x in main.columns.items() if other is None or k != TAU}
     rows = _rows(main.stamped if stamps else main.received, columns, main)
     extra: dict[str, Any] = {"topic": main.topic, "joints": list(main.joints)}
     extra["clock"] = "time stamps" if stamps else "receive times, because there are no time stamps"
-    notes = [] if stamps else [f"the clock is that of the recorder: {main.topic} has no stamps"]
+    if not stamps:
+        without = main if not main.has_stamps or other is None else other
+        notes.append(f"the clock is that of the recorder: {_lacking(without)}")
+    if other is None:
+        notes += _without_torques(main)
     if other is not None:
         torques = {TAU: other.columns[TAU]} if TAU in other.columns else {}
         second = _rows(other.stamped if stamps else other.received, torques, other)
@@ -58,6 +65,46 @@ def recorded(name: str, main: Series, other: Series | None, join: str) -> tuple[
         extra |= {"torque_topic": other.topic, **facts}
         notes = [*notes, *second.notes, report]
     return _table(name, rows, extra), [*rows.notes, *notes]
+
+
+def _stamped(source: Series, notes: list[str]) -> Series:
+    """The messages that have stamps, if these are most: simulators publish before their clock."""
+    lacking = source.stamped <= 0
+    count = int(np.count_nonzero(lacking))
+    if not count or 2 * count >= len(lacking):
+        return source
+    notes.append(
+        f"{count} message{'s' if count > 1 else ''} of {source.topic} left out: their stamps are 0 "
+        "(the clock had not begun)"
+    )
+    columns = {name: x[~lacking] for name, x in source.columns.items()}
+    return replace(
+        source,
+        stamped=source.stamped[~lacking],
+        received=source.received[~lacking],
+        columns=columns,
+    )
+
+
+def _lacking(source: Series) -> str:
+    found = int(np.count_nonzero(source.stamped > 0))
+    return (
+        f"only {found} of {len(source.stamped)} messages of {source.topic} have stamps"
+        if found
+        else f"{source.topic} has no stamps"
+    )
+
+
+def _without_torques(source: Series) -> list[str]:
+    """What is said of messages without efforts, or with nan for all of them."""
+    efforts = source.columns.get(TAU)
+    if efforts is not None and not np.isnan(efforts).all():
+        return []
+    what = "have no efforts" if efforts is None else "have nan for every effort"
+    return [
+        f"warning: the messages of {source.topic} {what}: the log has positions only, and no "
+        "parameters can be identified from it (--torque-topic NAME joins torques of another topic)"
+    ]
 
 
 def _rows(times: Numbers, columns: dict[str, Array], source: Series) -> Rows:
@@ -80,11 +127,41 @@ def _rows(times: Numbers, columns: dict[str, Array], source: Series) -> Rows:
             complete &= ~lacks
     columns = {name: x[complete] for name, x in columns.items() if not np.isnan(x).all()}
     rows = Rows(times[complete], columns, notes)
+    rows, runs = _one_after_the_other(rows)
+    if runs:
+        notes.append(
+            f"warning: the times of {source.topic} go back {runs} time{'s' if runs > 1 else ''}: "
+            f"{runs + 1} runs, put one after the other with gaps, where `scarid resample` splits"
+        )
     late = int(np.count_nonzero(np.diff(rows.times) < 0))
     if late:
         notes.append(f"{late} messages of {source.topic} put back into the order of their times")
         rows = rows.at(np.argsort(rows.times, kind="stable"))
     return rows
+
+
+def _one_after_the_other(rows: Rows) -> tuple[Rows, int]:
+    """Runs whose clock began anew, one after the other; and how often the time went back.
+
+    A message that is late comes before the one before it by a few periods; a new run by more.
+    """
+    steps = np.diff(rows.times)
+    forward = steps[steps > 0]
+    period = int(np.median(forward)) if len(forward) else 0
+    back = np.flatnonzero(steps < -RUN * period) if period else np.empty(0, np.int64)
+    latest = np.maximum.accumulate(rows.times)
+    starts = [at + 1 for at in back.tolist() if not _caught_up(rows.times, at, latest[at])]
+    if not starts:
+        return rows, 0
+    times = rows.times.copy()
+    for start in starts:
+        times[start:] += times[start - 1] + RUN * period - times[start]
+    return replace(rows, times=times), len(starts)
+
+
+def _caught_up(times: Numbers, at: int, latest: int) -> bool:
+    """Whether the time is beyond the `latest` one before row `at` again after a few rows."""
+    return bool(np.any(times[at + 1 : at + 1 + RUN] > latest))
 
 
 def _joined(name: str, rows: Rows, second: Rows, join: str) -> tuple[Rows, dict[str, Any], str]:
