@@ -1,4 +1,4 @@
-"""Messages as `ros2 topic echo --csv` prints them: no header, and arrays one value after another."""
+"""Messages as `ros2 topic echo --csv` prints them: no header, arrays value after value."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ def _advice(robot: Robot, wrong: list[int], *, every: bool) -> str:
     """What to state: the torque that one unit of the log is, from a data sheet."""
     columns = "'tau*" if every else f"'tau{wrong[0] + 1}"
     return (
-        "currents, percent or another unit? State the torque of one unit by the data sheet: "
+        "currents, percent or another unit (or a wrong clock)? State the torque of one unit: "
         f"`scarid convert --unit {columns}=X {robot.joints[wrong[0]].torque_unit}'`, or "
         "torque_constant in [log] of the TOML file; if the masses are no real ones, masses = "
         '"placeholder" in it'

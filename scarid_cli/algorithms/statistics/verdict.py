@@ -101,7 +101,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     obstacles = [*_idle(joints, robot), *_undetermined(evidence)]
     bias = [*evidence.failed, *_biased(evidence)]
     if obstacles:
-        return Verdict(NOT_IDENTIFIABLE, (*evidence.failed, *obstacles, summary), bool(bias))
+        return Verdict(NOT_IDENTIFIABLE, (*obstacles, *evidence.failed, summary), bool(bias))
     wrong = [
         *bias,
         *_forgotten(evidence.diagnostics),
