@@ -28,6 +28,8 @@ def since_start(table: Table, clock: str) -> Table:
     if clock not in table.columns or not _may_have_dates(table.schema.field(clock).type):
         return table
     at, batches = table.columns.index(clock), table.batches
+    if pa.types.is_float64(table.schema[at].type):
+        return replace(table, batches=_numbers(table, at))
     first = next(batches, None)
     table = replace(table, batches=chain([first] if first else [], batches))
     kind = _kind(first.column(at)) if first and first.num_rows else None
@@ -51,6 +53,17 @@ def _epoch_unit(column: pa.Array) -> float | None:
         return None
     found = [unit for unit in (1e-3, 1e-6, NANOSECOND) if EPOCH[0] < unit * first < EPOCH[1]]
     return found[0] if found else None
+
+
+def _numbers(table: Table, at: int) -> Iterator[pa.RecordBatch]:
+    """The rows, as they are or as times since the start, which the first one decides."""
+    batches = iter(table.batches)
+    first = next((batch for batch in batches if batch.num_rows), None)
+    if first is None:
+        return
+    rows = replace(table, batches=chain([first], batches))
+    unit = _epoch_unit(first.column(at))
+    yield from _whole_rows(rows, rows.schema, at, unit) if unit else rows.batches
 
 
 def _since_epoch(table: Table, at: int, unit: float) -> Table:
