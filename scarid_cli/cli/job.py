@@ -234,6 +234,8 @@ class Job:
                 "SCARID_ROBOT)"
             )
         robot = load(self.described(found or DEFAULT_ROBOT))
+        doubts = robot.body.doubts if robot.body else []
+        self.notes += [f"warning: {robot.name}, {doubt}" for doubt in doubts]
         if remark := another(robot, tables):
             self.notes.append(remark)
         return robot

@@ -123,6 +123,8 @@ def _summary(robot: Robot) -> Iterator[str]:
 
 def _links(body: Body) -> Iterator[str]:
     """The joints that are locked, and the shapes of the links."""
+    for doubt in body.doubts:
+        yield f"  warning: {doubt}"
     for name, why in body.locked.items():
         yield f"  locked: {name} ({why})"
     if body.capsules:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.robots.files import LARGEST
-from scarid_cli.algorithms.robots.sound import JOINTS, require_tree
+from scarid_cli.algorithms.robots.sound import JOINTS, require_tree, without_impossible
 from scarid_cli.errors import UsageFault
 
 
@@ -110,3 +110,55 @@ def test_only_files_of_some_size_are_read(tmp_path: Path) -> None:
         file.truncate(LARGEST + 1)
     with pytest.raises(UsageFault, match="MB are no description"):
         reading.load(str(huge))
+
+
+def with_inertia(mass: str, moments: tuple[float, float, float]) -> str:
+    """A URDF of two links, of which the second has this mass and these moments of inertia."""
+    inertia = " ".join(f'i{a}="{m!r}"' for a, m in zip(("xx", "yy", "zz"), moments, strict=True))
+    inertial = f'<inertial><mass value="{mass}"/><inertia {inertia} ixy="0" ixz="0" iyz="0"/>'
+    return urdf([0, 1]).replace(
+        '<link name="l2"/>', f'<link name="l2">{inertial}</inertial></link>'
+    )
+
+
+MOMENTS = st.floats(-1.0, 1.0).filter(lambda moment: abs(moment) > 1e-6)
+
+
+@given(st.tuples(MOMENTS, MOMENTS, MOMENTS))
+def test_an_inertia_is_told_exactly_if_no_body_has_it(moments: tuple[float, float, float]) -> None:
+    """By the second moments of a mass: each is half the sum of two inertias less the third."""
+    tree = ElementTree.fromstring(with_inertia("1", moments))
+    told = without_impossible(tree)
+    seconds = [sum(moments) / 2.0 - moment for moment in moments]
+    if min(seconds) >= 0.0:
+        assert not told
+    elif min(seconds) < -0.01 * max(map(abs, moments)):
+        (text,) = told
+        assert text.startswith("link l2: its principal inertias are ")
+
+
+@given(st.floats(-1e100, -1e-9))
+def test_a_negative_mass_is_told_and_taken_as_none(mass: float) -> None:
+    tree = ElementTree.fromstring(with_inertia(repr(mass), (0.1, 0.1, 0.1)))
+    (text,) = without_impossible(tree)
+    assert text == f"link l2: its mass is {mass!r} kg; taken as without mass"
+    assert tree.find(".//inertial") is None
+
+
+@pytest.mark.parametrize("free", ["floating", "planar"])
+def test_a_free_base_is_fixed_where_the_axes_are_named(tmp_path: Path, free: str) -> None:
+    base = urdf([0, 1, 2]).replace('name="j1" type="revolute"', f'name="j1" type="{free}"')
+    fixed = urdf([0, 1, 2]).replace('name="j1" type="revolute"', 'name="j1" type="fixed"')
+    for name, text in (("free", base), ("fixed", fixed)):
+        (tmp_path / f"{name}.urdf").write_text(text)
+        joints = 'title = "arm"\n[[joint]]\nname = "j2"\n[[joint]]\nname = "j3"\n'
+        (tmp_path / f"{name}.toml").write_text(f'urdf = "{name}.urdf"\n{joints}')
+    robot = reading.load(str(tmp_path / "free.toml"))
+    same = reading.load(str(tmp_path / "fixed.toml"))
+    assert robot.body is not None
+    assert robot.body.doubts == [
+        "joint j1: taken as fixed, as it is none of the axes that are named"
+    ]
+    assert robot.names == same.names
+    with pytest.raises(UsageFault, match=r"and j1 is neither; name the axes"):
+        reading.load(str(tmp_path / "free.urdf"))

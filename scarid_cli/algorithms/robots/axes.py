@@ -14,6 +14,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+LOST = "is modelled as locked"  # of a joint that moves
+
 
 @dataclass(frozen=True)
 class Chain:
@@ -82,5 +84,5 @@ def _beyond(children: Mapping[int, list[int]], place: int) -> set[int]:
 
 def _follows(driver: str, axes: Sequence[str]) -> str:
     if driver in axes:
-        return f"mimics {driver}, an axis, but is modelled as locked"
+        return f"mimics {driver}, an axis, but {LOST}"
     return f"mimics {driver}"

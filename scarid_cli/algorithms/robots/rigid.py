@@ -16,7 +16,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from scarid_cli.algorithms.robots import newton_euler
-from scarid_cli.algorithms.robots.axes import Chain, named, serial
+from scarid_cli.algorithms.robots.axes import LOST, Chain, named, serial
 from scarid_cli.algorithms.robots.capsules import Capsule, capsules_of
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.pose import Points
@@ -34,7 +34,7 @@ GRAVITY = (0.0, 0.0, -9.81)  # m/s2
 @cache
 def _chain(path: str, wanted: tuple[str, ...]) -> Chain:
     """The axes: the joints of some names, or else those of the serial arm."""
-    tree = read(path)
+    tree = read(path, wanted)
     names = list(tree.model.names)[1:]
     if wanted:
         if [name for name in names if name in wanted] != list(wanted):
@@ -54,7 +54,7 @@ def _chain(path: str, wanted: tuple[str, ...]) -> Chain:
 @cache
 def _model(path: str, gravity: tuple[float, ...], wanted: tuple[str, ...]) -> Any:
     """Pinocchio's model of the axes; other joints are locked at 0, or at the offset of a mimic."""
-    tree = read(path)
+    tree = read(path, wanted)
     import pinocchio  # after it has been found there
 
     place = pinocchio.neutral(tree.model)
@@ -161,6 +161,12 @@ class Body:
         return _chain(self.path, self.joints).locked
 
     @property
+    def doubts(self) -> list[str]:
+        """What of the URDF is not used as it is: impossible inertias, joints that follow."""
+        follows = [f"joint {name}: {why}" for name, why in self.locked.items() if LOST in why]
+        return [*read(self.path, self.joints).doubts, *follows]
+
+    @property
     def joint_names(self) -> list[str]:
         """The names of the axes in the URDF."""
         return list(self.model.names)[1:]
@@ -199,7 +205,7 @@ class Body:
 
         Massless frames come before links with a mass.
         """
-        tree = read(self.path)
+        tree = read(self.path, self.joints)
         last = tree.model.getJointId(self.joint_names[-1])
         tips = [name for name, number in tree.frames.items() if number == last]
         fixed = [

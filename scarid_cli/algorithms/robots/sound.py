@@ -10,8 +10,11 @@ from collections import Counter
 from math import isfinite
 from xml.etree import ElementTree
 
+import numpy as np
+
 JOINTS = 1000  # of a chain or of a whole robot, fixed ones included
 FURTHEST = 1e6  # m or rad, of an origin
+ROUNDED = 0.01  # of an inertia, as files with few digits have it
 ATTRIBUTES = 64  # of an element: URDF has at most six
 
 
@@ -29,6 +32,48 @@ def require_tree(robot: ElementTree.Element) -> None:
         for inertial in link.findall("inertial"):
             _require_near(link, inertial)
     _require_connected(robot, joints)
+
+
+def without_impossible(robot: ElementTree.Element) -> list[str]:
+    """Take out masses and inertias below 0, with which sums may be of any size; say of which links.
+
+    Inertias that only break the triangle inequality stay as they are, and are told as well.
+    """
+    told = [
+        (link.get("name"), _mended(link, inertial))
+        for link in robot.findall("link")
+        for inertial in link.findall("inertial")
+    ]
+    return [f"link {name}: {text}" for name, text in told if text]
+
+
+def _mended(link: ElementTree.Element, inertial: ElementTree.Element) -> str:
+    """What is impossible in the inertia of a link, and what it is taken as; empty if nothing is."""
+    mass, inertia = inertial.find("mass"), inertial.find("inertia")
+    if mass is not None and _number(mass, "value") < 0.0:
+        link.remove(inertial)
+        return f"its mass is {mass.get('value')} kg; taken as without mass"
+    if inertia is None:
+        return ""
+    x, y, z, xy, xz, yz = (_number(inertia, f"i{a}") for a in ("xx", "yy", "zz", "xy", "xz", "yz"))
+    moments = np.linalg.eigvalsh([[x, xy, xz], [xy, y, yz], [xz, yz, z]])
+    told = f"its principal inertias are {', '.join(f'{moment:.3g}' for moment in moments)} kg m2"
+    if moments[0] < -ROUNDED * abs(moments[-1]):
+        for key in inertia.attrib:
+            inertia.set(key, "0")
+        return f"{told}, negative; taken as a point"
+    if moments[-1] > (1.0 + ROUNDED) * (moments[0] + moments[1]):
+        return f"{told}, of which one is larger than the sum of the others"
+    return ""
+
+
+def _number(element: ElementTree.Element, key: str) -> float:
+    """A number; 0 for what the reader of URDFs will not take for one either."""
+    try:
+        value = float(element.get(key, "0"))
+    except ValueError:
+        return 0.0
+    return value if isfinite(value) else 0.0
 
 
 def _require_near(named: ElementTree.Element, placed: ElementTree.Element) -> None:

@@ -13,11 +13,12 @@ from xml.etree import ElementTree
 
 from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.files import text_of
-from scarid_cli.algorithms.robots.sound import require_tree
+from scarid_cli.algorithms.robots.sound import require_tree, without_impossible
 from scarid_cli.errors import UsageFault
 
 ENDLESS = 1e9  # rad: urdfdom does not read inf
 ERROR = "Error:"  # that begins what urdfdom prints
+FREE = ("floating", "planar")
 MASSLESS = 1e-6  # kg: some URDFs give their frames a token mass
 
 
@@ -27,18 +28,20 @@ class Tree:
 
     `model` has all joints that move. `drivers` has the joint that each joint with a <mimic>
     follows, `offsets` where it is when that joint is at 0 [rad or m], `frames` the massless frames
-    at the ends of links: their names, and the numbers of the joints that carry them.
+    at the ends of links: their names, and the numbers of the joints that carry them. `doubts` say
+    what of the URDF is not used as it is.
     """
 
     model: Any
     drivers: dict[str, str]
     offsets: dict[str, float]
     frames: dict[str, int]
+    doubts: tuple[str, ...] = ()
 
 
 @cache
-def read(path: str) -> Tree:
-    """The URDF in a file."""
+def read(path: str, wanted: tuple[str, ...] = ()) -> Tree:
+    """The URDF in a file; joints other than the `wanted` ones may be of any type."""
     try:
         import pinocchio
     except ImportError:
@@ -49,6 +52,7 @@ def read(path: str) -> Tree:
     try:
         tree = ElementTree.fromstring(text)
         require_tree(tree)
+        doubts = [*without_impossible(tree), *_fixed(tree, wanted)]
         _turn_endless_joints_into_angles(tree)
         _drop_shapes(tree)
         model = _model(pinocchio, ElementTree.tostring(tree, encoding="unicode"))
@@ -61,9 +65,30 @@ def read(path: str) -> Tree:
     except (RuntimeError, SyntaxError, ValueError) as error:
         raise UsageFault(f"{path}: not a URDF: {' '.join(str(error).split())}") from None
     if not model.nq or model.nq != model.nv:
-        raise UsageFault(f"{path}: only revolute, continuous and prismatic joints are supported")
+        free = ", ".join(_free(tree))
+        raise UsageFault(
+            f"{path}: only revolute, continuous and prismatic joints are supported, and {free} is "
+            "neither; name the axes of the arm in a TOML file ([[joint]] name = ...), which fixes "
+            "all others of that kind"
+        )
     frames = {name: model.frames[model.getFrameId(name)].parentJoint for name in tips}
-    return Tree(model, drivers, offsets, frames)
+    return Tree(model, drivers, offsets, frames, tuple(doubts))
+
+
+def _free(tree: ElementTree.Element) -> list[str]:
+    """The joints that have more than one degree of freedom."""
+    return [j.get("name", "") for j in tree.findall("joint") if j.get("type") in FREE]
+
+
+def _fixed(tree: ElementTree.Element, wanted: tuple[str, ...]) -> list[str]:
+    """Fix joints such as a floating base, where others are named as the axes; says which."""
+    names = [name for name in _free(tree) if wanted and name not in wanted]
+    for joint in tree.findall("joint"):
+        if joint.get("name") in names:
+            joint.set("type", "fixed")
+    return [
+        f"joint {name}: taken as fixed, as it is none of the axes that are named" for name in names
+    ]
 
 
 def _model(pinocchio: Any, text: str) -> Any:
