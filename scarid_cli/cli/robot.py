@@ -125,6 +125,8 @@ def _links(body: Body) -> Iterator[str]:
     """The joints that are locked, and the shapes of the links."""
     for doubt in body.doubts:
         yield f"  warning: {doubt}"
+    for text in body.followers:
+        yield f"  follows: {text}"
     for name, why in body.locked.items():
         yield f"  locked: {name} ({why})"
     if body.capsules:

@@ -34,12 +34,12 @@ class Controller:
     """
 
     def __init__(self, gains, body, motors, joints, couplings, world, memory, setup):
-        n = len(body)
-        if len(gains) != n or len(joints) != n or memory.shape[1] != n:
+        n = len(joints)
+        if len(gains) != n or memory.shape[1] != n:
             raise ValueError("control: lengths differ")
         if motors.shape[0] != n or motors.shape[1] != n or len(world) != 7:
             raise ValueError("control: lengths differ")
-        if gains.shape[1] != 8 or body.shape[1] != 23 or joints.shape[1] != 20:
+        if gains.shape[1] != 8 or body.shape[1] != 26 or joints.shape[1] != 20:
             raise ValueError("control: numbers of columns are wrong")
         if couplings.shape[1] != 6 or memory.shape[0] != 3 or len(setup) != 6:
             raise ValueError("control: sizes are wrong")

@@ -6,14 +6,15 @@ cdef extern from "math.h" nogil:
 
 @cython.final
 cdef class Chain:
-    cdef Py_ssize_t n
+    cdef Py_ssize_t n, axes
+    cdef Py_ssize_t[::1] axis
     cdef const double[:, ::1] body
     cdef const double[:, ::1] motion
     cdef double[:, ::1] link, inertia
     cdef const double[::1] pull
     cdef double[::1] bias
 
-    @cython.locals(i=cython.Py_ssize_t)
+    @cython.locals(i=cython.Py_ssize_t, k=cython.Py_ssize_t, torque=double)
     cpdef int compute(self) except -1
 
     @cython.locals(
@@ -60,6 +61,8 @@ cdef class Chain:
         mx=double, my=double, mz=double,
     )
     cdef int column(self, Py_ssize_t i) except -1
+
+    cdef int add(self, Py_ssize_t i, Py_ssize_t k, double entry) except -1
 
 cpdef int dynamics(
     const double[:, ::1] body, const double[::1] pull, const double[:, ::1] motion,

@@ -4,10 +4,12 @@ The bias torques are those of the recursive Newton-Euler method without accelera
 and Paul 1980), the inertia matrix is that of composite rigid bodies (Walker and Orin 1982). All
 vectors are in the frame of their link, whose z axis is the axis of its joint.
 
-A row of `body` (joints, 23) has the rotation from the frame of the joint to the one before it, at
-q = 0 [0-8]; its origin there [9-11]; 1 for a prismatic joint [12]; and the standard parameters of
-the link [13-22]: Ixx, Ixy, Ixz, Iyy, Iyz, Izz, mx, my, mz, m. A row of `link` (joints, 37) has the
-rotation [0-8] and the origin [9-11] of the frame at q, angular velocity [12-14], angular and linear
+A row of `body` (links, 26) has the rotation from the frame of the joint to the one before it, at
+q = 0 [0-8]; its origin there [9-11]; 1 for a prismatic joint [12]; the standard parameters of the
+link [13-22]: Ixx, Ixy, Ixz, Iyy, Iyz, Izz, mx, my, mz, m; the axis that moves the joint [23], the
+ratio of their motions [24], and the position of the joint where the axis is at 0 [25]. A joint that
+follows an axis adds to its torque and to its inertia. A row of `link` (links, 37) has the rotation
+[0-8] and the origin [9-11] of the frame at q, angular velocity [12-14], angular and linear
 acceleration [15-20], force and moment [21-26], and the parameters of this and all later links
 [27-36].
 """
@@ -20,28 +22,38 @@ import numpy as np
 class Chain:
     """A serial chain at one instant.
 
-    body (joints, 23): see above. motion (2, joints or more): positions and velocities. pull (3):
-    gravity less the acceleration of the base, in the frame of the base [m/s2]. bias (joints or
-    more): torques of gravity, centrifugal and Coriolis forces. inertia: as many rows and columns.
+    body (links, 26): see above. motion (2, axes or more): positions and velocities. pull (3):
+    gravity less the acceleration of the base, in the frame of the base [m/s2]. bias (axes or more):
+    torques of gravity, centrifugal and Coriolis forces. inertia: as many rows and columns.
     """
 
     def __init__(self, body, pull, motion, bias, inertia):
         n, size = len(body), motion.shape[1]
-        if size < n or len(bias) != size or inertia.shape[0] != size or inertia.shape[1] != size:
+        if len(bias) != size or inertia.shape[0] != size or inertia.shape[1] != size:
             raise ValueError("rigid: lengths differ")
-        if body.shape[1] != 23 or len(pull) != 3 or motion.shape[0] != 2:
+        if body.shape[1] != 26 or len(pull) != 3 or motion.shape[0] != 2:
             raise ValueError("rigid: numbers of columns are wrong")
         self.n, self.body, self.pull, self.motion = n, body, pull, motion
         self.bias, self.inertia, self.link = bias, inertia, np.zeros((n, 37))
+        self.axis, self.axes = np.asarray(body)[:, 23].astype(np.intp), 0
+        for i in range(n):
+            if not 0 <= self.axis[i] < size:
+                raise ValueError("rigid: no such axis")
+            self.axes = max(self.axes, self.axis[i] + 1)
 
     def compute(self):
-        """Compute the bias torques and the inertia matrix of the joints."""
+        """Compute the bias torques and the inertia matrix of the axes."""
+        for i in range(self.axes):
+            self.bias[i] = 0.0
+            for k in range(self.axes):
+                self.inertia[i, k] = 0.0
         for i in range(self.n):
             self.place(i)
             self.outward(i)
             self.load(i)
         for i in range(self.n - 1, -1, -1):
-            self.bias[i] = self.link[i, 26] if self.body[i, 12] == 0.0 else self.link[i, 23]
+            torque = float(self.link[i, 26] if self.body[i, 12] == 0.0 else self.link[i, 23])
+            self.bias[self.axis[i]] += float(self.body[i, 24]) * torque
             self.column(i)
             if i > 0:
                 self.inward(i)
@@ -50,7 +62,7 @@ class Chain:
 
     def place(self, i):
         """Where the frame of joint i is in the frame before it."""
-        q = float(self.motion[0, i])
+        q = float(self.body[i, 24]) * float(self.motion[0, self.axis[i]]) + float(self.body[i, 25])
         c, s = 1.0, 0.0
         if self.body[i, 12] == 0.0:
             c, s = cos(q), sin(q)
@@ -86,7 +98,7 @@ class Chain:
 
     def outward(self, i):
         """The velocity and acceleration of link i, without accelerations of the joints."""
-        v = float(self.motion[1, i])
+        v = float(self.body[i, 24]) * float(self.motion[1, self.axis[i]])
         px, py, pz = self.row(i, 9)
         wx, wy, wz, bx, by, bz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         ax, ay, az = -float(self.pull[0]), -float(self.pull[1]), -float(self.pull[2])
@@ -180,13 +192,13 @@ class Chain:
         return 0
 
     def column(self, i):
-        """The row and the column of joint i of the inertia matrix, up to the diagonal."""
+        """What joint i adds to the inertia matrix, with itself and with the joints before it."""
         x, y, z = 0.0, 0.0, float(self.link[i, 36])
         mx, my, mz = float(self.link[i, 34]), -float(self.link[i, 33]), 0.0
         if self.body[i, 12] == 0.0:
             x, y, z = -float(self.link[i, 34]), float(self.link[i, 33]), 0.0
             mx, my, mz = float(self.link[i, 29]), float(self.link[i, 31]), float(self.link[i, 32])
-        self.inertia[i, i] = mz if self.body[i, 12] == 0.0 else z
+        self.add(i, i, mz if self.body[i, 12] == 0.0 else z)
         for k in range(i, 0, -1):
             px, py, pz = self.row(k, 9)
             x, y, z = self.back(k, x, y, z)
@@ -194,13 +206,17 @@ class Chain:
             mx += py * z - pz * y
             my += pz * x - px * z
             mz += px * y - py * x
-            self.inertia[i, k - 1] = mz if self.body[k - 1, 12] == 0.0 else z
-            self.inertia[k - 1, i] = self.inertia[i, k - 1]
+            self.add(i, k - 1, mz if self.body[k - 1, 12] == 0.0 else z)
+            self.add(k - 1, i, mz if self.body[k - 1, 12] == 0.0 else z)
+        return 0
+
+    def add(self, i, k, entry):
+        """Add an entry of the inertia matrix of all joints to that of the axes."""
+        entry *= float(self.body[i, 24]) * float(self.body[k, 24])
+        self.inertia[self.axis[i], self.axis[k]] += entry
         return 0
 
 
 def dynamics(body, pull, motion, bias, inertia):
     """Compute the bias torques and the inertia matrix of a chain (see Chain)."""
-    if motion.shape[1] != len(body):
-        raise ValueError("rigid: lengths differ")
     return Chain(body, pull, motion, bias, inertia).compute()

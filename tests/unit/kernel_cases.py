@@ -189,13 +189,15 @@ def chain_gradient(rng: np.random.Generator) -> Arguments:
     return [*motion, rng.standard_normal(W.shape), *slopes, links, np.zeros_like(links)]
 
 
+LINK = 26  # numbers of a link in the table `body` of an arm
 COUPLING = np.array([[0.0, 1.0, 0.5, 1.0, 0.01, 0.05]])
 
 
 def rigid(rng: np.random.Generator) -> Arguments:
-    """A revolute and a prismatic axis in general position."""
-    body = rng.standard_normal((2, 23))
-    body[:, 12] = [0.0, 1.0]
+    """A revolute and a prismatic axis in general position, and a joint that follows the first."""
+    body = rng.standard_normal((3, 26))
+    body[:, 12] = [0.0, 1.0, 0.0]
+    body[:, 23] = [0.0, 1.0, 0.0]
     motion, pull = rng.standard_normal((2, 2)), rng.standard_normal(3)
     return [body, pull, motion, np.zeros(2), np.zeros((2, 2))]
 

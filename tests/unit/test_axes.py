@@ -50,23 +50,24 @@ def test_a_last_joint_beyond_the_tool_frame_is_a_jaw(frames: set[int], axes: str
     assert chain.locked == locked
 
 
+LOST = "mimics b, an axis, but is modelled as locked"
+
+
 @pytest.mark.parametrize(
-    ("drivers", "axes", "locked"),
+    ("parents", "drivers", "followers", "locked"),
     [
-        ({"c": "b"}, "ab", {"c": "mimics b, an axis, but is modelled as locked"}),
-        (
-            {"d": "c"},
-            "ab",
-            {"c": BRANCHED.format("b"), "d": "mimics c"},
-        ),
+        ([0, 1, 2], {"c": "b"}, {"c": "b"}, {}),
+        ([0, 1, 2, 3], {"d": "c", "c": "b"}, {"c": "b", "d": "b"}, {}),
+        ([0, 1, 2, 2], {"c": "b", "d": "b"}, {}, {"c": LOST, "d": LOST}),
+        ([0, 1, 2, 2], {"d": "c"}, {}, {"c": BRANCHED.format("b"), "d": "mimics c"}),
     ],
+    ids=["on the way", "in turn", "beside it", "of no axis"],
 )
 def test_a_joint_that_mimics_another_is_no_axis(
-    drivers: dict[str, str], axes: str, locked: dict[str, str]
+    parents: list[int], drivers: dict[str, str], followers: dict[str, str], locked: dict[str, str]
 ) -> None:
-    parents = [0, 1, 2] if "c" in drivers else [0, 1, 2, 2]
     chain = serial("abcd"[: len(parents)], parents, drivers)
-    assert ("".join(chain.axes), chain.locked) == (axes, locked)
+    assert (chain.axes, chain.followers, chain.locked) == (("a", "b"), followers, locked)
 
 
 # In a robot
@@ -103,7 +104,7 @@ def test_a_finger_that_is_named_is_an_axis(gripper: Path, tmp_path: Path) -> Non
     assert [joint.type for joint in robot.joints] == ["revolute", "revolute", "prismatic"]
     assert (robot.joints[2].lower, robot.joints[2].upper) == (0.0, 0.04)
     assert robot.body is not None
-    assert robot.body.locked == {"right": "not named in the description"}
+    assert robot.body.locked == {"right": "mimics left, an axis, but is modelled as locked"}
 
 
 def test_entries_for_locked_joints_are_refused_with_their_names(

@@ -11,6 +11,7 @@ import pytest
 
 from scarid_cli.algorithms.robots import newton_euler
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.following import Following
 from scarid_cli.algorithms.robots.mechanism import Mechanism, mechanism
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.rigid import PINOCCHIO
@@ -37,7 +38,8 @@ def oblique(rng: np.random.Generator) -> Mechanism:
         direction = rng.standard_normal(3)
         row[12:15] = direction / np.linalg.norm(direction)
     axes[[1, 3], 15] = 1.0
-    return Mechanism(axes, rng.standard_normal((JOINTS, 10)), 9.0 * rng.standard_normal(3))
+    gravity = 9.0 * rng.standard_normal(3)
+    return Mechanism(axes, rng.standard_normal((JOINTS, 10)), gravity, Following.none(JOINTS))
 
 
 def frames(axes: np.ndarray, q: np.ndarray) -> list[np.ndarray]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from scarid_cli.algorithms.design.model import Motion
 from scarid_cli.algorithms.robots.clearance import Clearance, inside
-from scarid_cli.algorithms.robots.pose import Points, Pose
+from scarid_cli.algorithms.robots.pose import Points
 from scarid_cli.algorithms.robots.rigid import Body
 from scarid_cli.arrays import Array
 
@@ -21,7 +21,7 @@ WALLS = ("x", "y", "z")
 class Workspace:
     """A box, from its corner `lower` to `upper` (3) [m], that the tool must not leave."""
 
-    axes: Array
+    body: Body
     tool: Points
     lower: tuple[float, ...]
     upper: tuple[float, ...]
@@ -31,7 +31,7 @@ class Workspace:
         """The box of three intervals, x, y and z, in the frame of the base."""
         frame = body.frames[body.tool]
         tool = Points(np.array([frame.axis]), frame.carried((0.0, 0.0, 0.0)).reshape(1, 3))
-        return cls(body.axes, tool, tuple(box[::2]), tuple(box[1::2]))
+        return cls(body, tool, tuple(box[::2]), tuple(box[1::2]))
 
     @property
     def names(self) -> list[str]:
@@ -42,19 +42,19 @@ class Workspace:
         return self
 
     def violations(self, motion: Motion) -> Array:
-        found, _ = inside(self.tool, Pose.of(self.axes, motion[0]), self.lower, self.upper)
+        found, _ = inside(self.tool, self.body.pose(motion[0]), self.lower, self.upper)
         return -found[:, 0] / LENGTH
 
     def slopes(self, motion: Motion, multipliers: Array) -> Motion:
-        _, pull = inside(self.tool, Pose.of(self.axes, motion[0]), self.lower, self.upper)
-        return _of_positions(pull(-multipliers[:, None] / LENGTH))
+        _, pull = inside(self.tool, self.body.pose(motion[0]), self.lower, self.upper)
+        return _of_positions(self.body, pull(-multipliers[:, None] / LENGTH))
 
 
 @dataclass(frozen=True)
 class Apart:
     """Links that must not touch."""
 
-    axes: Array
+    body: Body
     clearance: Clearance
 
     @classmethod
@@ -62,11 +62,11 @@ class Apart:
         """All pairs of links but those whose capsules overlap at home (joints) already."""
         clearance = Clearance.of(body)
         if not len(clearance.pairs):
-            return cls(body.axes, clearance)
-        distances, _ = clearance.distances(Pose.of(body.axes, home[:, None]))
+            return cls(body, clearance)
+        distances, _ = clearance.distances(body.pose(home[:, None]))
         free = np.flatnonzero(distances[:, 0] > 0.0)
         names = tuple(clearance.names[i] for i in free)
-        return cls(body.axes, replace(clearance, pairs=clearance.pairs[free], names=names))
+        return cls(body, replace(clearance, pairs=clearance.pairs[free], names=names))
 
     @property
     def names(self) -> list[str]:
@@ -77,13 +77,14 @@ class Apart:
         return self
 
     def violations(self, motion: Motion) -> Array:
-        distances, _ = self.clearance.distances(Pose.of(self.axes, motion[0]))
+        distances, _ = self.clearance.distances(self.body.pose(motion[0]))
         return -distances / LENGTH
 
     def slopes(self, motion: Motion, multipliers: Array) -> Motion:
-        _, pull = self.clearance.distances(Pose.of(self.axes, motion[0]))
-        return _of_positions(pull(-multipliers / LENGTH))
+        _, pull = self.clearance.distances(self.body.pose(motion[0]))
+        return _of_positions(self.body, pull(-multipliers / LENGTH))
 
 
-def _of_positions(slopes: Array) -> Motion:
+def _of_positions(body: Body, slopes: Array) -> Motion:
+    slopes = body.following.torques(slopes)
     return slopes, np.zeros_like(slopes), np.zeros_like(slopes)

@@ -119,5 +119,5 @@ def carrying(arm: Model, payload: Payload) -> Model:
     inertia = inertia + m * ((c @ c) * np.eye(3) - np.outer(c, c))
     link = np.concatenate((inertia[np.triu_indices(3)], m * c, [m]))
     body = arm.body.copy()
-    body[-1, 13:] += rotated(link, arm.turn)
+    body[-1, 13:23] += rotated(link, arm.turn)
     return replace(arm, body=body)

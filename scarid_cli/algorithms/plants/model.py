@@ -8,7 +8,7 @@ import numpy as np
 
 from scarid_cli.algorithms.robots.coupled import CoupledCoulomb, CoupledInertia, CoupledTerm
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.mechanism import mechanism
+from scarid_cli.algorithms.robots.mechanism import Mechanism, mechanism
 from scarid_cli.algorithms.robots.terms import AxisTerm, Coulomb, Mass, Stribeck
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -87,7 +87,7 @@ def model(robot: Robot) -> Model:
         )
     world = np.array([*chain.gravity, 0.0, 0.0, 0.0, 0.0])
     table = np.array(rows).reshape(-1, 6)
-    body, turn = turned(chain.axes, chain.links), towards(chain.axes[-1, 12:15])
+    body, turn = turned(chain), towards(chain.axes[-1, 12:15])
     return Model(body, motors, joints, table, world, turn).with_sticking()
 
 
@@ -117,17 +117,19 @@ def _couple(
         row[4] += term.ratio * value
 
 
-def turned(axes: Array, links: Array) -> Array:
-    """The axes (joints, 16) and links (joints, 10) of a Mechanism in frames whose z is the axis."""
-    body = np.zeros((len(axes), 23))
+def turned(chain: Mechanism) -> Array:
+    """The joints of a chain (joints, 26), with their links in frames whose z is the axis."""
+    body = np.zeros((len(chain.axes), 26))
     before = np.eye(3)
-    for row, axis, link in zip(body, axes, links, strict=True):
+    for row, axis, link in zip(body, chain.axes, chain.links, strict=True):
         turn = towards(axis[12:15])
         row[:9] = (before.T @ axis[:9].reshape(3, 3) @ turn).ravel()
         row[9:12] = before.T @ axis[9:12]
         row[12] = axis[15]
-        row[13:] = rotated(link, turn)
+        row[13:23] = rotated(link, turn)
         before = turn
+    follows = chain.following
+    body[:, 23:] = np.column_stack((follows.axis, follows.ratio, follows.offset))
     return body
 
 

@@ -83,11 +83,14 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
     stated = values.choice("masses", document.get("masses", STATED), (STATED, PLACEHOLDER))
     standard = body.standard if stated == STATED else [0.0] * len(body.standard)
     joints, parameters = [], []
+    chain = {number: place for place, number in enumerate(body.link_numbers)}
     for i, (joint, entry) in enumerate(zip(found, entries, strict=True), start=1):
         own = {key: value for key, value in entry.items() if key not in ("name", "terms")}
         joints.append(joint_of({"type": joint.type, **own}, joint))
-        parameters += _standard(i, standard)
+        parameters += _standard(i, chain[i], standard)
         parameters += _terms(i, joint, entry.get("terms", list(DEFAULT_TERMS)))
+    for i in range(len(found) + 1, len(chain) + 1):
+        parameters += _standard(i, chain[i], standard)
     for entry in values.tables("coupling", document.get("coupling", [])):
         parameters += _coupled(entry, entries)
     values.distinct("parameter", [parameter.name for parameter in parameters])
@@ -120,12 +123,12 @@ def _names(entries: list[dict[str, Any]]) -> tuple[str, ...]:
     return tuple(values.text("name", entry["name"]) for entry in named)
 
 
-def _standard(i: int, apriori: list[float]) -> list[Parameter]:
-    """The ten standard parameters of link i (from 1)."""
+def _standard(i: int, at: int, apriori: list[float]) -> list[Parameter]:
+    """The ten standard parameters of link i (from 1), at its place in the chain (from 0)."""
     return [
         Parameter(f"{symbol}{i}", unit, apriori[place], StandardTerm(place))
         for place, (symbol, unit) in enumerate(
-            zip(SYMBOLS, STANDARD_UNITS, strict=True), start=10 * (i - 1)
+            zip(SYMBOLS, STANDARD_UNITS, strict=True), start=10 * at
         )
     ]
 

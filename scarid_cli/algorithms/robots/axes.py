@@ -6,23 +6,28 @@ The axes are the moving joints on the way from the base to the tip:
   branches together. The fingers of a hand are no such branch, so the arm ends at the hand.
 - A single last joint beyond the tool frame (a massless link, fixed to the link before that joint)
   moves the jaw of a gripper and is no axis.
-- A joint with a <mimic> is driven by another joint and is no axis.
+- A joint with a <mimic> is driven by another joint and is no axis. It moves with it where the way
+  to the tip leads through it, and where it is the only joint after the last axis.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 LOST = "is modelled as locked"  # of a joint that moves
 
 
 @dataclass(frozen=True)
 class Chain:
-    """The names of the axes from the base to the tip, and why each other joint is locked."""
+    """The names of the axes from the base to the tip, and why each other joint is locked.
+
+    `followers` are the joints of the chain that move with an axis, and which axis that is.
+    """
 
     axes: tuple[str, ...]
     locked: dict[str, str]
+    followers: dict[str, str] = field(default_factory=dict)
 
 
 def serial(
@@ -46,21 +51,71 @@ def serial(
         why = "whose link carries the tool frame"
     axes = tuple(names[number - 1] for number in way[1:] if names[number - 1] not in drivers)
     beyond = _beyond(children, way[-1])
+    followers = {
+        name: driver
+        for name in (names[number - 1] for number in way[1:])
+        if (driver := _driver(name, drivers)) in axes and name in drivers
+    }
     locked = {}
     for number, name in enumerate(names, start=1):
+        if name in axes or name in followers:
+            continue
         if name in drivers:
             locked[name] = _follows(drivers[name], axes)
         elif number in beyond:
             locked[name] = f"beyond {names[way[-1] - 1]}, {why}"
-        elif number not in way:
+        else:
             locked[name] = "on a side branch of the arm"
-    return Chain(axes, locked)
+    return Chain(axes, locked, followers)
 
 
-def named(names: Sequence[str], wanted: Sequence[str]) -> Chain:
-    """The chain of the joints that a description names."""
-    locked = {name: "not named in the description" for name in names if name not in wanted}
-    return Chain(tuple(wanted), locked)
+def named(
+    names: Sequence[str],
+    parents: Sequence[int],
+    drivers: Mapping[str, str],
+    wanted: Sequence[str],
+) -> Chain:
+    """The chain of the joints that a description names, and of those that follow them there."""
+    followers = {}
+    for name in _line(names, parents, drivers, wanted):
+        driver = _driver(name, {k: d for k, d in drivers.items() if k not in wanted})
+        if name not in wanted and driver in wanted:
+            followers[name] = driver
+    locked = {}
+    for name in names:
+        if name not in wanted and name not in followers:
+            driver = drivers.get(name, "")
+            locked[name] = (
+                _follows(driver, wanted) if driver in wanted else "not named in the description"
+            )
+    return Chain(tuple(wanted), locked, followers)
+
+
+def _line(
+    names: Sequence[str],
+    parents: Sequence[int],
+    drivers: Mapping[str, str],
+    wanted: Sequence[str],
+) -> list[str]:
+    """The joints on the way to the last axis, and those after it as long as one alone follows."""
+    number = names.index(wanted[-1]) + 1
+    line = [number]
+    while parents[line[0] - 1]:
+        line.insert(0, parents[line[0] - 1])
+    while True:
+        after = [k for k, parent in enumerate(parents, start=1) if parent == line[-1]]
+        if len(after) != 1 or names[after[0] - 1] not in drivers:
+            return [names[k - 1] for k in line]
+        line.append(after[0])
+
+
+def _driver(name: str, drivers: Mapping[str, str]) -> str:
+    """The joint that a joint follows in the end: that of a joint that follows none is itself."""
+    seen = {name}
+    while name in drivers and drivers[name] not in seen:
+        name = drivers[name]
+        seen.add(name)
+    return name
 
 
 def _way(children: Mapping[int, list[int]]) -> list[int]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.following import Following
 from scarid_cli.algorithms.robots.planar import L1MX2, L1MY2, MX1R, MX2, ZZ1R, ZZ2, PlanarTerm
 from scarid_cli.algorithms.robots.terms import StandardTerm, Term
 from scarid_cli.arrays import Array
@@ -23,18 +24,20 @@ PLANAR: dict[type[Term], int] = {ZZ1R: 5, MX1R: 6, ZZ2: 15, L1MX2: 16, MX2: 16, 
 
 @dataclass(frozen=True)
 class Mechanism:
-    """The axes and links of a serial chain.
+    """The joints and links of a serial chain.
 
     A row of `axes` (joints, 16) has the rotation from the frame of the axis to the frame of the
     axis before it, at q = 0, row by row [9]; the origin of the frame there [3, m]; the direction of
     the axis in its own frame [3]; and 1 for a prismatic axis, 0 for a revolute one. `links`
     (joints, 10) has the standard parameters of each link in the frame of its axis, in the order of
-    rigid.SYMBOLS. `gravity` (3) is in the frame of the base [m/s2].
+    rigid.SYMBOLS. `gravity` (3) is in the frame of the base [m/s2]. `following` says which joints
+    move with others.
     """
 
     axes: Array
     links: Array
     gravity: Array
+    following: Following
 
 
 def mechanism(robot: Robot) -> Mechanism:
@@ -44,12 +47,13 @@ def mechanism(robot: Robot) -> Mechanism:
     gives the same torques.
     """
     joints = len(robot.joints)
-    links = np.zeros((joints, STANDARD))
+    following = robot.body.following if robot.body else Following.none(joints)
+    links = np.zeros((len(following.axis), STANDARD))
     for place, parameter in zip(places(robot), robot.parameters, strict=True):
         if place is not None:
             links.flat[place] += parameter.apriori
     if robot.body:
-        return Mechanism(robot.body.axes, links, np.array(robot.body.gravity))
+        return Mechanism(robot.body.axes, links, np.array(robot.body.gravity), following)
     axes = np.zeros((joints, 16))
     axes[:, [0, 4, 8, 14]] = 1.0
     axes[:, 15] = [joint.type == "prismatic" for joint in robot.joints]
@@ -57,7 +61,7 @@ def mechanism(robot: Robot) -> Mechanism:
     length, gravity = _planar(robot.name, planar)
     if planar:
         axes[1, 9] = length
-    return Mechanism(axes, links, np.array([gravity, 0.0, 0.0]))
+    return Mechanism(axes, links, np.array([gravity, 0.0, 0.0]), following)
 
 
 def places(robot: Robot) -> list[int | None]:

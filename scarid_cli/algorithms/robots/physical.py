@@ -121,15 +121,15 @@ class _Arm:
     def of(cls, robot: Robot) -> _Arm:
         cvxpy = _cvxpy()
         assert robot.body
-        joints = len(robot.joints)
-        standard = [f"{symbol}{i}" for i in range(1, joints + 1) for symbol in SYMBOLS]
+        links = robot.body.link_numbers
+        standard = [f"{symbol}{i}" for i in links for symbol in SYMBOLS]
         names = dict.fromkeys(name for p in _parts(robot) for name, _ in p)
         axes = [name for name in names if name not in standard]
-        pseudo = [cvxpy.Variable((4, 4), symmetric=True) for _ in range(joints)]
+        pseudo = [cvxpy.Variable((4, 4), symmetric=True) for _ in links]
         beside = cvxpy.Variable(len(axes))
         positive = [i for i, name in enumerate(axes) if POSITIVE.fullmatch(name)]
         bounds = [beside[positive] >= 0.0] if positive else []
-        own = np.array(robot.body.standard).reshape(joints, 10)
+        own = np.array(robot.body.standard).reshape(len(links), 10)
         apart = [
             cvxpy.vec(J - pseudo_inertia(x), order="F") for J, x in zip(pseudo, own, strict=True)
         ]

@@ -18,8 +18,9 @@ import numpy as np
 from scarid_cli.algorithms.robots import newton_euler
 from scarid_cli.algorithms.robots.axes import LOST, Chain, named, serial
 from scarid_cli.algorithms.robots.capsules import Capsule, capsules_of
+from scarid_cli.algorithms.robots.following import Following
 from scarid_cli.algorithms.robots.joints import Joint
-from scarid_cli.algorithms.robots.pose import Points
+from scarid_cli.algorithms.robots.pose import Points, Pose
 from scarid_cli.algorithms.robots.tree import ENDLESS, link, read
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
@@ -41,7 +42,7 @@ def _chain(path: str, wanted: tuple[str, ...]) -> Chain:
             raise UsageFault(
                 f"{path}: no joints {', '.join(wanted)} in this order; it has {', '.join(names)}"
             )
-        return named(names, wanted)
+        return named(names, list(tree.model.parents)[1:], tree.drivers, wanted)
     chain = serial(names, list(tree.model.parents)[1:], tree.drivers, set(tree.frames.values()))
     if not chain.axes:
         raise UsageFault(
@@ -53,7 +54,10 @@ def _chain(path: str, wanted: tuple[str, ...]) -> Chain:
 
 @cache
 def _model(path: str, gravity: tuple[float, ...], wanted: tuple[str, ...]) -> Any:
-    """Pinocchio's model of the axes; other joints are locked at 0, or at the offset of a mimic."""
+    """Pinocchio's model of the axes and of the joints that follow them.
+
+    Other joints are locked at 0, or at the offset of a mimic.
+    """
     tree = read(path, wanted)
     import pinocchio  # after it has been found there
 
@@ -116,12 +120,12 @@ class Body:
 
     @property
     def joints_found(self) -> list[Joint]:
-        """The axes, with the limits that the URDF gives."""
+        """The axes, with the limits that the URDF gives for them and for what follows them."""
         model = self.model
         names = [joint.shortname() for joint in list(model.joints)[1:]]
         ends = map(_interval, model.lowerPositionLimit, model.upperPositionLimit)
         limits = zip(names, ends, model.velocityLimit, model.effortLimit, strict=True)
-        return [
+        joints = [
             Joint(
                 "prismatic" if "JointModelP" in name else "revolute",
                 *interval,
@@ -130,6 +134,7 @@ class Body:
             )
             for name, interval, velocity, torque in limits
         ]
+        return self.following.limited(joints)
 
     @cached_property
     def axes(self) -> Array:
@@ -167,9 +172,55 @@ class Body:
         return [*read(self.path, self.joints).doubts, *follows]
 
     @property
+    def _moving(self) -> list[str]:
+        """The names of the axes and of the joints that follow them, from the base to the tip."""
+        return list(self.model.names)[1:]
+
+    @property
     def joint_names(self) -> list[str]:
         """The names of the axes in the URDF."""
-        return list(self.model.names)[1:]
+        return list(_chain(self.path, self.joints).axes)
+
+    @property
+    def link_numbers(self) -> list[int]:
+        """The number of each link from the base to the tip: that of its axis.
+
+        Those that joints carry which follow an axis have the numbers after the last axis.
+        """
+        after = iter(range(len(self.joint_names) + 1, len(self._moving) + 1))
+        numbers = {name: i for i, name in enumerate(self.joint_names, start=1)}
+        return [numbers[name] if name in numbers else next(after) for name in self._moving]
+
+    @cached_property
+    def following(self) -> Following:
+        """How the joints of the chain move with its axes."""
+        tree, followers = read(self.path, self.joints), _chain(self.path, self.joints).followers
+        axis, ratio, offset = [], [], []
+        for name in self._moving:
+            driver, turns, at = name, 1.0, 0.0
+            while driver in followers and driver not in self.joint_names:
+                at += turns * tree.offsets[driver]
+                turns *= tree.ratios[driver]
+                driver = tree.drivers[driver]
+            axis.append(self.joint_names.index(driver))
+            ratio.append(turns)
+            offset.append(at)
+        own = np.array([self._moving.index(name) for name in self.joint_names], dtype=np.int64)
+        return Following(np.array(axis, dtype=np.int64), np.array(ratio), np.array(offset), own)
+
+    @property
+    def followers(self) -> list[str]:
+        """How each joint moves that follows an axis."""
+        follows, told = self.following, []
+        for k in follows.followers:
+            axis, offset = self.joint_names[follows.axis[k]], follows.offset[k]
+            beside = f" {offset:+g}" if offset else ""
+            told.append(f"{self._moving[k]} = {follows.ratio[k]:g} {axis}{beside}")
+        return told
+
+    def pose(self, q: Array) -> Pose:
+        """Where the links are; q is (axes, samples) [rad or m]."""
+        return Pose.of(self.axes, self.following.positions(q))
 
     @property
     def links(self) -> list[tuple[str, list[str]]]:
@@ -181,7 +232,7 @@ class Body:
             if str(frame.type) == "BODY" and frame.parentJoint:
                 together[frame.parentJoint].append(frame.name)
         found = []
-        for i, name in enumerate(self.joint_names, start=1):
+        for i, name in enumerate(self._moving, start=1):
             own = child[name]
             found.append((own, [link for link in together[i] if link != own]))
         return found
@@ -206,7 +257,7 @@ class Body:
         Massless frames come before links with a mass.
         """
         tree = read(self.path, self.joints)
-        last = tree.model.getJointId(self.joint_names[-1])
+        last = tree.model.getJointId(self._moving[-1])
         tips = [name for name, number in tree.frames.items() if number == last]
         fixed = [
             f.name for f in tree.model.frames if f.parentJoint == last and f.name in self.frames
@@ -225,8 +276,11 @@ class Body:
         return Points(numbers, np.array([frame.carried(place) for place in places]))
 
     def columns(self, q: Array, dq: Array, ddq: Array) -> Array:
-        """The regressor of the standard parameters (samples, joints, 10 joints).
+        """The regressor of the standard parameters (samples, axes, 10 links).
 
-        q, dq and ddq are (joints, samples), in rad or m, and per s and s2.
+        q, dq and ddq are (axes, samples), in rad or m, and per s and s2.
         """
-        return newton_euler.regressor(self.axes, np.array(self.gravity), q, dq, ddq)
+        follows = self.following
+        motion = follows.positions(q), follows.rates(dq), follows.rates(ddq)
+        W = newton_euler.regressor(self.axes, np.array(self.gravity), *motion)
+        return follows.torques(W.swapaxes(0, 1)).swapaxes(0, 1)

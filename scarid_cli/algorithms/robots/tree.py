@@ -27,13 +27,14 @@ class Tree:
     """A URDF as Pinocchio reads it, and what Pinocchio does not keep of it.
 
     `model` has all joints that move. `drivers` has the joint that each joint with a <mimic>
-    follows, `offsets` where it is when that joint is at 0 [rad or m], `frames` the massless frames
-    at the ends of links: their names, and the numbers of the joints that carry them. `doubts` say
-    what of the URDF is not used as it is.
+    follows, `ratios` how far it moves with it, `offsets` where it is when that joint is at 0 [rad
+    or m], `frames` the massless frames at the ends of links: their names, and the numbers of the
+    joints that carry them. `doubts` say what of the URDF is not used as it is.
     """
 
     model: Any
     drivers: dict[str, str]
+    ratios: dict[str, float]
     offsets: dict[str, float]
     frames: dict[str, int]
     doubts: tuple[str, ...] = ()
@@ -59,6 +60,7 @@ def read(path: str, wanted: tuple[str, ...] = ()) -> Tree:
         values.moderate(model.njoints - 1)
         mimics = {j.get("name", ""): m for j in tree.findall("joint") for m in j.findall("mimic")}
         drivers = {name: mimic.get("joint", "") for name, mimic in mimics.items()}
+        ratios = {name: float(mimic.get("multiplier", "1")) for name, mimic in mimics.items()}
         offsets = {name: float(mimic.get("offset", "0")) for name, mimic in mimics.items()}
         tips = list(_massless_tips(tree))
         _require_axes(tree)
@@ -72,7 +74,7 @@ def read(path: str, wanted: tuple[str, ...] = ()) -> Tree:
             "all others of that kind"
         )
     frames = {name: model.frames[model.getFrameId(name)].parentJoint for name in tips}
-    return Tree(model, drivers, offsets, frames, tuple(doubts))
+    return Tree(model, drivers, ratios, offsets, frames, tuple(doubts))
 
 
 def _free(tree: ElementTree.Element) -> list[str]:
