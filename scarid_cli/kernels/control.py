@@ -39,7 +39,7 @@ class Controller:
             raise ValueError("control: lengths differ")
         if motors.shape[0] != n or motors.shape[1] != n or len(world) != 7:
             raise ValueError("control: lengths differ")
-        if gains.shape[1] != 8 or body.shape[1] != 26 or joints.shape[1] != 20:
+        if gains.shape[1] != 8 or body.shape[1] != 26 or joints.shape[1] != 21:
             raise ValueError("control: numbers of columns are wrong")
         if couplings.shape[1] != 6 or memory.shape[0] != 3 or len(setup) != 6:
             raise ValueError("control: sizes are wrong")

@@ -1,10 +1,11 @@
 """Friction torques of joints, and which joints stick.
 
-A row of `joints` (joints, 20) has the viscous friction forward and backward [0, 1], the Coulomb
+A row of `joints` (joints, 21) has the viscous friction forward and backward [0, 1], the Coulomb
 friction forward and backward [2, 3], the Stribeck friction and its velocity [4, 5], the smoothed
 Coulomb friction and its velocity [6, 7], the offset torque [8], the Coulomb friction per
 transmitted torque [9], the change of all friction with time and its time constant [10, 11] and 1
-if Coulomb friction holds the joint at rest [12]; the rest is that of arm.py.
+if Coulomb friction holds the joint at rest [12]; friction with the square of the velocity [20]; the
+rest is that of arm.py.
 
 The friction torques of joints at rest are the solution of a linear complementarity problem with
 bounds, of a symmetric positive definite matrix: it has one solution, which the pivoting method of
@@ -27,7 +28,7 @@ class Friction:
     """The friction of joints (see above for the table)."""
 
     def __init__(self, joints):
-        if joints.shape[1] != 20:
+        if joints.shape[1] != 21:
             raise ValueError("friction: numbers of columns are wrong")
         self.joints = joints
 
@@ -49,6 +50,8 @@ class Friction:
             ratio = v / float(self.joints[i, 5])
             jump += float(self.joints[i, 4]) * exp(-ratio * ratio)
         f = (float(self.joints[i, 0]) if forward else float(self.joints[i, 1])) * v + s * jump
+        if self.joints[i, 20] != 0.0:
+            f += float(self.joints[i, 20]) * v * abs(v)
         if self.joints[i, 6] != 0.0:
             smooth = tanh(v / float(self.joints[i, 7]))
             f += float(self.joints[i, 6]) * smooth

@@ -31,7 +31,7 @@ class Mechanics:
         n, size, m = len(joints), len(motors), len(couplings)
         if size < n or motors.shape[1] != size:
             raise ValueError("mechanics: lengths differ")
-        if body.shape[1] != 26 or joints.shape[1] != 20 or couplings.shape[1] != 6:
+        if body.shape[1] != 26 or joints.shape[1] != 21 or couplings.shape[1] != 6:
             raise ValueError("mechanics: numbers of columns are wrong")
         if len(world) != 7:
             raise ValueError("mechanics: sizes are wrong")

@@ -154,7 +154,7 @@ def arm(rng: np.random.Generator, *, resolution: float = 1e-5, kind: float = 0.0
     gains[1, 5:] = 1e-5, 50.0, 0.3  # eccentricity of the encoder
     table = model(robot)
     joints = table.joints.copy()
-    joints[:, [4, 9, 10]] = 0.1  # Stribeck, load and drift
+    joints[:, [4, 9, 10, 20]] = 0.1  # Stribeck, load, drift and quadratic
     joints[:, [17, 18, 19]] = 500.0, 0.01, 20.0  # drives
     world = np.array([0.2, 0.0, 0.0, 0.2, 0.1, 0.0, 9.0])  # gravity, and vibration of the base
     plant = (table.body, table.motors, joints, COUPLING, world)

@@ -1,48 +1,76 @@
-"""Curves that are linear in coefficients: their functions, and the bounds of their values."""
+"""The law of a curve of friction, against curves of a known law; the term that it advises."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from scipy.interpolate import BSpline
+from conftest import ROOT, Shell
+from hypothesis import given
+from hypothesis import strategies as st
 
-from scarid_cli.algorithms.trajectories.curve import Basis, random_curve
-from scarid_cli.algorithms.trajectories.fourier import FourierBasis
-from scarid_cli.algorithms.trajectories.limits import Limits
-from scarid_cli.algorithms.trajectories.spline import SplineBasis
+from scarid_cli.algorithms.statistics.curves import REMEDIES, law
 
-BASES = [SplineBasis(6.0, 7), FourierBasis(6.0, 3)]
-every_basis = pytest.mark.parametrize("basis", BASES, ids=["spline", "fourier"])
+SPEEDS = np.linspace(0.05, 2.0, 100)
 
 
-@every_basis
-def test_the_functions_of_a_basis_have_a_peak_acceleration_of_1_and_start_and_end_at_rest(
-    basis: Basis,
+@given(
+    st.floats(0.0, 2.0),
+    st.floats(1e-3, 1e3),
+    st.sampled_from(
+        [(0.3, "slower"), (0.5, "slower"), (1.0, ""), (1.5, "faster"), (2.0, "faster")]
+    ),
+)
+def test_a_power_of_the_speed_is_told(jump: float, size: float, case: tuple[float, str]) -> None:
+    power, kind = case
+    assert law(SPEEDS, size * (jump + SPEEDS**power)) == REMEDIES[kind]
+
+
+@given(st.floats(0.1, 0.5), st.floats(0.2, 2.0), st.floats(0.0, 0.1))
+def test_a_stribeck_effect_is_told(velocity: float, jump: float, viscous: float) -> None:
+    curve = 1.0 + jump * np.exp(-((SPEEDS / velocity) ** 2)) + viscous * SPEEDS
+    assert law(SPEEDS, curve) == REMEDIES["falls"]
+
+
+ARM = """
+title = "planar"
+urdf = "{urdf}"
+[[joint]]
+acceleration_limit = 15.0
+encoder_resolution = 2e-5
+torque_noise = 0.05
+terms = {{ inertia = 0.1, viscous = 0.5, coulomb = 1.0, offset = 0.1{quadratic} }}
+[[joint]]
+acceleration_limit = 20.0
+encoder_resolution = 2e-5
+torque_noise = 0.02
+terms = {{ inertia = 0.02, viscous = 0.2, coulomb = 0.4, offset = 0.0{quadratic} }}
+"""
+
+
+def test_quadratic_friction_is_named_and_its_term_is_what_it_needs(
+    shell: Shell, tmp_path: Path
 ) -> None:
-    t = np.linspace(0.0, basis.duration, 4001)
-    for order in range(4):
-        values, slopes = basis.values(t, order), basis.values(t, order + 1)
-        differences = (values[:, 2:] - values[:, :-2]) / (2.0 * t[1])
-        np.testing.assert_allclose(differences, slopes[:, 1:-1], atol=0.02 * np.abs(slopes).max())
-        if order < 3:
-            assert (values[:, [0, -1]] == 0.0).all()
-    assert np.abs(basis.values(t, 2)).max(axis=1) == pytest.approx(1.0, rel=1e-3)
-
-
-def test_splines_are_those_of_scipy() -> None:
-    t = np.linspace(0.0, 6.0, 50)
-    knots = np.concatenate((np.zeros(5), np.linspace(0.0, 6.0, 8), np.full(5, 6.0)))
-    theirs = BSpline.design_matrix(t, knots, 5).toarray().T[3:-3]
-    ours = SplineBasis(6.0, 7).values(t, 0)
-    np.testing.assert_allclose(ours, theirs * (ours.max(axis=1) / theirs.max(axis=1))[:, None])
-
-
-@every_basis
-def test_the_largest_values_of_a_curve_bound_all_its_values(basis: Basis) -> None:
-    limits = Limits(*np.array([[-1.0, -2.0], [2.0, 0.5], [1.0, 3.0], [2.0, 4.0]]))
-    curve = random_curve(basis, np.zeros(2), limits, np.random.default_rng(1))
-    q, dq, ddq = curve.sample(np.linspace(0.0, basis.duration, 100_003))
-    below, above, fast, hard = curve.largest()
-    for bound, values in ((below, -q), (above, q), (fast, np.abs(dq)), (hard, np.abs(ddq))):
-        assert np.all(values.max(axis=1) <= bound)
-        assert values.max(axis=1) == pytest.approx(bound, rel=1e-4, abs=1e-6)
+    (tmp_path / "true.toml").write_text(
+        ARM.format(urdf=ROOT / "samples" / "arm.urdf", quadratic=", quadratic = 0.4")
+    )
+    (tmp_path / "known.toml").write_text(
+        ARM.format(urdf=ROOT / "samples" / "arm.urdf", quadratic="")
+    )
+    made = shell(
+        "scarid trajgen --robot true.toml --duration 15 --seed 2 | "
+        "scarid simulate --robot true.toml --seed 3 -o log.parquet"
+    )
+    assert made.status == 0, made.err
+    named = shell("scarid identify --robot known.toml log.parquet -o p.parquet")
+    assert "grows faster than the speed, as its square does" in named.err
+    found = shell(
+        "scarid identify --robot true.toml log.parquet -o q.parquet && scarid convert q.parquet"
+    )
+    assert "scarid identify: good: " in found.err
+    rows = [line.split(",") for line in found.out.splitlines()]
+    at = rows[0].index("estimate")
+    values = {row[0]: float(row[at]) for row in rows[1:]}
+    assert values["fq1"] == pytest.approx(0.4, rel=0.1)
+    assert values["fq2"] == pytest.approx(0.4, rel=0.1)

@@ -24,6 +24,7 @@ FRICTION = {
     "coulomb-backward": (3,),
     "stribeck": (4,),
     "offset": (8,),
+    "quadratic": (20,),
 }
 FORWARD, BACKWARD, STRIBECK, STRIBECK_VELOCITY = 2, 3, 4, 5
 SMOOTH, SMOOTH_VELOCITY, LOAD, DRIFT, DRIFT_TIME, STICKS = 6, 7, 9, 10, 11, 12
@@ -68,7 +69,7 @@ def model(robot: Robot) -> Model:
     """The arm of a robot description, with its a priori values."""
     chain = mechanism(robot)
     n = len(robot.joints)
-    joints, motors = np.zeros((n, 20)), np.zeros((n, n))
+    joints, motors = np.zeros((n, 21)), np.zeros((n, n))
     joints[:, [STRIBECK_VELOCITY, SMOOTH_VELOCITY, DRIFT_TIME, GAIN]] = 1.0
     joints[:, DRIVE] = np.arange(n)
     couplings: dict[tuple[int, int], Array] = {}

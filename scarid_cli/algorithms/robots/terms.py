@@ -17,6 +17,7 @@ Column = dict[int, Array]  # from a joint (from 0) to samples; other joints are 
 # Units of parameters, of a revolute and of a prismatic joint.
 INERTIA = ("kg m2", "kg")
 VISCOUS = ("N m s/rad", "N s/m")
+SQUARE = ("N m s2/rad2", "N s2/m2")
 TORQUE = ("N m", "N")
 
 
@@ -139,6 +140,15 @@ class Stribeck(AxisTerm):
         ratio = dq / self.velocity
         friction: Array = np.sign(dq) * np.exp(-ratio * ratio)
         return friction
+
+
+class Quadratic(AxisTerm):
+    """Friction with the square of the velocity, as of a fan or of thick oil: dq |dq|."""
+
+    NAME, SYMBOL, UNITS = "quadratic", "fq{i}", SQUARE
+
+    def torque(self, dq: Array) -> Array:
+        return dq * np.abs(dq)
 
 
 class ViscousForward(AxisTerm):

@@ -30,7 +30,11 @@ SLOW, STRIBECK, CURVATURE = "slow friction", "Stribeck", "curvature"
 DECAYED = {SLOW: 0.1, STRIBECK: 0.3, CURVATURE: 1.0}
 TORQUES = (OFFSET, ASYMMETRY, *DECAYED, LOAD, SPRING, SATURATION, DRIFT, TILT, RIPPLE)
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
-BESIDE_FRICTION = ("offset", "stribeck")  # terms that are not friction alone, but go with it
+BESIDE_FRICTION = (
+    "offset",
+    "stribeck",
+    "quadratic",
+)  # beside friction
 
 
 def hann(h: float) -> Array:

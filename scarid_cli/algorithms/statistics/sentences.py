@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     TILT,
     tilted,
 )
+from scarid_cli.algorithms.statistics.curves import laws
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import REVERSALS, Effect, level_among
 from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, ZEROS
@@ -46,8 +47,7 @@ ADVICE = {
     "viscous-forward and viscous-backward to the robot)",
     SLOW: DECREASES,
     STRIBECK: DECREASES,
-    CURVATURE: "friction of {joints} is not the sum of Coulomb and viscous friction (try Stribeck "
-    "friction with --estimator separable)",
+    CURVATURE: "friction of {joints} is not the sum of Coulomb and viscous friction",
     LOAD: "friction of {joints} grows with the transmitted torque, for which there is no term",
     SPRING: "something pulls on {joints} as a spring or a cable does, for which there is no term",
     SATURATION: "the logged torque of {joints} is not proportional to the real one, as when a "
@@ -105,8 +105,10 @@ def _offsets(diagnostics: Diagnostics, robot: Robot) -> list[str]:
     ]
 
 
-def additions_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> list[str]:
-    """What was fitted beside the parameters, with the terms to add.
+def additions_of(
+    estimates: Mapping[str, float], diagnostics: Diagnostics, robot: Robot
+) -> list[str]:
+    """What was fitted beside the parameters, whose estimates these are, with the terms to add.
 
     Other joints may have the same: the parameters whose intervals are wider for that are named.
     """
@@ -118,7 +120,9 @@ def additions_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -
         own = [addition for addition, of in zip(added, kinds, strict=True) if of == kind]
         joints = joints_named(dict.fromkeys(x.joint + 1 for x in own))
         advice = ADVICE[kind].format(joints=joints, periods=_periods(_ripples(own), robot))
-        elsewhere = _elsewhere(names, diagnostics, kind, {x.joint for x in own})
+        elsewhere = _elsewhere(list(estimates), diagnostics, kind, {x.joint for x in own})
+        if kind == CURVATURE:
+            advice = f"{advice}: {laws(own, estimates, robot)}"
         notes.append(f"{advice}; {_fitted(kind, own, robot)}{elsewhere}")
     return notes
 

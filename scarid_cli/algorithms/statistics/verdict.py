@@ -113,7 +113,8 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     if wrong and evidence.unexplained and not evidence.failed:
         wrong = [evidence.unexplained, *wrong]
     names, diagnostics = evidence.names, evidence.diagnostics
-    notes = [*additions_of(names, diagnostics, robot), *notes_of(names, diagnostics, robot)]
+    own = dict(zip(names, evidence.estimates.tolist(), strict=False))
+    notes = [*additions_of(own, diagnostics, robot), *notes_of(names, diagnostics, robot)]
     notes = [*_inertia_unknown(evidence), *notes]
     if not wrong and any(x.end - x.start >= LASTING for x in evidence.diagnostics.bursts):
         notes = [*([evidence.unexplained] if evidence.unexplained else []), *notes]
