@@ -22,6 +22,7 @@ PIPES = {
     "filter": ("filter -q",),
     "differentiate": ("differentiate -q",),
     "filter | differentiate | identify, CSV": ("filter -q", "differentiate -q", TRACE),
+    "CSV, --all-rows": ("filter -q", "differentiate -q", f"{TRACE} --all-rows"),
     "the same, Arrow": (
         "filter -q --format arrow",
         "differentiate -q --format arrow",

@@ -15,6 +15,7 @@ import pyarrow.csv as pacsv
 
 from scarid_cli.errors import BadData, bad_data, cut_short
 from scarid_cli.io.bytesource import ByteSource, require_moderate_row
+from scarid_cli.io.carried import Carried, facts_of
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.stop import STOP
 from scarid_cli.io.table import Metadata, Table
@@ -81,13 +82,15 @@ def _table(source: ByteSource) -> Table:
     body = first[header_end:]
     while not body.strip() and (more := next(lines, None)):
         body = more
-    types = _types(names, body)
-    schema = pa.schema(list(zip(names, types, strict=True)))
+    row = _first_row(names, body)
+    schema = pa.schema(list(zip(names, _types(row), strict=True)))
     batches = _batches(body, lines, schema, source.name)
-    if not names[-1]:
-        schema = schema.remove(len(names) - 1)
-        batches = (batch.select(schema.names) for batch in batches)
-    return Table(source.name, schema, Metadata(), batches)
+    extra, carried = facts_of(row)
+    kept = [name for name in names if name and name not in carried]
+    if len(kept) < len(names):
+        schema = pa.schema([schema.field(name) for name in kept])
+        batches = (batch.select(kept) for batch in batches)
+    return Table(source.name, schema, Metadata(extra=extra), batches)
 
 
 def _complete_lines(source: ByteSource) -> Iterator[bytes]:
@@ -186,14 +189,18 @@ def _require_different(names: list[str], name: str) -> None:
             )
 
 
-def _types(names: list[str], body: bytes) -> list[pa.DataType]:
+def _first_row(names: list[str], body: bytes) -> dict[str, str]:
+    """The values of the first row, empty where it has none."""
     first = next(csv.reader(io.StringIO(body[: _first_row_end(body)].decode(errors="replace"))), [])
-    values = first + [""] * (len(names) - len(first))
+    return dict(zip(names, first + [""] * (len(names) - len(first)), strict=False))
+
+
+def _types(row: dict[str, str]) -> list[pa.DataType]:
     return [
         (column_type(name) or (pa.float64() if NUMERIC.match(value) else pa.string()))
         if name
         else pa.null()
-        for name, value in zip(names, values, strict=False)
+        for name, value in row.items()
     ]
 
 
@@ -255,11 +262,14 @@ class CsvWriter:
     def __init__(self, write: Callable[[bytes], None], schema: pa.Schema) -> None:
         _require_writable(schema)
         self._write = write
-        self._schema = schema
+        self._carried, self._first = Carried.of(schema), True
+        schema = self._carried.schema(schema)
         self._numeric = not _has_text(schema)
         self._write(_csv_text([schema.names]))
 
     def write(self, batch: pa.RecordBatch) -> None:
+        batch = self._carried.beside(batch, first=self._first)
+        self._first = self._first and not batch.num_rows
         self._write(_numbers(batch) if self._numeric else self._texts(batch))
 
     def close(self) -> None:

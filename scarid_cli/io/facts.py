@@ -70,6 +70,15 @@ def _evidence(x: Any) -> bool:
     return known and len(x["information"]) == q * (q + 1) // 2
 
 
+ADDITION = {"name": text, "joint": lambda x: isinstance(x, int) and 0 <= x < 1 << 20,
+            "usual": _size, "size": _or_none(number), "cycles": _size}  # fmt: skip
+
+
+def _addition(x: Any) -> bool:
+    """What was fitted beside the parameters (statistics/additions.py)."""
+    return _of(ADDITION)(x) and set(x) == set(ADDITION)
+
+
 def _rows_of_joints(x: Any) -> bool:
     """A list for each parameter, with a number for each joint; one parameter at least, or none."""
     if not isinstance(x, dict):
@@ -85,6 +94,7 @@ CHECKS: dict[str, Check] = {
     "delay": _or_none(number),
     "delay_error": _or_none(_size),
     "low_pass": truth,
+    "additions": _list(_addition),
     "covariance": _or_none(_list(_list(_or_none(number)))),
     "full_estimates": _or_none(_list(_or_none(number))),
     "dropped": _list(text),

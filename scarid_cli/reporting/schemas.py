@@ -23,7 +23,11 @@ lists the columns with their types and units. Equation numbers are those of the 
 
 Arrow and Parquet files keep the kind of a table, the robot, the units, the sampling period and the
 history in their metadata, which `scarid info FILE` prints. A CSV file has no metadata: its kind is
-detected from its columns.
+detected from its columns. What the next command needs of the metadata stands in columns that only
+CSV has, and that become metadata again where it is read: of a motion `passed_bandwidth` [Hz],
+`passed_order` and `velocity_noise1` ... [rad/s or m/s], of a table of parameters `fitted_beside`,
+JSON in its first row (the delay, and what was fitted beside the parameters). So a pipe ends in the
+same estimates in any format.
 
 The kinds are declared in `schemas/`, in the format of the Frictionless Table Schema. Commands check
 what they read against these files, and `make docs` renders them as this page.

@@ -37,7 +37,7 @@ from scarid_cli.io.writer import Document
 from scarid_cli.stages import blind
 from scarid_cli.stages.blind import FOR_MOTION, Choices, Chosen, Prepared
 from scarid_cli.stages.documents import identification
-from scarid_cli.stages.parameters import ADDITIONS, identified
+from scarid_cli.stages.parameters import identified
 
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
 
@@ -123,17 +123,7 @@ def _tell(job: Job, table: Table, robot: str, chosen: Chosen, extra: dict[str, A
     report(job, table, chosen.treatment.counting, extra.get("left_out", {}))
     facts, verdict = summary_lines(robot, chosen.name, extra)
     job.say(facts)
-    if chosen.treatment.align and job.writes_csv:
-        job.say(f"CSV {_lost(extra)}: write -o FILE.parquet for validate to apply it")
     job.say(verdict, extra["verdict"])
-
-
-def _lost(extra: dict[str, Any]) -> str:
-    """What validate needs beside the parameters, and CSV lacks."""
-    more = bool(extra.get(ADDITIONS))
-    return (
-        "keeps neither the delay nor what was fitted as well" if more else "does not keep the delay"
-    )
 
 
 def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
