@@ -12,6 +12,9 @@ from scarid_cli.cli.declare import declare
 @options.table_input
 @options.robot
 @click.option("--strict", is_flag=True, help="Exit with 1 if there are warnings only.")
+@click.option(
+    "--fix", is_flag=True, help="Print the pipe that mends what it can, and nothing else."
+)
 @selecting.window
 @options.as_json
 @options.common
@@ -20,6 +23,7 @@ def command() -> None:
 
     \b
       scarid check --robot arm.toml log.csv
+      eval "$(scarid check --fix log.csv)" > mended.csv
       scarid check --strict log.parquet && scarid identify log.parquet
       scarid check --json log.csv | jq -r '.checks[] | select(.status != "ok") | .advice'
 
@@ -27,8 +31,9 @@ def command() -> None:
     values may be missing. Each line is a check: ok, warning or failed, what was found, and below it
     what to do. Units, reversed torques and exchanged joints are found with the limits of the
     robot's description and with a first fit of its model, which needs no parameters. A fault
-    that one check finds is corrected before the next ones run. The log is held in memory.
+    that one check finds is corrected before the next ones run. Below the count stands the pipe that
+    mends what commands can mend. The log is held in memory.
 
     Exit status: 0, also with warnings; 1 if there are warnings only and --strict is given; 65 if a
-    check failed.
+    check failed, with --fix if the pipe leaves something that failed.
     """

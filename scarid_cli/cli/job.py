@@ -61,6 +61,7 @@ class Job:
         self.sources: list[ByteSource] = []
         self.left_out: list[TooShort] = []
         self.notes: list[str] = []
+        self.converted_by: str | None = None  # the robot whose [log] names the columns of a log
         self.watched = ""  # what a person sees beside the number of rows
         self.remarks = Remarks(place.say)
         self._selection = selection_of(options)
@@ -209,6 +210,7 @@ class Job:
             from scarid_cli.stages.joints import as_described
 
             self.notes.append(f"{table.name}: columns, units and motors by [log] of {arm.name}")
+            self.converted_by = arm.name
             return as_described(table, arm, {}, [], None)
         if not arm.log.columns and arm.log.converts and not table.meta.history:
             self.notes.append(

@@ -103,7 +103,7 @@ def _explained(log: Log, robot: Robot, motion: Motion) -> Iterator[Finding]:
         robot = mounted.case.of(robot)
         motion = motion.mounted(np.array(mounted.case.signs), np.array(mounted.case.turns))
         found = Explained(Wiring.same(len(robot.joints)), mounted.fit)
-    yield from wiring.findings(found)
+    yield from wiring.findings(found, robot)
     seconds, error, samples = fit.aligned(robot, motion, found.case)
     yield fit.delay(seconds, error, motion)
     torques = units.torques(log, robot)

@@ -38,7 +38,7 @@ def _described(samples: Samples, robot: Robot) -> list[Finding]:
         some = len(set(signed.case.signs[1])) > 1
         explained = signed.fit.residuals.max() <= mounting.UNEXPLAINED
         if some and explained and signed.fit.misfit < mounted.fit.misfit:
-            return [wiring.signs(signed)]
+            return [wiring.signs(signed, robot)]
     return mounting.findings(mounted.case)
 
 

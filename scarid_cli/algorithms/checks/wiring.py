@@ -104,17 +104,19 @@ def _braking(found: Explained[Wiring], fit_of: Callable[[Wiring], Fit]) -> Expla
     return every if 2 * len(every.fit.driving) <= len(driving) else found
 
 
-def findings(found: Explained[Wiring]) -> list[Finding]:
+def findings(found: Explained[Wiring], robot: Robot) -> list[Finding]:
     """Findings on the signs of torques and positions, and on the order of the joints."""
-    return [signs(found), _order(found.case)]
+    return [signs(found, robot), _order(found.case)]
 
 
-def signs(found: Explained[Wiring]) -> Finding:
+def signs(found: Explained[Wiring], robot: Robot) -> Finding:
     """What is found on the signs of torques and positions."""
     positions, torques = ([j for j, s in enumerate(k) if s < 0] for k in found.case.signs)
+    command = f"`scarid convert {_turned(found.case, robot)}`"
     if len(torques) == len(found.fit.powers) and not positions:
         figure = "the friction of every joint would drive it"
-        return failed("signs", figure, "the torques' sign seems reversed: multiply all by -1")
+        advice = "the torques' sign seems reversed: multiply all by -1"
+        return failed("signs", figure, f"{advice}: {command}")
     if torques or positions:
         both = [j for j in torques if j in positions]
         only = [j for j in torques if j not in both], [j for j in positions if j not in both]
@@ -128,11 +130,21 @@ def signs(found: Explained[Wiring]) -> Finding:
             if joints
         ]
         figure = f"the model fits far better with {' and '.join(texts)} reversed"
-        return failed("signs", figure, f"multiply {' and '.join(texts)} by -1")
+        return failed("signs", figure, f"multiply {' and '.join(texts)} by -1: {command}")
     if found.fit.driving:
         figure = f"the friction of {joints_text(j + 1 for j in found.fit.driving)} is negative"
         return warning("signs", figure, "look at the sign of its torque, and at delays")
     return ok("signs", "friction brakes every joint")
+
+
+def _turned(wiring: Wiring, robot: Robot) -> str:
+    """The options of `convert` that multiply by -1 what is reversed."""
+    texts = []
+    for name, signs in zip(("q", "tau"), wiring.signs, strict=True):
+        for j, (sign, joint) in enumerate(zip(signs, robot.joints, strict=True), start=1):
+            unit = joint.unit if name == "q" else joint.torque_unit
+            texts += [f"--unit '{name}{j}=-1 {unit}'"] if sign < 0 else []
+    return " ".join(texts)
 
 
 def _order(wiring: Wiring) -> Finding:
@@ -144,5 +156,11 @@ def _order(wiring: Wiring) -> Finding:
     if not texts:
         return ok("order of joints", "as in the description")
     figure = f"the model fits far better with {' and '.join(texts)} exchanged"
-    advice = "the columns seem permuted: name them in the robot's order (`scarid convert --map`)"
+    options = [
+        f"--map {name}{j}={name}{place + 1}"
+        for name, places in zip(("q", "tau"), wiring.places, strict=True)
+        for j, place in enumerate(places, start=1)
+        if place + 1 != j
+    ]
+    advice = f"the columns seem permuted: `scarid convert {' '.join(options)}`"
     return failed("order of joints", figure, advice)

@@ -14,20 +14,46 @@ from scarid_cli.cli.terminal import styled, wrapped
 from scarid_cli.errors import BAD_DATA, OK, WARNED
 from scarid_cli.printable import printable
 from scarid_cli.stages import check as stage
+from scarid_cli.stages import mending
 from scarid_cli.stages.logs import log_of
 
 
-def run(job: Job, *, file: str, robot: str | None, strict: bool, as_json: bool) -> int:
+def run(job: Job, *, file: str, robot: str | None, strict: bool, fix: bool, as_json: bool) -> int:
     """Print the findings; returns the exit status."""
     table, arm = job.read_for(file, "measurement", robot, torques=True, as_recorded=True)
     findings = list(stage.check(log_of(table, len(arm.joints)), arm))
     job.say_notes()
-    if as_json:
+    pipe, left = mending.pipe(findings, file, job.converted_by)
+    if fix:
+        _print_fix(job, pipe, left)
+    elif as_json:
         checks = [asdict(finding) for finding in findings]
-        click.echo(json.dumps({"robot": arm.name, "status": worst(findings), "checks": checks}))
+        click.echo(
+            json.dumps(
+                {
+                    "robot": arm.name,
+                    "status": worst(findings),
+                    "fix": pipe or None,
+                    "checks": checks,
+                }
+            )
+        )
     else:
         _print(findings)
-    return {FAILED: BAD_DATA, WARNING: WARNED if strict else OK}.get(worst(findings), OK)
+        if pipe:
+            click.echo(f"mend: {pipe}")
+    status = worst(left if fix else findings)
+    return {FAILED: BAD_DATA, WARNING: WARNED if strict else OK}.get(status, OK)
+
+
+def _print_fix(job: Job, pipe: str, left: list[Finding]) -> None:
+    """The pipe, and on standard error what it leaves."""
+    if pipe:
+        click.echo(pipe)
+    for finding in left:
+        job.say(f"not mended: {finding.text}")
+    if not pipe and not left:
+        job.say("nothing to mend")
 
 
 def _print(findings: list[Finding]) -> None:

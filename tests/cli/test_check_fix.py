@@ -1,0 +1,69 @@
+"""`scarid check --fix`: followed, it gives a log on which nothing of it is found again."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from conftest import Shell
+
+LOG = (
+    "scarid trajgen -q --robot planar2-gravity --seed 3 --q-max 2,2 --ddq-max 20,30 --duration 20 |"
+    " scarid simulate -q --robot planar2-gravity --seed 3"
+)
+FAULTS = {
+    "degrees": "awk -F, -v OFS=, 'NR > 1 { $2 *= 57.29577951; $3 *= 57.29577951 } 1'",
+    "milliseconds": "awk -F, -v OFS=, 'NR > 1 { $1 *= 1000 } 1'",
+    "torque reversed": "awk -F, -v OFS=, 'NR > 1 { $5 *= -1 } 1'",
+    "exchanged": "awk -F, -v OFS=, '{ x = $4; if (NR > 1) { $4 = $5; $5 = x } } 1'",
+    "rows missing": "awk 'NR < 100 || NR % 17'",
+    "wraps": "awk -F, -v OFS=, 'NR > 1 { while ($2 > .5) $2 -= 1; while ($2 < -.5) $2 += 1 } 1'",
+    "glitches": "awk -F, -v OFS=, 'NR == 500 || NR == 1200 { $2 += 40 } 1'",
+    "several": "awk -F, -v OFS=, 'NR > 1 { $1 *= 1000; $2 *= 57.29577951; $3 *= 57.29577951 }"
+    " NR < 100 || NR % 17'",
+}
+
+
+def faulty(shell: Shell, fault: str) -> None:
+    made = shell(f"{LOG} --format csv | cut -d, -f-5 | {FAULTS[fault]} > log.csv")
+    assert made.status == 0, made.err
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_the_pipe_mends_the_log(fault: str, shell: Shell) -> None:
+    faulty(shell, fault)
+    found = shell("scarid check --robot planar2-gravity --json log.csv")
+    wrong = {x["name"] for x in json.loads(found.out)["checks"] if x["status"] != "ok"}
+    assert wrong, fault
+    pipe = shell("scarid check --robot planar2-gravity --fix log.csv")
+    assert pipe.out.count("\n") == 1, pipe.err
+    assert "not mended" not in pipe.err
+    mended = shell(
+        'eval "$(scarid check -q --robot planar2-gravity --fix log.csv)" > mended.csv;'
+        " scarid check --robot planar2-gravity --json mended.csv"
+    )
+    again = {x["name"] for x in json.loads(mended.out)["checks"] if x["status"] != "ok"}
+    assert not again & wrong, (pipe.out, again)
+    good = shell("scarid identify --robot planar2-gravity mended.csv -o p.parquet")
+    assert "scarid identify: good: " in good.err, good.err
+
+
+def test_nothing_is_printed_of_a_log_that_is_right(shell: Shell) -> None:
+    made = shell(
+        f"{LOG} --format csv -o log.csv && scarid check --robot planar2-gravity --fix log.csv"
+    )
+    assert made.status == 0
+    assert made.out == ""
+    assert "nothing to mend" in made.err
+
+
+def test_what_no_command_mends_is_said(shell: Shell) -> None:
+    made = shell(f"{LOG} --format csv | cut -d, -f-5 > log.csv")
+    assert made.status == 0
+    found = shell(
+        "awk -F, -v OFS=, 'NR > 1 { $5 = 0.2 } 1' log.csv > still.csv;"
+        " scarid check --robot planar2-gravity --fix still.csv"
+    )
+    assert found.status == 65
+    assert found.out == ""
+    assert "not mended: constant torque" in found.err
