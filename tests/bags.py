@@ -33,6 +33,17 @@ float64[] velocities
 float64[] accelerations
 float64[] effort
 builtin_interfaces/Duration time_from_start
+================================================================================
+MSG: control_msgs/InterfaceValue
+string[] interface_names
+float64[] values
+================================================================================
+MSG: sensor_msgs/JointState
+std_msgs/Header header
+string[] name
+float64[] position
+float64[] velocity
+float64[] effort
 """
 DEFINITIONS = {
     "sensor_msgs/msg/JointState": "string[] name\nfloat64[] position\nfloat64[] velocity\n"
@@ -44,6 +55,11 @@ DEFINITIONS = {
     ),
     "trajectory_msgs/msg/JointTrajectory": "string[] joint_names\n"
     "trajectory_msgs/JointTrajectoryPoint[] points",
+    "control_msgs/msg/DynamicJointState": "string[] joint_names\n"
+    "control_msgs/InterfaceValue[] interface_values",
+    "franka_msgs/msg/FrankaState": "float64[2] q\nfloat64[2] dq\nfloat64[2] tau_j",
+    "franka_msgs/msg/FrankaRobotState": "sensor_msgs/JointState measured_joint_state\n"
+    "sensor_msgs/JointState desired_joint_state",
     "std_msgs/msg/String": "string data",
 }
 STATE = "sensor_msgs/msg/JointState"
@@ -64,10 +80,15 @@ def state(ns: int, names: Sequence[str], **arrays: Sequence[float]) -> dict[str,
     return {"header": header(ns), "name": list(names), **values}
 
 
-def write_mcap(path: Path, types: dict[str, str], messages: Iterable[Message]) -> Path:
-    """A recording of these topics with their types; messages are received a second later."""
+def write_mcap(
+    path: Path, types: dict[str, str], messages: Iterable[Message], chunk: int = 1 << 20
+) -> Path:
+    """A recording of these topics with their types; messages are received a second later.
+
+    `chunk` is the size in bytes from which messages are compressed together.
+    """
     with path.open("wb") as file:
-        writer = Writer(file)
+        writer = Writer(file, chunk_size=chunk)
         schemas = {
             topic: writer.register_msgdef(kind, HEADER + DEFINITIONS[kind] + PARTS)
             for topic, kind in types.items()

@@ -51,8 +51,13 @@ def outputs(context: click.Context) -> list[str]:
 def other_inputs(context: click.Context) -> list[str]:
     """The files that the options of a command read."""
     read = [p for p in context.command.params if isinstance(p.type, InputFile)]
-    values = [context.params[p.name or ""] for p in read]
-    listed = [str(v) for value in values for v in (value if isinstance(value, tuple) else (value,))]
+    pairs = [(p.type, context.params[p.name or ""]) for p in read]
+    listed = [
+        kind.file(str(v))
+        for kind, value in pairs
+        for v in (value if isinstance(value, tuple) else (value,))
+        if isinstance(kind, InputFile)
+    ]
     return [file for file in listed if file not in ("None", "-")]
 
 

@@ -7,6 +7,7 @@ import click
 from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 from scarid_cli.cli.headings import heading
+from scarid_cli.io.roles import ROLES
 
 
 @declare("convert")
@@ -63,9 +64,10 @@ from scarid_cli.cli.headings import heading
 @click.option(
     "--beside",
     multiple=True,
-    type=options.INPUT,
+    type=options.InputFile(roles=ROLES),
     metavar="FILE",
-    help="Another log with the same rows, whose columns are added; repeatable.",
+    help="Another log with the same rows, whose columns are added; as tau=FILE they are called "
+    "tau1, tau2, ... (or q, dq, current, q_ref); repeatable.",
 )
 @click.option(
     "--topic",

@@ -36,21 +36,31 @@ class InputFile(click.ParamType[str]):
 
     With `endings`, a text without any of them is a name and no file. That the file is there is
     checked before anything is read. It is not opened yet: a named pipe can be opened only once.
-    With `folders`, the folder of a rosbag2 will do as well.
+    With `folders`, the folder of a rosbag2 will do as well; with `roles`, ROLE=FILE.
     """
 
     name = "file"
 
     def __init__(
-        self, *words: str, endings: tuple[str, ...] = ("",), folders: bool = False
+        self,
+        *words: str,
+        endings: tuple[str, ...] = ("",),
+        folders: bool = False,
+        roles: tuple[str, ...] = (),
     ) -> None:
-        self.words, self.endings, self.folders = ("-", *words), endings, folders
+        self.words, self.endings = ("-", *words), endings
+        self.folders, self.roles = folders, roles
 
     def convert(self, value: Any, param: Any, ctx: Any) -> str:  # noqa: ARG002
-        path = str(value)
+        path = self.file(str(value))
         if path.endswith(self.endings) and path not in self.words:
             require_readable(path, folders=self.folders)
-        return path
+        return str(value)
+
+    def file(self, value: str) -> str:
+        """The file of a value, without its role."""
+        role, _, file = value.partition("=")
+        return file if file and role in self.roles else value
 
 
 @dataclass(frozen=True)
@@ -125,11 +135,16 @@ def require_readable(path: str, *, folders: bool = False) -> None:
         raise UsageFault(f"{path}: no such file") from None
     except OSError as error:
         raise OutputFailure(f"{path}: {error.strerror}") from None
-    recording = folders and os.path.exists(f"{path}/metadata.yaml")  # noqa: PTH110 (likewise)
-    if stat.S_ISDIR(mode) and not recording:
+    if stat.S_ISDIR(mode) and not (folders and _is_recording(path)):
         raise OutputFailure(f"{path}: Is a directory")
     if not os.access(path, os.R_OK):
         raise OutputFailure(f"{path}: Permission denied")
+
+
+def _is_recording(folder: str) -> bool:
+    """Whether a folder is that of a rosbag2, even if its metadata.yaml is lost."""
+    ends = (".db3", ".mcap")
+    return any(name == "metadata.yaml" or name.endswith(ends) for name in os.listdir(folder))  # noqa: PTH208 (likewise)
 
 
 INPUT = InputFile()

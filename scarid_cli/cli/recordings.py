@@ -41,6 +41,10 @@ def read_recording(
             f"{robot.name} has {len(robot.joints)} joints, but {topic.name} has "
             f"{', '.join(main.joints)}; name those of the robot in order with --joints"
         )
+    if bag.cut:
+        job.notes.append(
+            f"warning: {source.name} has no end, as of a recorder that was killed; read up to there"
+        )
     _say(job, main, topic, given=bool(wanted))
     table, notes = recorded(source.name, main, other, choice.join)
     job.notes += notes

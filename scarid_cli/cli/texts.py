@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 from scarid_cli.cli.job import Job
 from scarid_cli.io.bytesource import ByteSource, unzipped
 from scarid_cli.io.foreign import ARCHIVES, TranslatedCsv, read_archive
+from scarid_cli.io.jsonio import is_json, read_json
 from scarid_cli.io.notation import Notation, notation_of
+from scarid_cli.io.roles import role_of
 from scarid_cli.io.table import Table
 from scarid_cli.stages.recorders import expanded, recognised, units_in_names
 from scarid_cli.stages.seconds import clock_columns, with_one_clock
-from scarid_cli.stages.side import flattened, side_by_side
+from scarid_cli.stages.side import as_role, flattened, side_by_side, texts_flattened
 from scarid_cli.stages.wording import Unclear, in_short, in_words
 
 if TYPE_CHECKING:
@@ -41,7 +43,9 @@ def read_log(
     table = _one_clock(job, _read(job, file, source, given, named), named)
     for other in beside:
         apart = replace(given, header=()) if given else None
-        table = side_by_side(table, _read(job, other, job.opened(other), apart, named))
+        role, path = role_of(other)
+        found = _read(job, path, job.opened(path), apart, named)
+        table = side_by_side(table, as_role(found, role, table.columns) if role else found)
     return table
 
 
@@ -56,12 +60,14 @@ def _read(
     source = unzipped(source)
     if source.peek(4).startswith(BINARY):
         return flattened(job.read_source(source))
+    if is_json(source):
+        return read_json(source)
     notation = notation_of(source, given, by_name=bool(named))
     if notation.plain:
-        return job.read_source(source)
+        return texts_flattened(job.read_source(source))
     if not (given and given.separator):
         job.notes.append(f"{source.name}: read with {notation.text}")
-    return job.read_source(TranslatedCsv(source, notation))
+    return texts_flattened(job.read_source(TranslatedCsv(source, notation)))
 
 
 def _one_clock(job: Job, table: Table, named: Collection[str]) -> Table:

@@ -11,6 +11,7 @@ from typing import Any
 from scarid_cli.errors import BadData, ScaridError, UsageFault
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.cdr import Definitions
+from scarid_cli.io.unended import ended, has_no_end
 
 # The eight bytes with which a recording begins, and the extension by which rosbags knows it.
 BEGINNINGS = {b"\x89MCAP0\r\n": ".mcap", b"SQLite f": ".db3", b"#ROSBAG ": ".bag"}
@@ -28,13 +29,17 @@ class Topic:
 
 @dataclass(frozen=True)
 class Bag:
-    """An open recording, whose messages are CDR unless it is one of ROS 1."""
+    """An open recording, whose messages are CDR unless it is one of ROS 1.
+
+    It is `cut` if its end is missing.
+    """
 
     name: str
     topics: tuple[Topic, ...]
     definitions: Definitions
     cdr: bool
     reader: Any
+    cut: bool = False
 
     def messages(self, topic: Topic) -> Iterator[tuple[int, bytes]]:
         """The time at which each message was received [ns], and its bytes."""
@@ -65,14 +70,36 @@ def open_bag(path: str, source: ByteSource, extension: str) -> Iterator[Bag]:
         ) from None
     with contextlib.ExitStack() as stack:
         file = _named(path, source, extension, stack)
+        cut = extension == ".mcap" and has_no_end(file)
+        if cut:
+            file = _ended(file, stack)
         with _readable(source.name):
             # A recording before 2023 has no definitions; the usual types are those of Humble.
             store = get_typestore(Stores.ROS2_HUMBLE)
-            reader = AnyReader([file], default_typestore=store)
+            reader = AnyReader(_parts(file), default_typestore=store)
             stack.enter_context(reader)
             fields = {**store.fielddefs, **reader.typestore.fielddefs}
             topics = tuple(_topics(reader))
-        yield Bag(source.name, topics, fields, reader.is2, reader)
+        yield Bag(source.name, topics, fields, reader.is2, reader, cut)
+
+
+def _ended(path: Path, stack: contextlib.ExitStack) -> Path:
+    """What there is of a recording without an end, with one."""
+    import tempfile
+
+    copy = Path(stack.enter_context(tempfile.TemporaryDirectory()), "recording.mcap")
+    ended(path, copy)
+    return copy
+
+
+def _parts(path: Path) -> list[Path]:
+    """The recording; of a folder that has lost its metadata.yaml, the files of one kind in it."""
+    if not path.is_dir() or (path / "metadata.yaml").exists():
+        return [path]
+    for extension in BEGINNINGS.values():
+        if files := sorted(path.glob(f"*{extension}")):
+            return files
+    return [path]
 
 
 def _topics(reader: Any) -> Iterator[Topic]:

@@ -62,7 +62,8 @@ def _not_a_table(name: str) -> BadData:
 
 def _refuse_json(header: bytes, name: str) -> None:
     if header.startswith(JSON) or header.strip() in (b"{", b"["):
-        raise BadData(f"{name}: JSON is not read; write the log as CSV, a row for each sample")
+        convert = f"scarid convert {shlex.quote(name)} -o log.parquet"
+        raise BadData(f"{name}: JSON; convert it first: `{convert}`")
 
 
 def _table(source: ByteSource) -> Table:

@@ -18,7 +18,7 @@ from scarid_cli.io.notation import SPACE, Notation
 from scarid_cli.io.table import Metadata, Table, doubles
 from scarid_cli.printable import printable
 
-ARCHIVES = (".npz", ".mat")
+ARCHIVES = (".npz", ".mat", ".h5", ".hdf5")
 END_OF_ZIP = struct.Struct("<4s6xH10x")  # the last bytes: a mark, and how many files there are
 MANY = 0xFFFF  # stands for a number that is elsewhere
 COMMENTS = b"#%"  # that begin a line before the header

@@ -26,12 +26,15 @@ class Kind:
     """A type of message: the path of the names, and for each column those of its values.
 
     The first path with values counts. With `points`, each element of this array is a row, paths
-    begin there, and its time counts from that of the message.
+    begin there, and its time counts from that of the message. With `each`, this array has an
+    element for each joint, with the names of its interfaces and their values, and the paths are
+    names of interfaces. Without `names`, joints are joint1, joint2, ...
     """
 
     names: str
     columns: dict[str, tuple[str, ...]]
     points: str = ""
+    each: str = ""
 
 
 KINDS = {
@@ -47,6 +50,31 @@ KINDS = {
             "q{i}_ref": ("reference.positions", "desired.positions"),
             "dq{i}_ref": ("reference.velocities", "desired.velocities"),
             "ddq{i}_ref": ("reference.accelerations", "desired.accelerations"),
+        },
+    ),
+    "control_msgs/msg/DynamicJointState": Kind(
+        "joint_names",
+        {Q: ("position",), "dq{i}_measured": ("velocity",), TAU: ("effort", "torque")},
+        each="interface_values",
+    ),
+    "franka_msgs/msg/FrankaState": Kind(
+        "",
+        {
+            Q: ("q",),
+            "dq{i}_measured": ("dq",),
+            TAU: ("tau_j", "tau_J"),
+            "q{i}_ref": ("q_d",),
+            "dq{i}_ref": ("dq_d",),
+        },
+    ),
+    "franka_msgs/msg/FrankaRobotState": Kind(
+        "measured_joint_state.name",
+        {
+            Q: ("measured_joint_state.position",),
+            "dq{i}_measured": ("measured_joint_state.velocity",),
+            TAU: ("measured_joint_state.effort",),
+            "q{i}_ref": ("desired_joint_state.position",),
+            "dq{i}_ref": ("desired_joint_state.velocity",),
         },
     ),
     "trajectory_msgs/msg/JointTrajectory": Kind(
@@ -131,11 +159,14 @@ class _Part:
         return np.full((len(self.received), self.joints), np.nan) if found is None else found
 
 
+Values = tuple[Numbers, ...]  # one piece, or one for each joint
+
+
 @dataclass(frozen=True)
 class _Row:
     """Where the values of a row are, and in which order; `after` are seconds and nanoseconds."""
 
-    columns: dict[str, Numbers]
+    columns: dict[str, Values]
     order: tuple[int, ...]
     after: tuple[Numbers, Numbers] | None
 
@@ -209,7 +240,7 @@ class _Reading:
 
     def _rows(self, found: Layout) -> list[_Row]:
         """The rows of a message of this layout; none if it lacks a joint."""
-        names = found.texts.get(self.kind.names, [])
+        names = found.texts.get(self.kind.names, []) if self.kind.names else self._numbered(found)
         self.seen |= dict.fromkeys(names)
         starts = list(_starts(found, self.kind))
         columns = [self._columns(found, start, len(names)) for start in starts]
@@ -224,9 +255,16 @@ class _Reading:
             if own
         ]
 
-    def _columns(self, found: Layout, start: str, joints: int) -> dict[str, Numbers]:
+    def _numbered(self, found: Layout) -> list[str]:
+        """Names of joints that have none, as many as there are positions."""
+        values = found.numbers.get(self.kind.columns[Q][0])
+        return [f"joint{i}" for i in range(1, values.count + 1)] if values else []
+
+    def _columns(self, found: Layout, start: str, joints: int) -> dict[str, Values]:
         """The columns that have values; there must be one for each of the names."""
-        columns: dict[str, Numbers] = {}
+        if self.kind.each:
+            return _interfaces(found, self.kind, joints)
+        columns: dict[str, Values] = {}
         for name, paths in self.kind.columns.items():
             given = (found.numbers.get(start + path) for path in paths)
             values = next((one for one in given if one and one.count), None)
@@ -239,8 +277,29 @@ class _Reading:
                     row=self.count + 1,
                 )
             if values:
-                columns[name] = values
+                columns[name] = (values,)
         return columns
+
+
+def _interfaces(found: Layout, kind: Kind, joints: int) -> dict[str, Values]:
+    """The columns of which every joint has an interface."""
+    columns: dict[str, Values] = {}
+    for name, interfaces in kind.columns.items():
+        pieces = [_interface(found, f"{kind.each}.{k}", interfaces) for k in range(joints)]
+        own = [piece for piece in pieces if piece]
+        if own and len(own) == joints:
+            columns[name] = tuple(own)
+    return columns
+
+
+def _interface(found: Layout, start: str, interfaces: Sequence[str]) -> Numbers | None:
+    """Where the value of the first of these interfaces is that a joint has."""
+    names = found.texts.get(f"{start}.interface_names", [])
+    values = found.numbers.get(f"{start}.values")
+    at = next((names.index(name) for name in interfaces if name in names), None)
+    if at is None or values is None or at >= values.count:
+        return None
+    return Numbers(values.offset + at * int(values.type[-1]), 1, values.type)
 
 
 def _starts(found: Layout, kind: Kind) -> Iterator[str]:
@@ -271,7 +330,8 @@ def _fill(part: _Part, group: _Group, data: Bytes, first: Integers) -> None:
         for name, values in row.columns.items():
             if name not in part.columns:
                 part.columns[name] = np.full((len(part.received), part.joints), np.nan)
-            part.columns[name][at] = _view(data, values)[:, row.order]
+            pieces = [_view(data, piece) for piece in values]
+            part.columns[name][at] = np.concatenate(pieces, axis=1)[:, row.order]
 
 
 def _nanoseconds(data: Bytes, seconds: Numbers, rest: Numbers) -> Integers:

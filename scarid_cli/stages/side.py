@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from itertools import chain
 
@@ -12,6 +13,8 @@ import pyarrow as pa
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import SEGMENT, Table, doubles, integers, matrix, number
 
+LIST = re.compile(r"(?:array\('\w', )?[\[({]([^\[\](){}]+)[\])}]\)?")  # numbers in a text
+CLOCK = re.compile(r"(?i)t|time.*|.*stamp.*|index|seq|row|.*sec")
 PAUSE = 1.0  # seconds between two episodes, whose clocks each start at 0
 
 
@@ -58,6 +61,82 @@ def _flat(
             )
         columns += [doubles(x) for x in values.reshape(batch.num_rows, -1).T]
     return pa.RecordBatch.from_arrays(columns, schema=schema)
+
+
+def texts_flattened(table: Table) -> Table:
+    """The table with lists in cells of text, as in "[0.1, 0.2]", taken apart."""
+    texts = [field.name for field in table.schema if pa.types.is_string(field.type)]
+    if not texts:
+        return table
+    batches = table.batches
+    first = next(batches, None)
+    if first is None or not first.num_rows:
+        return table
+    starts = {name: _numbers_in(first.column(name)[0].as_py()) for name in texts}
+    lengths = {name: len(own) for name, own in starts.items() if own}
+    rows = chain([first], batches)
+    if not lengths:
+        return replace(table, batches=rows)
+    schema = pa.schema([pa.field(f.name, pa.list_(pa.float64())) if f.name in lengths else f
+                        for f in table.schema])  # fmt: skip
+    lists = (_with_lists(batch, schema, lengths, table.name) for batch in rows)
+    return flattened(replace(table, schema=schema, batches=lists))
+
+
+def _with_lists(
+    batch: pa.RecordBatch, schema: pa.Schema, names: Collection[str], name: str
+) -> pa.RecordBatch:
+    columns = []
+    for field, column in zip(batch.schema, batch.columns, strict=True):
+        if field.name not in names:
+            columns.append(column)
+            continue
+        values = [_numbers_in(text) for text in column.to_pylist()]
+        if None in values:
+            at = values.index(None)
+            raise bad_data(
+                name,
+                f"'{column[at]}'",
+                expected="a list of numbers as in the first row",
+                remedy="correct or remove the row",
+                row=at + 1,
+                column=field.name,
+            )
+        columns.append(pa.array(values, pa.list_(pa.float64())))
+    return pa.RecordBatch.from_arrays(columns, schema=schema)
+
+
+def _numbers_in(text: str | None) -> list[float] | None:
+    """The numbers of a text such as `[0.1, 0.2]`, `(1 2)`, `array('d', [1, 2])`; None if none."""
+    match = LIST.fullmatch((text or "").strip())
+    if not match:
+        return None
+    try:
+        return [float(word) for word in re.split(r"[,;\s]+", match[1].strip())]
+    except ValueError:
+        return None
+
+
+def as_role(table: Table, role: str, known: Collection[str]) -> Table:
+    """The table with its columns of numbers called role1, role2, ...; what the log has as well
+    (`known`) goes, and so do times and counters of rows.
+    """
+    lengths = [f.name for f in table.schema if pa.types.is_floating(f.type)]
+    clocks = {name for name in table.columns if CLOCK.fullmatch(name)}
+    values = [name for name in lengths if name not in clocks]
+    if not values:
+        raise BadData(
+            f"{table.name}: no columns of numbers for {role}; it has {', '.join(table.columns)}"
+        )
+    names = [f"{role}{i}" for i in range(1, len(values) + 1)]
+    if both := [name for name in names if name in known]:
+        raise BadData(f"{table.name}: the log has {both[0]} already; leave out {role}=")
+    schema = pa.schema([number(name) for name in names])
+    batches = (
+        pa.RecordBatch.from_arrays([doubles(x) for x in matrix(batch, values)], schema=schema)
+        for batch in table.batches
+    )
+    return replace(table, schema=schema, batches=batches)
 
 
 def episodes_joined(table: Table, episode: str) -> Table:

@@ -86,14 +86,13 @@ def test_a_file_that_only_convert_reads_names_it(name: str, shell: Shell, tmp_pa
     refused(result, 65, f"{name}: convert it first: `scarid convert {quoted} -o log.parquet`")
 
 
-@pytest.mark.parametrize(
-    "text", ['{"t": 0.0, "q1": 1.0}\n', '[\n  {"t": 0.0}\n]\n', "[[0.0, 1.0]]\n"]
-)
-def test_json_is_refused(text: str, shell: Shell, tmp_path: Path) -> None:
+@pytest.mark.parametrize("text", ['{"t": 0.0, "q1": 1.0}\n', '[\n  {"t": 0.0}\n]\n'])
+def test_json_is_for_convert(text: str, shell: Shell, tmp_path: Path) -> None:
     """A line of it looks like a line of CSV."""
     (tmp_path / "log.json").write_text(text)
-    for command in ("convert", "info"):
-        refused(shell(f"scarid {command} log.json"), 65, "log.json: JSON is not read; write")
+    for command in ("filter", "info"):
+        advice = "log.json: JSON; convert it first: `scarid convert log.json"
+        refused(shell(f"scarid {command} log.json"), 65, advice)
 
 
 @pytest.mark.parametrize(

@@ -226,8 +226,32 @@ def test_what_is_ambiguous_or_broken_is_refused(scarid: Run, tmp_path: Path) -> 
     )  # fmt: skip
     refused(scarid("convert", none), 2, "no topic with positions of joints: /c (std_msgs/msg")
     cut = tmp_path / "cut.mcap"
-    cut.write_bytes(two.read_bytes()[:-200])
-    refused(scarid("convert", cut), 65, "cut.mcap: not a readable recording")
+    cut.write_bytes(two.read_bytes()[:100])
+    refused(scarid("convert", cut), 2, "cut.mcap: no topic with positions of joints: none")
+
+
+def test_a_recording_without_an_end_is_read_up_to_there(scarid: Run, tmp_path: Path) -> None:
+    """Whatever is missing, the rows are the first ones of the whole, and it is said."""
+    names = ("a", "b")
+    messages = [
+        ("/a", START + k * MILLISECOND, state(START + k * MILLISECOND, names, position=[k, -k]))
+        for k in range(300)
+    ]
+    whole = write_mcap(tmp_path / "whole.mcap", {"/a": STATE}, messages, chunk=4000)
+    rows = scarid("convert", whole).out.splitlines()
+    data = whole.read_bytes()
+    counts = []
+    for size in range(1000, len(data), 1500):
+        cut = tmp_path / "cut.mcap"
+        cut.write_bytes(data[:size])
+        found = scarid("convert", cut)
+        if found.status == 0:
+            assert "cut.mcap has no end" in found.err
+            own = found.out.splitlines()
+            assert own == rows[: len(own)]
+            counts.append(len(own))
+    assert counts == sorted(counts)
+    assert len(set(counts)) > 3
 
 
 def test_a_missing_package_names_the_extra(

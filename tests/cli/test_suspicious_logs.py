@@ -54,7 +54,7 @@ def spoiled(log: Path, path: Path, factors: dict[str, float]) -> Path:
         (
             {"tau2": -1.0},
             "doubtful: signs: the model fits far better with the torque of joint 2 reversed; "
-            "multiply the torque of joint 2 by -1; ",
+            "multiply the torque of joint 2 by -1: ",
         ),
         ({"q1": 57.3, "q2": 57.3}, "doubtful: positions: joints 1, 2 up to 8"),
         ({"q1": 1000.0}, "doubtful: positions: joint 1 at "),
