@@ -37,7 +37,13 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
     if log.rows < FEWEST:
         yield failed("length", several(log.rows, "row"), "give a longer log")
         return
-    order = clock.order(log)
+    order, ticks = clock.order(log), clock.ticks(log)
+    if ticks.coarse:
+        yield clock.coarse(ticks)
+        if not ticks.rate:
+            return
+        log = log.counted(ticks.rate)
+        order = clock.order(log)
     log = log.in_order()
     finding, factor = clock.unit(clock.Clock.of(log.t))
     yield finding

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.processes.coarse import Ticks
 from scarid_cli.algorithms.processes.holding import MAX_GAP, sensor_period
 from scarid_cli.algorithms.processes.resampling import (
     Clock,
@@ -84,15 +85,26 @@ def _with_period(table: Table) -> tuple[float, Iterator[pa.RecordBatch]]:
 
 
 def _ordered(table: Table) -> Iterator[pa.RecordBatch]:
-    """The batches; time that goes back is an error."""
+    """The batches; time that goes back, or that many rows share, is an error."""
     row = 0
     last: Instant | None = None
+    ticks, names = Ticks(), measured(table.schema)
     for batch in table.batches:
         if batch.num_rows:
             steps, _, last = steps_of(batch, last)
             _check(steps, table, row)
+            ticks.after(matrix(batch, ["t"])[0], matrix(batch, names))
         row += batch.num_rows
         yield batch
+    if ticks.coarse:
+        raise bad_data(
+            table.name,
+            f"{ticks.unlike:,} of {ticks.rows:,} rows with the time of the row before, and other "
+            "values",
+            expected="a clock finer than the rows",
+            remedy=f"count the rows instead, with their real rate: {ticks.counting}",
+            column="t",
+        )
 
 
 def _check(steps: Array, table: Table, row: int) -> None:

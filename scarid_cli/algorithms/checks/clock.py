@@ -8,6 +8,7 @@ import numpy as np
 
 from scarid_cli.algorithms.checks.finding import Finding, failed, ok, several, warning
 from scarid_cli.algorithms.checks.log import Log
+from scarid_cli.algorithms.processes.coarse import Ticks
 from scarid_cli.algorithms.processes.filling import reading_interval
 from scarid_cli.algorithms.processes.holding import MAX_GAP, TOGETHER
 from scarid_cli.algorithms.processes.rates import lost_rows, mean_rate
@@ -93,6 +94,23 @@ def order(log: Log) -> Finding:
             f"{log.resampling()} drops the rows that repeat a time",
         )
     return ok("time order", "time increases from row to row")
+
+
+def ticks(log: Log) -> Ticks:
+    """The ticks of the clock of a log in the order of its rows."""
+    found = Ticks()
+    if np.all(np.diff(log.t) >= 0.0):
+        found.after(log.t, log.signals)
+    return found
+
+
+def coarse(found: Ticks) -> Finding:
+    """What is found of a clock that is coarser than the rows."""
+    return failed(
+        "clock",
+        f"{found.unlike:,} of {found.rows:,} rows have the time of the row before and other values",
+        f"the clock is coarser than the rows: count them instead, {found.counting}",
+    )
 
 
 def _gaps(steps: Array, period: float, resampling: str) -> Finding:

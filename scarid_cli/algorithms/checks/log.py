@@ -65,6 +65,10 @@ class Log:
         """The columns of the signals."""
         return [f"{name}{i}" for name in ("q", "tau") for i in range(1, self.joints + 1)]
 
+    def counted(self, rate: float) -> Log:
+        """The log with the times of rows that come at this rate [Hz]."""
+        return replace(self, t=np.arange(self.rows) / rate)
+
     def part(self, rows: Numbers | Marks) -> Log:
         """These rows only (indices, or whether each row is kept)."""
         others = None if self.others is None else self.others[:, rows]

@@ -1,0 +1,64 @@
+"""A clock that is coarser than the rows: many rows with one time and different values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from scarid_cli.arrays import Array, median
+
+MOST = 0.5  # of the rows: from here on a time belongs to several rows, and says which one of none
+FEWEST = 3  # ticks of the clock of which the rows are known: the first and the last are not whole
+
+
+@dataclass
+class Ticks:
+    """The ticks of a clock as rows arrive: when each began [s], and how many rows it has.
+
+    `unlike` counts the rows that have the time of the row before, and other values.
+    """
+
+    times: list[float] = field(default_factory=list)
+    counts: list[int] = field(default_factory=list)
+    unlike: int = 0
+    _last: Array | None = None
+
+    def after(self, t: Array, values: Array) -> None:
+        """Count further rows: times (rows) [s] and measured values (columns, rows)."""
+        if not len(t):
+            return
+        before = self._last if self._last is not None else np.full(1 + len(values), np.nan)
+        rows = np.column_stack((before, np.vstack((t, values))))
+        same = rows[0, 1:] == rows[0, :-1]
+        differ = np.any(np.nan_to_num(np.diff(rows[1:], axis=1)) != 0.0, axis=0)
+        self.unlike += int(np.count_nonzero(same & differ))
+        self._last = rows[:, -1]
+        begins = np.flatnonzero(~same)
+        first = int(begins[0]) if len(begins) else len(t)
+        if self.counts:
+            self.counts[-1] += first
+        self.times += t[begins].tolist()
+        self.counts += np.diff(np.append(begins, len(t))).tolist()
+
+    @property
+    def rows(self) -> int:
+        return sum(self.counts)
+
+    @property
+    def coarse(self) -> bool:
+        """Whether the clock is coarser than the rows."""
+        return self.unlike > MOST * self.rows
+
+    @property
+    def rate(self) -> float | None:
+        """Rows per second by the ticks that are whole; None if there are too few."""
+        if len(self.times) < FEWEST:
+            return None
+        return median(np.array(self.counts[1:-1])) / median(np.diff(self.times))
+
+    @property
+    def counting(self) -> str:
+        """The command that counts the rows instead."""
+        rate = f"{self.rate:.6g}" if self.rate else "HZ"
+        return f"`scarid convert --map stamp=t --rate {rate}`"
