@@ -16,6 +16,7 @@
 # make bench-verdicts   whether intervals and verdicts hold under imperfect conditions
 # make gauntlet       the blind procedure on four robots under all conditions (an hour)
 # make bench-mixtures the blind procedure on logs with random mixtures of imperfections
+# make bench-gains    torques of one joint in another unit: named, and the estimates
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
 # make bench-checks    what check says of logs with known faults
 # make bench-changed   how often validate calls a change between two logs by its name
@@ -36,7 +37,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -128,6 +129,9 @@ gauntlet: $(VENV)/tested
 
 bench-mixtures: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/mixtures.py
+
+bench-gains: $(VENV)/tested
+	$(BIN)/python benchmarks/gains.py
 
 bench-mujoco: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/mujoco_arms.py --seeds 10

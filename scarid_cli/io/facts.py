@@ -79,6 +79,13 @@ def _addition(x: Any) -> bool:
     return _of(ADDITION)(x) and set(x) == set(ADDITION)
 
 
+def _gains(x: Any) -> bool:
+    """The factor and its error for some joints, by their numbers."""
+    return isinstance(x, dict) and all(
+        k.isdigit() and _list(number)(v) and len(v) == 2 and v[1] > 0.0 for k, v in x.items()
+    )
+
+
 def _rows_of_joints(x: Any) -> bool:
     """A list for each parameter, with a number for each joint; one parameter at least, or none."""
     if not isinstance(x, dict):
@@ -95,6 +102,8 @@ CHECKS: dict[str, Check] = {
     "delay_error": _or_none(_size),
     "low_pass": truth,
     "additions": _list(_addition),
+    "relative_gains": _gains,
+    "widened_by_gains": lambda x: _list(_list(number))(x) and len(x) == 2,
     "covariance": _or_none(_list(_list(_or_none(number)))),
     "full_estimates": _or_none(_list(_or_none(number))),
     "dropped": _list(text),

@@ -24,8 +24,10 @@ from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
 from scarid_cli.stages.estimates import array_of, errors_of
+from scarid_cli.stages.parameters import GAINS, WIDENED_BY_GAINS
 
 SAME, DIFFER = "same", "differ"  # verdicts
+GAIN = "gain of joint "  # how the name of one begins
 SHOWN = 5  # parameters that a message names at most
 MOST_ROWS = 3  # tables from which there is a trend
 
@@ -57,6 +59,11 @@ class Identification:
         if "full_estimates" in extra and covariance is not None:
             values = array_of(table, "full_estimates", extra["full_estimates"], (len(names),))
             errors, unknown = np.sqrt(np.diag(covariance)), set()
+        if WIDENED_BY_GAINS in extra and not unknown:
+            wide, along = (array_of(table, WIDENED_BY_GAINS, x, (len(names),))
+                           for x in extra[WIDENED_BY_GAINS])  # fmt: skip
+            errors = np.sqrt(np.maximum(errors**2 - wide**2, 0.0))
+            covariance = None if covariance is None else covariance - np.outer(along, along)
         freedom = _freedom(whole)
         if extra.get("delay") is not None and extra.get("delay_error"):
             names, units = [*names, "delay"], [*units, "s"]
@@ -67,6 +74,14 @@ class Identification:
             )
             if covariance is not None:
                 covariance = np.pad(covariance, (0, 1))
+        gains = extra.get(GAINS, {})
+        names = [*names, *(f"{GAIN}{joint}" for joint in gains)]
+        units = [*units, *("" for _ in gains)]
+        values = np.append(values, [factor for factor, _ in gains.values()])
+        errors = np.append(errors, [error for _, error in gains.values()])
+        freedom = np.append(freedom, np.full(len(gains), freedom[0]))
+        if covariance is not None:
+            covariance = np.pad(covariance, (0, len(gains)))
         meanings = (
             whole.column("stands_for").to_pylist() if "stands_for" in whole.column_names else []
         )
@@ -172,7 +187,9 @@ def _require_comparable(first: Identification, other: Identification) -> None:
     robots = [one.table.meta.robot for one in (first, other)]
     if all(robots) and len({Path(str(name)).name for name in robots}) > 1:
         raise _unlike(first, other, f"robot {robots[1]}", f"{robots[0]}")
-    own, others = ([n for n in one.names if n != "delay"] for one in (first, other))
+    own, others = (
+        [n for n in one.names if n != "delay" and not n.startswith(GAIN)] for one in (first, other)
+    )
     if own != others:
         only = sorted(set(own) ^ set(others))
         raise _unlike(
@@ -209,7 +226,8 @@ def _common(found: Sequence[Identification]) -> list[str]:
 
 def _remarks(found: Sequence[Identification], names: list[str]) -> Iterator[str]:
     """What could not be compared, and what is not known."""
-    missing = [n for n in dict.fromkeys(x for one in found for x in one.names) if n not in names]
+    every = dict.fromkeys(x for one in found for x in one.names)
+    missing = [n for n in every if n not in names and not n.startswith(GAIN)]
     if missing:
         listed = ", ".join(missing[:SHOWN]) + (", ..." if len(missing) > SHOWN else "")
         yield f"not in every table, or dropped there, and therefore not compared: {listed}"

@@ -17,6 +17,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.algorithms.statistics.gains import estimated, widening
 from scarid_cli.algorithms.statistics.outcome import Outcome
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 from scarid_cli.arrays import Array, median
@@ -27,6 +28,7 @@ from scarid_cli.io.table import Metadata, Table, table_of
 EVIDENCE = "evidence"  # key of the metadata
 BIASES = "biases"  # key of the evidence
 ADDITIONS = "additions"  # key of the metadata
+GAINS, WIDENED_BY_GAINS = "relative_gains", "widened_by_gains"  # keys of the metadata
 LARGEST = 1e15  # of an estimate, in any unit: beyond it sums of squares overflow
 
 
@@ -221,6 +223,10 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         extra[EVIDENCE] = stored(found.evidence, labels.names) | {BIASES: _biases(found, labels)}
     if found.diagnostics.additions:
         extra[ADDITIONS] = [asdict(addition) for addition in found.diagnostics.additions]
+    if told := estimated(found.diagnostics, len(found.kept)):
+        extra[GAINS] = {str(x.joint + 1): [x.factor, x.error] for x in told}
+    if wide := widening(found.diagnostics, len(found.kept)):
+        extra[WIDENED_BY_GAINS] = [x.tolist() for x in wide]
     if found.thin > 1:
         extra["thinned"] = found.thin
     if np.isfinite(found.covariance).all():

@@ -50,12 +50,12 @@ def test_what_differs_is_named(scarid: Run, tables: list[Path], tmp_path: Path) 
 def test_a_table_agrees_with_itself(scarid: Run, tables: list[Path]) -> None:
     result = scarid("compare", tables[0], tables[0])
     assert "same: the estimates are at most 0 errors apart" in result.err
-    assert len(result.out.splitlines()) == 9
+    assert len(result.out.splitlines()) == 10
 
 
 def test_three_tables_have_a_trend(scarid: Run, tables: list[Path]) -> None:
     result = scarid("compare", tables[0], tables[0], tables[1])
-    assert len(result.out.splitlines()) == 17
+    assert len(result.out.splitlines()) == 19
     assert "trend over the 3 tables" in result.err.splitlines()[-1]
 
 

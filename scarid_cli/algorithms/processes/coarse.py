@@ -9,18 +9,20 @@ import numpy as np
 from scarid_cli.arrays import Array, median
 
 MOST = 0.5  # of the rows: from here on a time belongs to several rows, and says which one of none
+TICKS = 1000  # that are kept, and from which the rate is known
 FEWEST = 3  # ticks of the clock of which the rows are known: the first and the last are not whole
 
 
 @dataclass
 class Ticks:
-    """The ticks of a clock as rows arrive: when each began [s], and how many rows it has.
+    """The first ticks of a clock as rows arrive: when each began [s], and how many rows it has.
 
-    `unlike` counts the rows that have the time of the row before, and other values.
+    `unlike` counts the rows, of all `rows`, that have the time of the row before and other values.
     """
 
     times: list[float] = field(default_factory=list)
     counts: list[int] = field(default_factory=list)
+    rows: int = 0
     unlike: int = 0
     _last: Array | None = None
 
@@ -36,14 +38,13 @@ class Ticks:
         self._last = rows[:, -1]
         begins = np.flatnonzero(~same)
         first = int(begins[0]) if len(begins) else len(t)
+        self.rows += len(t)
+        if len(self.counts) > TICKS:
+            return
         if self.counts:
             self.counts[-1] += first
         self.times += t[begins].tolist()
         self.counts += np.diff(np.append(begins, len(t))).tolist()
-
-    @property
-    def rows(self) -> int:
-        return sum(self.counts)
 
     @property
     def coarse(self) -> bool:

@@ -22,13 +22,13 @@ from scarid_cli.algorithms.statistics.ripple import gain
 from scarid_cli.arrays import Array, Marks
 
 OFFSET, ASYMMETRY, LOAD, SPRING = "offset", "asymmetry", "load", "spring"
-SATURATION, DRIFT, TILT = "saturation", "drift", "tilt"
+SATURATION, DRIFT, TILT, GAIN = "saturation", "drift", "tilt", "gain"
 RIPPLE, SINE, COSINE = "ripple", "ripple as a sine", "ripple as a cosine"
 SLOW, STRIBECK, CURVATURE = "slow friction", "Stribeck", "curvature"
 # Of the root-mean-square velocity: where the friction of slow motion has decayed. Together the
 # three are a curve of friction over the speed.
 DECAYED = {SLOW: 0.1, STRIBECK: 0.3, CURVATURE: 1.0}
-TORQUES = (OFFSET, ASYMMETRY, *DECAYED, LOAD, SPRING, SATURATION, DRIFT, TILT, RIPPLE)
+TORQUES = (OFFSET, ASYMMETRY, *DECAYED, LOAD, SPRING, SATURATION, DRIFT, TILT, GAIN, RIPPLE)
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
 BESIDE_FRICTION = (
     "offset",
@@ -167,6 +167,7 @@ SHAPES: dict[str, Callable[[Signals], Array]] = {
     SPRING: lambda x: x.q,
     SATURATION: lambda x: x.predicted * np.abs(x.predicted),
     DRIFT: lambda x: x.time - x.time.mean(axis=0),
+    GAIN: lambda x: x.predicted,  # what joints have in common says how their torques fit together
     # Friction of gears grows with the torque that they transmit, which only a model can tell.
     LOAD: lambda x: np.sign(x.v) * np.abs(x.transmitted),
     SINE: lambda x: x.ripple(np.sin),
@@ -185,6 +186,7 @@ def torque_columns(
     shapes = {name: shape for name, shape in SHAPES.items() if model or name != LOAD}
     waves = [shapes.pop(name) for name in (SINE, COSINE)]
     columns = {name: diagonal(shape(signals)) for name, shape in shapes.items()}
+    columns[GAIN] *= compared(rows, estimates)
     columns[SPRING] = np.concatenate((columns[OFFSET], columns[SPRING]), axis=2)
     ripples = [replace(signals, cycles=own) for own in cycles]
     if ripples:
@@ -194,6 +196,20 @@ def torque_columns(
     if tilt is not None:
         columns[TILT] = tilt
     return columns
+
+
+def compared(rows: Rows, estimates: Array) -> Array:
+    """1 for each joint whose torque others can be compared with (joints), but for one of them.
+
+    Joints are compared by the parameters that they share. The one with the largest torque of those
+    is what the others are compared with: a common factor cannot be told.
+    """
+    W = rows.W[:, :, : len(estimates)]
+    shared = np.count_nonzero(np.any(W != 0.0, axis=0), axis=0) > 1
+    power = np.sum((W[:, :, shared] @ estimates[shared]) ** 2, axis=0)
+    marks: Array = np.asarray(power > 0.0, dtype=np.float64)
+    marks[int(np.argmax(power))] = 0.0
+    return marks
 
 
 def diagonal(values: Array) -> Array:

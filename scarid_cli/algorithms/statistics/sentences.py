@@ -15,6 +15,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     CURVATURE,
     DECAYED,
     DRIFT,
+    GAIN,
     LOAD,
     OFFSET,
     RIPPLE,
@@ -114,7 +115,8 @@ def additions_of(
     """
     notes = _offsets(diagnostics, robot)
     # where a spring is slack goes without saying
-    added = sorted((x for x in diagnostics.additions if x.name != OFFSET), key=lambda x: x.joint)
+    own = [x for x in diagnostics.additions if x.name not in (OFFSET, GAIN)]
+    added = sorted(own, key=lambda x: x.joint)
     kinds = [KINDS.get(addition.name, addition.name) for addition in added]
     for kind in sorted(set(kinds)):
         own = [addition for addition, of in zip(added, kinds, strict=True) if of == kind]

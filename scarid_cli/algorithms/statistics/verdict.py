@@ -9,6 +9,7 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics import gains
 from scarid_cli.algorithms.statistics.alternatives import transmitted
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
@@ -99,7 +100,8 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     joints = evidence.diagnostics.joints
     summary = _summary(evidence)
     obstacles = [*_idle(joints, robot), *_undetermined(evidence)]
-    bias = [*evidence.failed, *_biased(evidence)]
+    found = gains.fitted(evidence.diagnostics, len(evidence.names))
+    bias = [*evidence.failed, *([gains.told(found)] if found else []), *_biased(evidence)]
     if obstacles:
         return Verdict(NOT_IDENTIFIABLE, (*obstacles, *evidence.failed, summary), bool(bias))
     wrong = [
@@ -115,6 +117,8 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     names, diagnostics = evidence.names, evidence.diagnostics
     own = dict(zip(names, evidence.estimates.tolist(), strict=False))
     notes = [*additions_of(own, diagnostics, robot), *notes_of(names, diagnostics, robot)]
+    if apart := gains.significant(diagnostics):
+        notes = [f"{gains.told(apart)}; the intervals allow for it", *notes]
     notes = [*_inertia_unknown(evidence), *notes]
     if not wrong and any(x.end - x.start >= LASTING for x in evidence.diagnostics.bursts):
         notes = [*([evidence.unexplained] if evidence.unexplained else []), *notes]

@@ -1,0 +1,84 @@
+"""How the torques of the joints fit together: the gain of each, relative to the others.
+
+Joints share parameters: the inertia of a link stands in the rows of all joints before it. So a
+torque constant that is wrong for one joint contradicts the rows of the others. What all joints have
+in common, and joints that share no parameter with others, no log can tell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scarid_cli.algorithms.statistics.alternatives import GAIN
+from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.arrays import Array
+from scarid_cli.interval import plus_minus
+
+KNOWN = 0.3  # error of a gain that is known
+CAUSES = "a torque constant, a gear ratio or a unit is wrong, there or at the others"
+
+
+@dataclass(frozen=True)
+class Gain:
+    """The torque of a joint (from 0), divided by what those of the others need; its error."""
+
+    joint: int
+    factor: float
+    error: float
+
+
+def fitted(diagnostics: Diagnostics, own: int) -> list[Gain]:
+    """The gains that were fitted beside so many own parameters."""
+    errors = diagnostics.scatter[own : own + len(diagnostics.additions)]
+    return [
+        Gain(addition.joint, 1.0 + addition.size, float(error))
+        for addition, error in zip(diagnostics.additions, errors, strict=False)
+        if addition.name == GAIN
+    ]
+
+
+def estimated(diagnostics: Diagnostics, own: int) -> list[Gain]:
+    """The gains that the log tells: those that were fitted, else those of all joints compared."""
+    effect = next((x for x in diagnostics.effects if x.name == GAIN), None)
+    if effect is None:
+        return fitted(diagnostics, own)
+    pairs = enumerate(zip(effect.amounts.tolist(), effect.noise.tolist(), strict=True))
+    return fitted(diagnostics, own) or [
+        Gain(j, 1.0 + amount, noise) for j, (amount, noise) in pairs if 0.0 < noise < KNOWN
+    ]
+
+
+def significant(diagnostics: Diagnostics) -> list[Gain]:
+    """The gains that differ from 1 by more than noise makes them, and were not fitted."""
+    for effect in diagnostics.effects:
+        if effect.name == GAIN and effect.significant():
+            there = np.flatnonzero(effect.ratios > effect.threshold())
+            return [
+                Gain(int(j), 1.0 + float(effect.amounts[j]), float(effect.noise[j])) for j in there
+            ]
+    return []
+
+
+def widening(diagnostics: Diagnostics, own: int) -> tuple[Array, Array] | None:
+    """By how much a gain that was not fitted widens the errors (own), and its direction (own).
+
+    It is the same in all logs of a robot, so that it does not count where two are compared.
+    """
+    effect = next((x for x in diagnostics.effects if x.name == GAIN and x.counts), None)
+    if effect is None:
+        return None
+    others = [x.bias**2 for x in diagnostics.effects if x is not effect]
+    rest = effect.bias**2 - np.max(others, axis=0, initial=0.0)
+    return np.sqrt(np.maximum(rest, 0.0)), effect.direction(diagnostics.scatter[:own])
+
+
+def told(gains: Sequence[Gain]) -> str:
+    """`the torque of joint 2 is 1.37 +- 0.03 times what those of the other joints need: ...`."""
+    texts = [
+        f"that of joint {gain.joint + 1} is {gain.factor:.3g} {plus_minus(gain.error, 1)} times"
+        for gain in gains
+    ]
+    return f"the torques do not fit together: {', '.join(texts)} what the others need ({CAUSES})"
