@@ -1,8 +1,9 @@
-"""Torques of one joint in another unit: how often one log tells it, and what is then estimated.
+"""The torque of one joint in another unit: whether one log tells it, and what is then estimated.
 
 `python benchmarks/gains.py [--seeds 20]`: logs of 20 s of random motions, the torque of joint 2
-multiplied by a factor. `named`: the verdict names the gain, within twice its half interval; `wrong`:
-called good, and an inertia or first moment further than three stated errors from the truth.
+multiplied by a factor. `named`: the verdict names the gain, within twice its half interval;
+`wrong`: called good, and an inertia or first moment is further than three stated errors from the
+truth.
 """
 
 from __future__ import annotations
