@@ -20,6 +20,7 @@ COMMANDS = {
     "identify": "Estimate a robot's dynamic parameters from a log.",
     "validate": "Measure how well identified parameters predict torques.",
     "compare": "Tell which parameters of two identifications differ, and how they drift.",
+    "payload": "Find what hangs on the flange: mass, centre and inertia.",
     "report": "Print tables and draw figures of parameters, traces, metrics and predictions.",
     "urdf": "Write identified parameters into a URDF as physically consistent links.",
     "methods": "List the methods that commands offer, or describe one.",

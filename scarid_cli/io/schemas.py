@@ -108,6 +108,7 @@ KINDS = (
     "expected",
     "metrics",
     "comparison",
+    "payload",
     "trials",
     "published",
     "prediction",

@@ -99,7 +99,7 @@ def _payload(robot: Robot) -> Hypothesis:
             i for i, p in enumerate(parameters) if not isinstance(p.term, (*FRICTION, Offset))
         ]
         return Hypothesis(PAYLOAD, _of_parameters(robot, inertial), *_labels(parameters, inertial))
-    last = len(robot.joints)
+    last = robot.body.link_numbers[-1]
     directions = np.zeros((columns_of(robot).count, len(SYMBOLS)))
     for row, parameter in enumerate(parameters):
         parts = dict(parameter.parts)

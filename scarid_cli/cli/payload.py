@@ -1,0 +1,40 @@
+"""The declaration of `scarid payload`."""
+
+from __future__ import annotations
+
+import click
+
+from scarid_cli.cli import options, selecting
+from scarid_cli.cli.declare import declare
+
+
+@declare("payload")
+@click.argument("files", metavar="LOADED...", nargs=-1, required=True, type=options.INPUT)
+@options.input_file(
+    "--parameters",
+    required=True,
+    help="The parameters of the bare robot, as `scarid identify -o bare.parquet` writes them.",
+)
+@options.robot
+@click.option(
+    "--frame",
+    metavar="LINK",
+    help="The link of the URDF in whose frame the payload is stated.  [default: the tool]",
+)
+@selecting.window
+@options.table_output
+@options.common
+def command() -> None:
+    """Find what hangs on the flange: mass, centre and inertia, each with its 95 % interval.
+
+    \b
+      scarid payload --parameters bare.parquet loaded.csv
+      scarid payload --parameters bare.parquet --frame tool loaded.parquet -o payload.csv
+
+    LOADED are logs of the robot with the payload, as recorded, or the table of parameters that
+    `scarid identify` wrote for them. The bare robot is identified beforehand, best from the same
+    motion. The payload is the difference of the two identifications, as a part of the last link:
+    friction and offsets may differ, and errors that both have in common drop out. The intervals
+    contain the uncertainty of both. A value that the motion does not tell has no error, and is
+    named. The robot needs a URDF (pip install 'scarid[urdf]').
+    """

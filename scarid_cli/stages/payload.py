@@ -1,0 +1,79 @@
+"""The table of a payload, from the parameters of the bare robot and of the loaded one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from scarid_cli.algorithms.changes import payload as algorithm
+from scarid_cli.algorithms.changes.payload import NAMES, UNITS, Payload
+from scarid_cli.errors import BadData, UsageFault
+from scarid_cli.interval import HALF, plus_minus
+from scarid_cli.io import schemas
+from scarid_cli.io.table import Table, table_of
+from scarid_cli.stages.estimates import Estimates
+
+
+def payload(bare: Estimates, loaded: Estimates, link: str | None) -> tuple[Payload, str]:
+    """The payload in the frame of a link, by default the tool's; the name of the link."""
+    robot = bare.robot
+    if not robot.body:
+        raise UsageFault(f"{robot.name}: a payload needs a robot with a URDF")
+    name = link or robot.body.tool
+    frames = robot.body.frames
+    last = len(robot.body.link_numbers)
+    if name not in frames or frames[name].axis != last:
+        own = ", ".join(k for k, frame in frames.items() if frame.axis == last)
+        raise UsageFault(f"--frame {name}: no link that is fixed to the last axis; it has {own}")
+    covariance = bare.covariance + loaded.covariance
+    phi, spread = algorithm.standard(
+        algorithm.directions(robot), loaded.full - bare.full, covariance
+    )
+    if not phi[algorithm.MASS]:
+        raise BadData("payload: both identifications are the same; give a log with the payload")
+    return algorithm.in_frame(phi, spread, frames[name]), name
+
+
+def table(found: Payload, of: Table, link: str) -> Table:
+    """A row for each of the ten values, with its 95 % interval."""
+    half = HALF * found.errors
+    rows = zip(
+        NAMES, UNITS, found.values, found.errors, found.values - half, found.values + half,
+        strict=True,
+    )  # fmt: skip
+    meta = replace(of.meta, kind="payload", extra={"frame": link, "possible": found.possible})
+    return table_of("payload", schemas.load("payload").arrow(), list(rows), meta)
+
+
+def told(found: Payload, link: str) -> Iterator[str]:
+    """What hangs there, what the motion does not tell, and whether a body can be like this."""
+    if not np.isfinite(found.errors[0]):
+        raise BadData(
+            "payload: the motion does not tell its mass; use a motion that turns the last links "
+            "against gravity"
+        )
+    parts = [
+        f"{name} {value:.4g} {plus_minus(error)} {unit}"
+        for name, value, error, unit in zip(
+            NAMES[:4], found.values[:4], found.errors[:4], UNITS[:4], strict=True
+        )
+        if np.isfinite(error)
+    ]
+    yield f"payload in the frame of {link}: {', '.join(parts)}"
+    unknown = [name for name, error in zip(NAMES, found.errors, strict=True) if np.isnan(error)]
+    if unknown:
+        yield f"not told by this motion: {', '.join(unknown)}"
+    vague = [
+        name
+        for name, value, error in zip(NAMES, found.values, found.errors, strict=True)
+        if np.isfinite(error) and name.startswith("I") and HALF * error > abs(value)
+    ]
+    if vague:
+        yield f"not distinguishable from 0: {', '.join(vague)}"
+    if not unknown and not found.possible:
+        yield (
+            "warning: no body has this inertia within its estimates; take mass and centre, and a "
+            "motion with larger accelerations for the inertia"
+        )

@@ -1,0 +1,128 @@
+"""The payload of two identifications, against bodies that are known."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pinocchio
+import pytest
+from conftest import Shell, refused
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from unit.arms import seven_axes
+
+from scarid_cli.algorithms.changes.payload import directions, in_frame, standard
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.robots.rigid import PINOCCHIO, Frame
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Seven axes whose tool frame is turned and shifted."""
+    flange = (
+        '<link name="flange"/><joint name="tool" type="fixed"><parent link="l7"/>'
+        '<child link="flange"/><origin xyz="0.1 0.02 0.3" rpy="0.4 -0.3 1.2"/></joint></robot>'
+    )
+    path = tmp_path_factory.mktemp("arm") / "arm.urdf"
+    path.write_text(seven_axes().replace("</robot>", flange))
+    return path
+
+
+PLACE = st.floats(-0.2, 0.2)
+
+
+@settings(max_examples=20)
+@given(st.floats(0.1, 5.0), st.tuples(PLACE, PLACE, PLACE), st.integers(0, 1 << 16))
+def test_mass_centre_and_inertia_come_back(
+    mass: float, centre: tuple[float, float, float], seed: int
+) -> None:
+    """Pinocchio moves the body from its frame to that of the axis."""
+    rng = np.random.default_rng(seed)
+    turn, _ = np.linalg.qr(rng.standard_normal((3, 3)))
+    turn *= np.sign(np.linalg.det(turn))
+    origin = rng.uniform(-0.3, 0.3, 3)
+    half = rng.standard_normal((3, 3))
+    about = 0.01 * (half @ half.T + np.eye(3))
+    body = pinocchio.Inertia(mass, np.array(centre), about)
+    moved = pinocchio.SE3(turn, origin).act(body)
+    phi = moved.toDynamicParameters()[PINOCCHIO]
+    found = in_frame(phi, 1e-8 * np.eye(10), Frame(7, turn, origin))
+    wanted = [mass, *centre, *(about[i, j] for i in range(3) for j in range(i, 3))]
+    np.testing.assert_allclose(found.values, wanted, atol=1e-9)
+    assert np.isfinite(found.errors).all()
+    assert found.possible == ((moments := np.linalg.eigvalsh(about))[2] < moments[0] + moments[1])
+
+
+def test_the_difference_of_base_parameters_tells_all_ten(arm: Path) -> None:
+    robot = load(str(arm))
+    B = directions(robot)
+    phi = np.array([0.03, 0.001, -0.002, 0.02, 0.003, 0.025, 0.05, -0.02, 0.1, 1.5])
+    covariance = np.diag(np.linspace(1e-6, 1e-4, len(B)))
+    found, spread = standard(B, B @ phi, covariance)
+    np.testing.assert_allclose(found, phi, rtol=1e-9, atol=1e-12)
+    rows = np.any(B != 0.0, axis=1)
+    wanted = np.linalg.inv(B[rows].T @ np.linalg.inv(covariance[np.ix_(rows, rows)]) @ B[rows])
+    np.testing.assert_allclose(spread, wanted, rtol=1e-6, atol=1e-15)
+
+
+MADE = (
+    "scarid trajgen -q --robot arm.toml --seed 5 --duration 15 -o ref.parquet;"
+    " scarid simulate -q --robot arm.toml --seed 1 ref.parquet -o bare-log.parquet;"
+    " scarid simulate -q --robot arm.toml --seed 2 ref.parquet -o loaded.parquet"
+    " --with payload=1.2,0.03,-0.02,0.06,0.004,0,0,0.005,0,0.003,0;"
+    " scarid identify -q bare-log.parquet -o bare.parquet"
+)
+JOINT = (
+    "[[joint]]\nacceleration_limit = 9.0\nencoder_resolution = 1e-5\ntorque_noise = 0.05\n"
+    "terms = { inertia = 0.1, viscous = 0.5, coulomb = 0.6, offset = 0.1 }\n"
+)
+
+
+def test_the_command_finds_what_the_simulator_hung_there(
+    arm: Path, shell: Shell, tmp_path: Path
+) -> None:
+    (tmp_path / "arm.toml").write_text(f'title = "seven"\nurdf = "{arm}"\n' + 7 * JOINT)
+    made = shell(MADE)
+    assert made.status == 0, made.err
+    found = shell("scarid payload --parameters bare.parquet --frame l7 loaded.parquet")
+    assert found.status == 0, found.err
+    rows = {row["quantity"]: row for row in csv.DictReader(found.out.splitlines())}
+    wanted = {"mass": 1.2, "x": 0.03, "y": -0.02, "z": 0.06, "Ixx": 0.004, "Ixy": 0.0, "Ixz": 0.0,
+              "Iyy": 0.005, "Iyz": 0.0, "Izz": 0.003}  # fmt: skip
+    outside = [
+        name
+        for name, value in wanted.items()
+        if not float(rows[name]["low"]) <= value <= float(rows[name]["high"])
+    ]
+    assert len(outside) <= 1, outside
+    assert float(rows["mass"]["estimate"]) == pytest.approx(1.2, rel=0.02)
+    for name in "xyz":
+        assert float(rows[name]["estimate"]) == pytest.approx(wanted[name], abs=0.005)
+    same = shell(
+        "scarid identify -q loaded.parquet -o p.parquet;"
+        " scarid payload -q --parameters bare.parquet --frame l7 p.parquet"
+    )
+    assert same.out == found.out
+    wrong = shell("scarid payload --parameters bare.parquet --frame l3 p.parquet")
+    refused(wrong, 2, "--frame l3: no link that is fixed to the last axis; it has l7, flange")
+
+
+def test_a_robot_without_a_urdf_has_no_flange(shell: Shell) -> None:
+    done = shell(
+        "scarid identify -q --robot scara2 $SAMPLES/scara2.csv -o p.parquet;"
+        " scarid payload --parameters p.parquet p.parquet"
+    )
+    refused(done, 2, "scara2: a payload needs a robot with a URDF")
+
+
+def test_the_bare_robot_twice_has_no_payload(arm: Path, shell: Shell, tmp_path: Path) -> None:
+    (tmp_path / "arm.toml").write_text(f'title = "seven"\nurdf = "{arm}"\n' + 7 * JOINT)
+    made = shell(
+        "export SCARID_ROBOT=arm.toml; scarid trajgen -q --seed 5 --duration 8 |"
+        " scarid simulate -q | scarid identify -q -o bare.parquet"
+    )
+    assert made.status == 0, made.err
+    done = shell("scarid payload --parameters bare.parquet bare.parquet")
+    refused(done, 65, "both identifications are the same; give a log with the payload")
