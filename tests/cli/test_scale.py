@@ -27,7 +27,7 @@ def scaled(shell: Shell, robot: str, factor: float) -> str:
 def test_torques_in_another_unit_are_never_good(robot: str, factor: float, shell: Shell) -> None:
     told = scaled(shell, robot, factor)
     assert "scarid identify: good: " not in told
-    assert "doubtful: scale: the torques " in told
+    assert "scale: the torques are " in told
 
 
 @pytest.mark.parametrize("factor", [0.8, 1.0, 1.25])
