@@ -23,6 +23,7 @@ COMMANDS = {
     "payload": "Find what hangs on the flange: mass, centre and inertia.",
     "report": "Print tables and draw figures of parameters, traces, metrics and predictions.",
     "urdf": "Write identified parameters into a URDF as physically consistent links.",
+    "export": "Write identified dynamics as C for a controller.",
     "methods": "List the methods that commands offer, or describe one.",
     "robot": "Check a robot description.",
     "convert": "Convert between table formats, or turn a recorded log into a table.",

@@ -16,12 +16,13 @@ INPUTS = {
     "simulate": ("reference.parquet",),
     "validate": ("motion.parquet", "--parameters", "par.parquet"),
     "compare": ("par.parquet", "par.parquet"),
+    "export": ("--parameters", "par.parquet"),
     "payload": ("par.parquet", "--parameters", "par.parquet"),
     "report": ("par.parquet",),
     "trajgen": (),
 }
 COMMANDS = ("trajgen", "simulate", "resample", "check", "filter", "tune", "differentiate",
-            "identify", "validate", "compare", "payload", "report", "convert", "info")  # fmt: skip
+            "identify", "validate", "compare", "payload", "export", "report", "convert", "info")  # fmt: skip
 ENVIRONMENTS = (
     {"SCARID_FORMAT": "x"}, {"SCARID_FORMAT": ""}, {"SCARID_ROBOT": "x"}, {"SCARID_ROBOT": ""},
     {"SCARID_MAX_BATCH": "x"}, {"SCARID_MAX_BATCH": "0"}, {"SCARID_MAX_BATCH": "1"},
