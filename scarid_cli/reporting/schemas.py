@@ -46,12 +46,13 @@ USES = {
     "motion": ("`differentiate`", "`identify`, `validate`"),
     "parameters": (
         "`identify`",
-        "`validate --parameters`, `compare`, `urdf --parameters`, `report`, `identify --initial`, "
-        "`trajgen --after`",
+        "`validate --parameters`, `compare`, `payload --parameters`, `urdf --parameters`, "
+        "`export --parameters`, `report`, `identify --initial`, `trajgen --after`",
     ),
     "trace": ("`identify --trace`", "`report`"),
     "metrics": ("`validate`", "`report`"),
     "comparison": ("`compare`", "you"),
+    "payload": ("`payload`", "you"),
     "prediction": ("`validate --predictions`", "`report`"),
     "published": ("you", "`report --published`"),
     "fleet": ("`make batch`", "`report --fleet`"),
