@@ -128,7 +128,8 @@ def _links(body: Body) -> Iterator[str]:
     for text in body.followers:
         yield f"  follows: {text}"
     for name, why in body.locked.items():
-        yield f"  locked: {name} ({why})"
+        at = dict(body.posture).get(name)
+        yield f"  locked: {name} ({why})" + (f" at {at:g}" if at is not None else "")
     if body.capsules:
         yield "shapes of the links"
     for capsule in body.capsules:

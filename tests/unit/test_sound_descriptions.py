@@ -6,6 +6,8 @@ import os
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
+import pinocchio
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -162,3 +164,27 @@ def test_a_free_base_is_fixed_where_the_axes_are_named(tmp_path: Path, free: str
     assert robot.names == same.names
     with pytest.raises(UsageFault, match=r"and j1 is neither; name the axes"):
         reading.load(str(tmp_path / "free.urdf"))
+
+
+def test_a_joint_that_is_no_axis_is_locked_where_the_posture_has_it(tmp_path: Path) -> None:
+    """Against Pinocchio's model of all joints."""
+    text = urdf([0, 1, 2])
+    for link in ("l1", "l2", "l3"):
+        inertia = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>'
+        inertial = f'<inertial><mass value="2"/>{inertia}</inertial>'
+        text = text.replace(f'<link name="{link}"/>', f'<link name="{link}">{inertial}</link>')
+    (tmp_path / "arm.urdf").write_text(text)
+    axes = '[[joint]]\nname = "j1"\n[[joint]]\nname = "j3"\n'
+    head = 'title = "arm"\nurdf = "arm.urdf"\n'
+    (tmp_path / "arm.toml").write_text(f"{head}posture = {{ j2 = 0.7 }}\n{axes}")
+    body = reading.load(str(tmp_path / "arm.toml")).body
+    assert body is not None
+    other = pinocchio.buildModelFromXML(text)
+    data = other.createData()
+    pinocchio.framesForwardKinematics(other, data, np.array([0.3, 0.7, -0.4]))
+    found, _ = body.pose(np.array([[0.3], [-0.4]])).positions(body.points("l3"))
+    wanted = data.oMf[other.getFrameId("l3")].translation
+    np.testing.assert_allclose(found[0, 0], wanted, atol=1e-12)
+    (tmp_path / "arm.toml").write_text(f"{head}posture = {{ j3 = 0.7 }}\n{axes}")
+    with pytest.raises(UsageFault, match="joint of posture, which is no axis"):
+        reading.load(str(tmp_path / "arm.toml"))

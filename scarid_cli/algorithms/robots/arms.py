@@ -33,7 +33,7 @@ from scarid_cli.algorithms.robots.coupled import COUPLED_TERMS
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.joints import JOINT_UNITS, Joint, joint_of
 from scarid_cli.algorithms.robots.logs import coupled, gear_ratio, log_of
-from scarid_cli.algorithms.robots.rigid import GRAVITY, STANDARD_UNITS, SYMBOLS, Body
+from scarid_cli.algorithms.robots.rigid import GRAVITY, STANDARD_UNITS, SYMBOLS, Body, Posture
 from scarid_cli.algorithms.robots.terms import AXIS_TERMS, AxisTerm, Mass, StandardTerm
 
 
@@ -60,6 +60,7 @@ KEYS = (
     "log",
     "imperfections",
     "masses",
+    "posture",
 )
 STATED, PLACEHOLDER = "stated", "placeholder"  # what the masses and inertias of the URDF are
 
@@ -73,7 +74,10 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
         gravity=values.row("gravity", document.get("gravity", list(GRAVITY)), 3),
         joints=_names(entries),
         added=tuple(map(capsule_of, values.tables("capsule", document.get("capsule", [])))),
+        posture=_posture(document.get("posture", {})),
     )
+    for name, _ in body.posture:
+        values.choice("joint of posture, which is no axis", name, body.locked)
     for capsule in body.added:
         values.choice("link of a [[capsule]]", capsule.link, body.frames)
     found = body.joints_found
@@ -114,6 +118,13 @@ def _wrong_number(entries: int, axes: int, body: Body) -> str:
         f"{entries} tables [[joint]] for the {axes} axes of {body.path}{locked}; give one for each "
         "axis, or none"
     )
+
+
+def _posture(given: Any) -> Posture:
+    """Where joints are locked that are no axes."""
+    if not isinstance(given, dict):
+        raise TypeError("posture is a table of joints and positions: { lift = 0.3 }")
+    return tuple((name, values.number(name, at)) for name, at in given.items())
 
 
 def _names(entries: list[dict[str, Any]]) -> tuple[str, ...]:

@@ -29,6 +29,7 @@ SYMBOLS = ("Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz", "mx", "my", "mz", "m")
 STANDARD_UNITS = ("kg m2",) * 6 + ("kg m",) * 3 + ("kg",)
 PINOCCHIO = np.array([4, 5, 7, 6, 8, 9, 1, 2, 3, 0])  # their places there
 
+Posture = tuple[tuple[str, float], ...]  # joints that are no axes, and their positions [rad or m]
 GRAVITY = (0.0, 0.0, -9.81)  # m/s2
 
 
@@ -53,10 +54,10 @@ def _chain(path: str, wanted: tuple[str, ...]) -> Chain:
 
 
 @cache
-def _model(path: str, gravity: tuple[float, ...], wanted: tuple[str, ...]) -> Any:
+def _model(path: str, gravity: tuple[float, ...], wanted: tuple[str, ...], posture: Posture) -> Any:
     """Pinocchio's model of the axes and of the joints that follow them.
 
-    Other joints are locked at 0, or at the offset of a mimic.
+    Other joints are locked where the posture has them, else at 0, or at the offset of a mimic.
     """
     tree = read(path, wanted)
     import pinocchio  # after it has been found there
@@ -65,7 +66,8 @@ def _model(path: str, gravity: tuple[float, ...], wanted: tuple[str, ...]) -> An
     locked = []
     for name in _chain(path, wanted).locked:
         number = tree.model.getJointId(name)
-        place[tree.model.joints[number].idx_q] = tree.offsets.get(name, 0.0)
+        at = dict(posture).get(name, tree.offsets.get(name, 0.0))
+        place[tree.model.joints[number].idx_q] = at
         locked.append(number)
     model = pinocchio.buildReducedModel(tree.model, locked, place) if locked else tree.model.copy()
     model.gravity.linear = np.array(gravity)
@@ -105,18 +107,19 @@ class Body:
     """A serial arm as a URDF describes it.
 
     `joints` names its axes, or leaves them to axes.py; `added` are capsules of its links beside
-    those of the URDF.
+    those of the URDF; `posture` says where joints are that are no axes [rad or m].
     """
 
     path: str
     gravity: tuple[float, ...] = GRAVITY
     joints: tuple[str, ...] = ()
     added: tuple[Capsule, ...] = ()
+    posture: Posture = ()
 
     @property
     def model(self) -> Any:
         """The model of Pinocchio."""
-        return _model(self.path, self.gravity, self.joints)
+        return _model(self.path, self.gravity, self.joints, self.posture)
 
     @property
     def joints_found(self) -> list[Joint]:
