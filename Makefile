@@ -17,6 +17,7 @@
 # make gauntlet       the blind procedure on four robots under all conditions (an hour)
 # make bench-mixtures the blind procedure on logs with random mixtures of imperfections
 # make bench-gains    torques of one joint in another unit: named, and the estimates
+# make bench-coarse   the choice of a bandwidth where positions are coarse
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
 # make bench-checks    what check says of logs with known faults
 # make bench-changed   how often validate calls a change between two logs by its name
@@ -37,7 +38,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -129,6 +130,9 @@ gauntlet: $(VENV)/tested
 
 bench-mixtures: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/mixtures.py
+
+bench-coarse: $(VENV)/tested
+	cd benchmarks && ../$(BIN)/python coarse.py
 
 bench-gains: $(VENV)/tested
 	$(BIN)/python benchmarks/gains.py

@@ -25,8 +25,7 @@ from scarid_cli.cli.declare import declare
     "--robot",
     type=options.ROBOT,
     metavar="NAME|FILE",
-    help="Choose the bandwidth at which the parameters of this robot scatter least (see identify "
-    "--robot).",
+    help="Choose the bandwidth at which estimates of this robot agree best (see identify --robot).",
 )
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of a search."

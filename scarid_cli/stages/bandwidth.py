@@ -54,14 +54,15 @@ class Bandwidth:
         """The choice in a line."""
         low, high = self.choice.plateau
         where = f"from {low:.3g} to {high:.3g} Hz" if high > low else "there"
+        share = 100.0 * self.point.share
         return (
-            f"cut-off {self.choice.cutoff:.3g} Hz for all joints, because the parameters scatter "
-            f"least {where}; {100.0 * self.point.share:.0f} % of the rows count"
+            f"cut-off {self.choice.cutoff:.3g} Hz for all joints: the estimates agree best "
+            f"{where}; {share:.0f} % of the rows count"
         )
 
 
 def bandwidth(record: Record, robot: Robot, progress: Progress = lambda: None) -> Bandwidth:
-    """The cut-off at which the parameters of this robot scatter least."""
+    """The cut-off at which estimates of the parameters of this robot agree best."""
     segments = record.segments
     points = curve(robot, segments, record.h, progress)
     if not _known(points):

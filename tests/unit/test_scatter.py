@@ -16,12 +16,17 @@ H = 2e-3
 
 
 def arm(
-    seconds: float = 20.0, *, noise: float = 1e-5, vibration: float = 0.0, h: float = H
+    seconds: float = 20.0,
+    *,
+    noise: float = 1e-5,
+    vibration: float = 0.0,
+    h: float = H,
+    slower: float = 1.0,
 ) -> Segment:
     """A motion of two joints; a vibration [N m] of 15 Hz is in the torques and the positions."""
     t = np.arange(0.0, seconds, h)
     rng = np.random.default_rng(0)
-    rates = np.array([[0.7, 1.9, 3.1], [1.1, 2.3, 4.3]])
+    rates = np.array([[0.7, 1.9, 3.1], [1.1, 2.3, 4.3]]) / slower
     waves = np.exp(1j * (rates * t[:, None, None] + [0.0, 1.0, 2.0]))
     q, dq, ddq = (
         np.ascontiguousarray((waves * (1j * rates) ** n).imag.sum(axis=2).T) for n in range(3)
@@ -111,6 +116,46 @@ def test_noise_of_the_positions_lowers_the_cutoff() -> None:
     assert coarse < fine
 
 
+@pytest.mark.parametrize("slower", [2.0, 5.0])
+@pytest.mark.parametrize("step", [2e-3, 1e-2])
+def test_coarse_positions_of_slow_motions_do_not_bias(step: float, slower: float) -> None:
+    """The estimate at the cut-off explains the torques of the true motion, nearly as the truth."""
+    h = 1e-2
+    true = arm(60.0, noise=0.0, h=h, slower=slower)
+    q = np.round(true.q / step) * step
+    coarse = Segment(q, true.tau, np.full(2, step / np.sqrt(12.0)))
+    cutoff = scatter.chosen(scatter.curve(SCARA, [coarse], h)).cutoff
+    part, clean = (lowpassed.lowpassed(x, h, cutoff) for x in (coarse, true))
+    assert part
+    assert clean
+    W, C = (SCARA.regressor(*x.motion[:3])[x.counts.all(axis=0)] for x in (part, clean))
+    tau = part.motion[3][:, part.counts.all(axis=0)].T
+    found = np.linalg.lstsq(W.reshape(-1, W.shape[2]), tau.ravel(), rcond=None)[0]
+    error, torque = C @ (found - SCARA.apriori), C @ SCARA.apriori
+    assert np.all(error.std(axis=0) < 0.1 * torque.std(axis=0))
+
+
+def test_the_bias_is_that_of_noise_in_the_rows() -> None:
+    """Against the mean of estimates from regressors with noise drawn anew."""
+    rng = np.random.default_rng(3)
+    theta = np.array([2.0, -1.0])
+    W = rng.standard_normal((4000, 1, 2)) * [1.0, 0.5]
+    tau = (W @ theta).T + 0.1 * rng.standard_normal((1, 4000))
+    counts = np.ones((1, 4000), dtype=bool)
+    clean = scatter.Estimate(theta, np.eye(2), 1.0)
+    shrunk = []
+    for _ in range(20):
+        N = 0.2 * rng.standard_normal(W.shape)
+        sums, noises = (scatter.sums_of(x, tau, counts) for x in (W + N, N))
+        rows = counts.sum(axis=1)
+        variances = np.array([tau.var()])
+        found = scatter._jackknife(sums, noises.sum(axis=0), rows, variances, clean)
+        alone = scatter._jackknife(sums, 0.0 * noises.sum(axis=0), rows, variances, clean)
+        shrunk.append((np.sum((found.theta - theta) ** 2), found.error - alone.error))
+    true, said = np.mean(shrunk, axis=0)
+    assert said == pytest.approx(true, rel=0.1)
+
+
 def test_segments_count_together() -> None:
     """Two halves of a record choose nearly what the record chooses."""
     whole = arm()
@@ -136,7 +181,8 @@ def test_the_jackknife_is_that_of_the_rows() -> None:
     W, tau = rng.standard_normal((200, 1, 3)), rng.standard_normal((1, 200))
     counts = np.ones((1, 200), dtype=bool)
     sums = scatter.sums_of(W, tau, counts)
-    value = scatter._jackknife(sums, counts.sum(axis=1), np.array([tau.var()]))
+    still = np.zeros(sums.shape[1:])
+    value = scatter._jackknife(sums, still, counts.sum(axis=1), np.array([tau.var()]), None).error
     thetas = []
     for k in range(scatter.PARTS):
         kept = np.arange(200) * scatter.PARTS // 200 != k

@@ -55,3 +55,8 @@ def velocity_noise(noise: float, bandwidth: float, h: float) -> float:
     bandwidth.
     """
     return noise * sqrt(8.0 * pi**2 * h * bandwidth**3 / 3.0)
+
+
+def acceleration_noise(noise: float, bandwidth: float, h: float) -> float:
+    """The standard deviation of the acceleration behind a low-pass; see `velocity_noise`."""
+    return noise * sqrt(32.0 * pi**4 * h * bandwidth**5 / 5.0)

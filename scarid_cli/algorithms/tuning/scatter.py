@@ -1,12 +1,12 @@
-"""One cut-off for all joints, at which the identified parameters scatter least.
+"""One cut-off for all joints, at which the identified parameters agree best.
 
 A low-pass that is too wide passes noise and vibration, one that is too narrow leaves no excitation
 in the rows. Both make the parameters of the parts of a record differ. For a sequence of cut-offs,
 positions and torques of all joints pass the same low-pass, parameters are identified by weighted
 least squares, and the jackknife over the parts of the record gives their covariance. The scatter is
-the share of the variance of the torques that this covariance stands for. No prediction error is
-judged, so that parameters shrunk towards zero gain nothing. See docs/theory.md, section "One
-bandwidth".
+the share of the variance of the torques that this covariance stands for. To it comes the share of
+the bias: noise of the accelerations shrinks parameters towards zero, where they scatter little, but
+about wrong values. No prediction error is judged. See docs/theory.md, section "One bandwidth".
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.processes.bandwidth import acceleration_noise
+from scarid_cli.algorithms.processes.resolution import resolution_of
 from scarid_cli.algorithms.regression.information import inverse_deviations
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
@@ -38,12 +40,25 @@ EXACT = 1e-12  # share of the torques' squares that counts as no residual
 
 @dataclass(frozen=True)
 class Scatter:
-    """The scatter at a cut-off [Hz], and the number of rows that count of all rows."""
+    """The scatter and bias at a cut-off [Hz], and the number of rows that count of all rows."""
 
     cutoff: float
     scatter: float
     rows: int
     share: float
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Parameters (parameters), and the squared error that scatter and bias make of the torques.
+
+    theta' squares theta is the share of the variance of the torques that theta explains, in the
+    mean over the joints, and `error` is such a share.
+    """
+
+    theta: Array
+    squares: Array
+    error: float
 
 
 @dataclass(frozen=True)
@@ -62,10 +77,16 @@ def curve(
 ) -> list[Scatter]:
     """The scatter over the cut-off, from the lowest one up to where it has doubled; h [s]."""
     found: list[Scatter] = []
+    best: Estimate | None = None
+    noise = white(segments)
     cutoff = _first(robot, segments, h)
     while cutoff < HIGHEST / h:
         parts = [part for s in segments if (part := lowpassed(s, h, cutoff, robot.motors))]
-        found.append(_scatter(robot, parts, cutoff))
+        shaken = np.array([acceleration_noise(x, cutoff, h) for x in noise.tolist()])
+        point, estimate = at_cutoff(robot, parts, cutoff, shaken, best)
+        found.append(point)
+        if estimate is not None and (best is None or estimate.error < best.error):
+            best = estimate
         progress()
         least = min(point.scatter for point in found)
         if len(found) > FEWEST and found[-1].scatter > ENOUGH * least:
@@ -98,11 +119,33 @@ def _first(robot: Robot, segments: Sequence[Segment], h: float) -> float:
     return max(LOWEST, min(max(independent, motion), 0.5 * HIGHEST / h))
 
 
-def _scatter(robot: Robot, parts: Sequence[Lowpassed], cutoff: float) -> Scatter:
-    """The jackknife at one cut-off; infinite where the rows do not determine a joint's residual."""
+def white(segments: Sequence[Segment]) -> Array:
+    """The standard deviation (joints) of the white noise that the positions are taken to have.
+
+    A sensor that changes in every n-th row only makes errors that last n rows: the density of n
+    times the square of an error that lasts one.
+    """
+    longest = max(segments, key=lambda segment: segment.q.shape[1])
+    changes = np.mean(np.diff(longest.q, axis=1) != 0.0, axis=1)
+    steps = np.array([resolution_of(q) for q in longest.q])
+    rounding = steps / np.sqrt(12.0 * np.where(changes > 0.0, changes, 1.0))
+    return np.maximum(longest.noise, rounding)
+
+
+def at_cutoff(
+    robot: Robot,
+    parts: Sequence[Lowpassed],
+    cutoff: float,
+    noise: Array,
+    best: Estimate | None,
+) -> tuple[Scatter, Estimate | None]:
+    """The jackknife at one cut-off; infinite where the rows do not determine a joint's residual.
+
+    noise (joints) is that of the accelerations, and `best` the best estimate of lower cut-offs.
+    """
     joints, count = len(robot.joints), len(robot.parameters)
     if not parts:
-        return Scatter(cutoff, np.inf, 0, 0.0)
+        return Scatter(cutoff, np.inf, 0, 0.0), None
     q, dq, ddq, tau = (
         np.concatenate(x, axis=1) for x in zip(*(p.motion for p in parts), strict=True)
     )
@@ -110,11 +153,14 @@ def _scatter(robot: Robot, parts: Sequence[Lowpassed], cutoff: float) -> Scatter
     share = float(np.count_nonzero(counts) / counts.size)
     rows = counts.sum(axis=1)
     if not np.all(rows > count / joints + 1):
-        return Scatter(cutoff, np.inf, int(rows.sum()), share)
-    sums = sums_of(robot.regressor(q, dq, ddq), tau, counts)
+        return Scatter(cutoff, np.inf, int(rows.sum()), share), None
+    W = robot.regressor(q, dq, ddq)
+    signs = np.random.default_rng(0).choice((-1.0, 1.0), ddq.shape)
+    noisy = robot.regressor(q, dq, ddq + noise[:, None] * signs) - W
     variances = np.array([y[k].var() for y, k in zip(tau, counts, strict=True)])
-    value = _jackknife(sums, rows, variances)
-    return Scatter(cutoff, value, int(rows.sum()), share)
+    sums, noises = sums_of(W, tau, counts), sums_of(noisy, tau, counts).sum(axis=0)
+    estimate = _jackknife(sums, noises, rows, variances, best)
+    return Scatter(cutoff, estimate.error, int(rows.sum()), share), estimate
 
 
 def sums_of(W: Array, tau: Array, counts: Marks) -> Array:
@@ -130,21 +176,31 @@ def sums_of(W: Array, tau: Array, counts: Marks) -> Array:
     return sums
 
 
-def _jackknife(sums: Array, rows: Numbers, variances: Array) -> float:
-    """The trace of the covariance of the parameters, in shares of the variance of the torques.
+def _jackknife(
+    sums: Array, noises: Array, rows: Numbers, variances: Array, best: Estimate | None
+) -> Estimate:
+    """The parameters, with the trace of their covariance and the square of their bias as error.
 
-    sums: of each part and joint, as `sums_of` gives them; rows (joints); variances of the torques
-    (joints).
+    sums: of each part and joint, as `sums_of` gives them, and of each joint those of the `noises`;
+    rows (joints); variances of the torques (joints). The bias is that of the best estimate of lower
+    cut-offs, which noise has shrunk less.
     """
     p = sums.shape[-1] - 1
     total = sums.sum(axis=0)
-    weighted = weighted_sums(sums, rows)
+    weights = _inverse_variances(total, rows)
+    weighted = np.tensordot(weights, sums, (0, 1))
     estimates = solved(weighted.sum(axis=0) - weighted)
-    off = estimates - estimates.mean(axis=0)
+    theta = estimates.mean(axis=0)
+    off = estimates - theta
     driven = varies(variances, total[:, p, p] / rows)
     shares = total[driven, :p, :p] / (rows * variances)[driven, None, None]
-    mean = shares.sum(axis=0) / len(rows)
-    return float((PARTS - 1) / PARTS * np.einsum("ki,ij,kj->", off, mean, off))
+    squares = shares.sum(axis=0) / len(rows)
+    scatter = float((PARTS - 1) / PARTS * np.einsum("ki,ij,kj->", off, squares, off))
+    clean = best or Estimate(theta, squares, scatter)
+    system = weighted.sum(axis=0)
+    system[:p, p] = np.tensordot(weights, noises, (0, 0))[:p, :p] @ clean.theta
+    bias = solved(system)
+    return Estimate(theta, squares, scatter + float(bias @ clean.squares @ bias))
 
 
 def weighted_sums(sums: Array, rows: Numbers) -> Array:
