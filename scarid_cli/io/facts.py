@@ -43,6 +43,10 @@ def _count(x: Any) -> bool:
     return isinstance(x, int) and not isinstance(x, bool) and 0 < x < 1 << 20
 
 
+def _place(x: Any) -> bool:
+    return x == 0 or _count(x)
+
+
 def _or_none(check: Check) -> Check:
     return lambda x: x is None or check(x)
 
@@ -86,6 +90,16 @@ def _gains(x: Any) -> bool:
     )
 
 
+def _products(x: Any) -> bool:
+    """The products of the rows of each joint, by the lower triangles (stages/products.py)."""
+    own = {"columns": _list(_place), "products": _list(number)}
+    parts = {"joints": _list(_of(own)), "rows": _list(_size), "inflation": _size}
+    if not _of({**parts, "biases": _list(_list(number))})(x) or len(x["rows"]) != len(x["joints"]):
+        return False
+    sizes = ((len(joint["columns"]) + 1, len(joint["products"])) for joint in x["joints"])
+    return all(there == n * (n + 1) // 2 for n, there in sizes)
+
+
 def _rows_of_joints(x: Any) -> bool:
     """A list for each parameter, with a number for each joint; one parameter at least, or none."""
     if not isinstance(x, dict):
@@ -111,6 +125,7 @@ CHECKS: dict[str, Check] = {
     "reasons": _list(text),
     "biased": truth,
     "evidence": _or_none(_evidence),
+    "joint_products": _products,
     "torque_constants": _or_none(_rows_of_joints),
     "joints": lambda x: _list(text)(x) or _list(_of({"deviation": _or_none(_size)}))(x),
 }

@@ -24,6 +24,7 @@ from scarid_cli.arrays import Array, median
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, table_of
+from scarid_cli.stages.products import PRODUCTS, stored_products
 
 EVIDENCE = "evidence"  # key of the metadata
 BIASES = "biases"  # key of the evidence
@@ -221,6 +222,8 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
     }
     if np.isfinite(found.evidence.score).all():
         extra[EVIDENCE] = stored(found.evidence, labels.names) | {BIASES: _biases(found, labels)}
+    if kept := stored_products(found):
+        extra[PRODUCTS] = kept
     if found.diagnostics.additions:
         extra[ADDITIONS] = [asdict(addition) for addition in found.diagnostics.additions]
     if told := estimated(found.diagnostics, len(found.kept)):

@@ -56,7 +56,10 @@ class Diagnostics:
     of its halves, None if these do not determine them. `offsets` [N m or N] are those of the
     torques of joints (from 0) that were fitted beside the parameters, and `additions` what else
     was. Each of the `explanations` alone explains nearly all that the torques are beyond the model.
-    `cycles` (ripples, joints) are the periods per rad or m of the likeliest ripples.
+    `cycles` (ripples, joints) are the periods per rad or m of the likeliest ripples. `totals`
+    (joints, columns + 2, columns + 2) are the products of [W, y, 1] of the rows as they were fitted
+    and weighted, `counts` (joints) their numbers, and `inflation` is how much larger variances are
+    than those for white residuals.
     """
 
     covariance: RobustCovariance | None
@@ -69,6 +72,9 @@ class Diagnostics:
     effects: tuple[Effect, ...]
     gains: Array
     consequences: Consequences
+    totals: Array
+    counts: Array
+    inflation: float
     bursts: tuple[Interval, ...] = ()
     halves: Halves | None = None
     explanations: tuple[Explanation, ...] = ()
@@ -149,6 +155,9 @@ def diagnose(
             model,
             rows.motion[0],
         ),
+        totals=(weights**2)[:, None, None] * fitted.total,
+        counts=_counts(white, whole, whitened=noise is not None),
+        inflation=_inflation(found.fit, scatter),
         bursts=() if record else bursts_of(rows, trimmed(whole)),
         halves=trial.halves(longer),
         explanations=explanations(trial, effects) if model and trial.plain else (),
@@ -209,6 +218,22 @@ def _noise_errors(
     return covariance, covariance.effective, covariance.errors
 
 
+def _counts(white: Rows, whole: Blocks, *, whitened: bool) -> Array:
+    """The number of rows of each joint that were fitted."""
+    if whitened:  # all rows of these are in the memory
+        return np.count_nonzero(white.scales, axis=0).astype(np.float64)
+    return np.asarray(whole.total[:, -1, -1])
+
+
+def _inflation(fit: Fit, scatter: Array) -> float:
+    """The median ratio of the variances to the classical ones, of estimates with `scatter`."""
+    classical = fit.variance * np.diag(fit.unit_covariance)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = scatter[: len(classical)] ** 2 / classical
+    ratios = ratios[np.isfinite(ratios) & (ratios > 0.0)]
+    return median(ratios) if len(ratios) else 1.0
+
+
 def _matrix(fit: Fit, scatter: Array, shifts: list[Array]) -> Array:
     """The covariance of the estimates, scaled to their errors; nan if these are not known.
 
@@ -217,11 +242,7 @@ def _matrix(fit: Fit, scatter: Array, shifts: list[Array]) -> Array:
     errors, but do not change the directions that the motion leaves undetermined. The robust
     covariance itself would not do, because its rank is below the number of its blocks.
     """
-    classical = fit.variance * fit.unit_covariance
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratios = scatter**2 / np.diag(classical)
-    ratios = ratios[np.isfinite(ratios) & (ratios > 0.0)]
-    sized = classical * (median(ratios) if len(ratios) else 1.0)
+    sized = fit.variance * fit.unit_covariance * _inflation(fit, scatter)
     for shift in shifts:
         sized = sized + np.outer(shift, shift) if np.isfinite(shift).all() else sized
     return np.asarray(sized)

@@ -18,6 +18,7 @@ from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
 from scarid_cli.algorithms.statistics.alternatives import (
     COSINE,
     DECAYED,
+    GAIN,
     OFFSET,
     SINE,
     SPRING,
@@ -28,9 +29,10 @@ from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.consequences import few
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
-from scarid_cli.algorithms.statistics.effects import clear
+from scarid_cli.algorithms.statistics.effects import Effect, clear
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
 from scarid_cli.algorithms.statistics.explanations import Explanation
+from scarid_cli.algorithms.statistics.joint_products import JointProducts
 from scarid_cli.algorithms.statistics.offsets import offset_joints, offsets, with_offsets
 from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.arrays import Array, median
@@ -127,6 +129,13 @@ class Problem:
         matrix = found.matrix + np.diag(moved**2)
         return replace(found, errors=np.hypot(found.errors, moved), matrix=matrix)
 
+    def products(self, found: Diagnostics) -> JointProducts | None:
+        """What the rows of each joint say, with the torques as they were logged."""
+        if not self.model:
+            return None
+        gains = [k for k, x in enumerate(self.additions, start=self.own) if x.name == GAIN]
+        return JointProducts.of(found.totals, self.own, gains, found.counts, found.inflation)
+
     @property
     def compared(self) -> Rows:
         """The rows without the columns that a comparison with other logs has by itself."""
@@ -164,7 +173,8 @@ class Outcome:
     whether they lead as behind a low-pass. `excitation` (parameters) is the root-mean-square torque
     that one unit of each parameter causes on this motion. `samples` is the number of samples, of
     which every `thin`-th is fitted. `evidence` is that of the rows, at these estimates, which later
-    logs are compared with.
+    logs are compared with. `products` are those of the rows of each joint, None without a model;
+    they and the `effects` of alternatives are those before any parameters were dropped.
     """
 
     found: Estimation
@@ -179,6 +189,8 @@ class Outcome:
     samples: int
     thin: int
     evidence: LogEvidence
+    products: JointProducts | None
+    effects: tuple[Effect, ...]
 
 
 def outcome(
@@ -194,7 +206,7 @@ def outcome(
     """
     given = _Given(estimator, initial, end, robot, align=treatment.align)
     whole, diagnostics = _explained(given, treatment.gain_error)
-    problem = whole
+    problem, products, effects = whole, whole.products(diagnostics), diagnostics.effects
     covariance, reduction = diagnostics.matrix, None
     thin = end.subsample.thin if treatment.align else 1
     if treatment.essential:
@@ -222,6 +234,8 @@ def outcome(
         samples=end.subsample.total,
         thin=thin,
         evidence=_evidence(whole, fit.estimates[:own], kept, problem.rest),
+        products=products,
+        effects=effects,
     )
 
 
