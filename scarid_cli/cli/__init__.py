@@ -21,6 +21,7 @@ COMMANDS = {
     "validate": "Measure how well identified parameters predict torques.",
     "compare": "Tell which parameters of two identifications differ, and how they drift.",
     "payload": "Find what hangs on the flange: mass, centre and inertia.",
+    "gains": "Find the gain of each joint's torque from a load that is known.",
     "report": "Print tables and draw figures of parameters, traces, metrics and predictions.",
     "urdf": "Write identified parameters into a URDF as physically consistent links.",
     "export": "Write identified dynamics as C for a controller.",

@@ -109,6 +109,7 @@ KINDS = (
     "metrics",
     "comparison",
     "payload",
+    "gains",
     "trials",
     "published",
     "prediction",

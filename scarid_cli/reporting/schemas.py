@@ -46,13 +46,14 @@ USES = {
     "motion": ("`differentiate`", "`identify`, `validate`"),
     "parameters": (
         "`identify`",
-        "`validate --parameters`, `compare`, `payload --parameters`, `urdf --parameters`, "
+        "`validate --parameters`, `compare`, `payload --parameters`, `gains --parameters`, `urdf --parameters`, "
         "`export --parameters`, `report`, `identify --initial`, `trajgen --after`",
     ),
     "trace": ("`identify --trace`", "`report`"),
     "metrics": ("`validate`", "`report`"),
     "comparison": ("`compare`", "you"),
     "payload": ("`payload`", "you"),
+    "gains": ("`gains`", "`identify --gains`"),
     "prediction": ("`validate --predictions`", "`report`"),
     "published": ("you", "`report --published`"),
     "fleet": ("`make batch`", "`report --fleet`"),

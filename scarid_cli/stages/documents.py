@@ -70,6 +70,20 @@ def validation(table: Table) -> Document:
     )
 
 
+def of_gains(table: Table) -> Document:
+    """What `gains` has found, from its table."""
+    rows = _rows(table)
+    told = [row["joint"] for row in rows if row["gain"] is not None]
+    return _document(
+        {
+            **_head("gains", table),
+            "told": told,
+            "wrong": table.meta.extra["wrong"],
+            "joints": rows,
+        }
+    )
+
+
 def comparison(table: Table) -> Document:
     """What `compare` has found, from its table of differences."""
     extra = table.meta.extra

@@ -9,6 +9,8 @@ import numpy as np
 
 from scarid_cli.algorithms.changes import payload as algorithm
 from scarid_cli.algorithms.changes.payload import NAMES, UNITS, Payload
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.rigid import Frame
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.io import schemas
@@ -19,21 +21,29 @@ from scarid_cli.stages.estimates import Estimates
 def payload(bare: Estimates, loaded: Estimates, link: str | None) -> tuple[Payload, str]:
     """The payload in the frame of a link, by default the tool's; the name of the link."""
     robot = bare.robot
-    if not robot.body:
-        raise UsageFault(f"{robot.name}: a payload needs a robot with a URDF")
-    name = link or robot.body.tool
-    frames = robot.body.frames
-    last = len(robot.body.link_numbers)
-    if name not in frames or frames[name].axis != last:
-        own = ", ".join(k for k, frame in frames.items() if frame.axis == last)
-        raise UsageFault(f"--frame {name}: no link that is fixed to the last axis; it has {own}")
+    frame, name = frame_of(robot, link, "a payload needs")
     covariance = bare.covariance + loaded.covariance
     phi, spread = algorithm.standard(
         algorithm.directions(robot), loaded.full - bare.full, covariance
     )
     if not phi[algorithm.MASS]:
         raise BadData("payload: both identifications are the same; give a log with the payload")
-    return algorithm.in_frame(phi, spread, frames[name]), name
+    return algorithm.in_frame(phi, spread, frame), name
+
+
+def frame_of(robot: Robot, link: str | None, who: str) -> tuple[Frame, str]:
+    """The frame of a link that is fixed to the last axis, by default the tool; its name.
+
+    `who` needs it, as in `a payload needs`.
+    """
+    if not robot.body:
+        raise UsageFault(f"{robot.name}: {who} a robot with a URDF")
+    name, frames = link or robot.body.tool, robot.body.frames
+    last = len(robot.body.link_numbers)
+    if name not in frames or frames[name].axis != last:
+        own = ", ".join(k for k, frame in frames.items() if frame.axis == last)
+        raise UsageFault(f"--frame {name}: no link that is fixed to the last axis; it has {own}")
+    return frames[name], name
 
 
 def table(found: Payload, of: Table, link: str) -> Table:

@@ -18,11 +18,12 @@ INPUTS = {
     "compare": ("par.parquet", "par.parquet"),
     "export": ("--parameters", "par.parquet"),
     "payload": ("par.parquet", "--parameters", "par.parquet"),
+    "gains": ("par.parquet", "--parameters", "par.parquet", "--mass", "1"),
     "report": ("par.parquet",),
     "trajgen": (),
 }
 COMMANDS = ("trajgen", "simulate", "resample", "check", "filter", "tune", "differentiate",
-            "identify", "validate", "compare", "payload", "export", "report", "convert", "info")  # fmt: skip
+            "identify", "validate", "compare", "payload", "gains", "export", "report", "convert", "info")  # fmt: skip
 ENVIRONMENTS = (
     {"SCARID_FORMAT": "x"}, {"SCARID_FORMAT": ""}, {"SCARID_ROBOT": "x"}, {"SCARID_ROBOT": ""},
     {"SCARID_MAX_BATCH": "x"}, {"SCARID_MAX_BATCH": "0"}, {"SCARID_MAX_BATCH": "1"},

@@ -31,13 +31,13 @@ TINY = 1e-30
 class Load:
     """What is known of a load: its mass [kg], and its centre (3) [m] in the frame of the last axis.
 
-    `mass_error` and `centre_error` (3) are standard errors; the centre is None if it is not known.
+    `mass_error` and `centre_error` are standard errors; the centre is None if it is not known.
     """
 
     mass: float
     mass_error: float
     centre: Array | None = None
-    centre_error: Array | None = None
+    centre_error: float = 0.0
 
     def information(self) -> tuple[Array, Array]:
         """The information (10, 10) about the standard parameters, and their likeliest values (10).
@@ -48,8 +48,8 @@ class Load:
         wide = np.array([*(self.mass * REACH**2,) * 6, *(self.mass * REACH,) * 3])
         rows, values = np.diag(np.append(1.0 / wide, 1.0 / error)), np.zeros(10)
         values[MASS] = self.mass
-        if self.centre is not None and self.centre_error is not None:
-            size = self.mass * np.maximum(self.centre_error, 1e-9)
+        if self.centre is not None:
+            size = self.mass * max(self.centre_error, 1e-6)
             rows[MOMENTS, MOMENTS] = 1.0 / size
             rows[MOMENTS, MASS] = -self.centre / size  # the first moments are mass times centre
             values[MOMENTS] = self.mass * self.centre
@@ -99,9 +99,7 @@ class Gains:
         return np.sqrt(np.diag(self.covariance))
 
 
-def with_load(
-    bare: Judged, loaded: Judged, B: Array, shared: Marks, load: Load
-) -> Gains:
+def with_load(bare: Judged, loaded: Judged, B: Array, shared: Marks, load: Load) -> Gains:
     """The gains, from a log without a load and one with it.
 
     B (parameters, 10) is how the parameters depend on those of a load. Those that are not `shared`,

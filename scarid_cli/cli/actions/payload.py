@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job
-from scarid_cli.cli.logs import read_logs
-from scarid_cli.cli.measured import read, searching
-from scarid_cli.io.table import Table
-from scarid_cli.stages import blind
+from scarid_cli.cli.loaded import loaded
 from scarid_cli.stages import payload as stage
 from scarid_cli.stages.estimates import estimates_with_covariance
-
-PARAMETERS = ("parameter", "estimate")  # columns of a table of parameters
 
 
 def run(
@@ -20,33 +14,11 @@ def run(
     """Write the table of the payload, and say what hangs there."""
     bare = job.read(parameters, "parameters")
     arm = job.robot(robot, bare)
-    loaded = _loaded(job, files, robot or arm, arm)
-    found, link = stage.payload(
-        estimates_with_covariance(bare, arm), estimates_with_covariance(loaded, arm), frame
+    found = loaded(job, files, robot, arm)
+    hung, link = stage.payload(
+        estimates_with_covariance(bare, arm), estimates_with_covariance(found, arm), frame
     )
-    lines = list(stage.told(found, link))
-    job.write(job.recorded(stage.table(found, loaded, link)))
+    lines = list(stage.told(hung, link))
+    job.write(job.recorded(stage.table(hung, found, link)))
     for line in lines:
         job.say(line)
-
-
-def _loaded(job: Job, files: tuple[str, ...], robot: str | Robot, arm: Robot) -> Table:
-    """The parameters of the loaded robot: a table of them, or what its logs give."""
-    if len(files) == 1 and _is_parameters(job, files[0]):
-        return job.read(files[0], "parameters")
-    name = robot if isinstance(robot, str) else arm.name
-    logs, arm = read_logs(job, files, name, lambda file, own: read(job, file, own))
-    result = blind.identified(logs, arm, progress=searching(job))
-    verdict, reasons = result.meta.extra["verdict"], result.meta.extra["reasons"]
-    job.say(f"the loaded robot: {verdict}: {reasons[0]}")
-    return result
-
-
-def _is_parameters(job: Job, file: str) -> bool:
-    source = job.opened(file)
-    start = source.peek_lines(1) if not source.peek(4).startswith((b"PAR1", b"ARRO")) else b""
-    if start:
-        return start.startswith(b"parameter,")
-    import pyarrow.parquet as pq
-
-    return file.endswith(".parquet") and {*PARAMETERS} <= {*pq.read_schema(file).names}

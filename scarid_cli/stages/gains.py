@@ -1,0 +1,149 @@
+"""The table of the gains of a robot's torques, from the parameters with and without a load."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from statistics import NormalDist
+
+import numpy as np
+
+from scarid_cli.algorithms.changes.known_load import Gains, Load, with_load
+from scarid_cli.algorithms.changes.payload import directions
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.logs import CURRENT
+from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.statistics.gains import KNOWN
+from scarid_cli.arrays import Array
+from scarid_cli.errors import BadData, UsageFault
+from scarid_cli.interval import HALF, plus_minus
+from scarid_cli.io import schemas
+from scarid_cli.io.table import Table, table_of
+from scarid_cli.stages.payload import frame_of
+from scarid_cli.stages.products import products_of
+
+LEVEL = 0.05  # probability of calling any of the joints wrong if none is
+
+
+@dataclass(frozen=True)
+class Told:
+    """The gains of the joints, and which of them the logs tell.
+
+    `constants` (joints) are the torque constants that the logs were read with [N m/A], nan for a
+    joint that has none of its own.
+    """
+
+    gains: Gains
+    constants: Array
+
+    @property
+    def known(self) -> Array:
+        """Which gains are told (joints)."""
+        return np.asarray(self.gains.errors < KNOWN)
+
+    @property
+    def wrong(self) -> list[int]:
+        """The joints (from 0) whose gain is not 1, beyond what noise makes of it."""
+        most = NormalDist().inv_cdf(1.0 - 0.5 * LEVEL / len(self.constants))
+        ratios = np.abs(self.gains.logarithms) / self.gains.errors
+        return np.flatnonzero(self.known & (ratios > most)).tolist()
+
+
+def load_in(
+    robot: Robot,
+    link: str | None,
+    mass: tuple[float, float],
+    centre: tuple[Sequence[float], float] | None,
+) -> Load:
+    """A load, given its mass [kg] and its centre [m] in the frame of a link, each with its error.
+
+    The frame is by default that of the tool.
+    """
+    frame, _ = frame_of(robot, link, "gains need")
+    if centre is None:
+        return Load(*mass)
+    place, error = centre
+    return Load(*mass, frame.carried(place), error)
+
+
+def gains(bare: Table, loaded: Table, robot: Robot, load: Load) -> Told:
+    """The gains, from the tables of parameters of the bare robot and of the loaded one."""
+    shared = Model(robot, list(range(len(robot.names)))).transmits
+    one, other = products_of(bare, robot), products_of(loaded, robot)
+    found = with_load(one, other, directions(robot), shared, load)
+    told = Told(found, _constants(robot))
+    if not told.known.any():
+        raise BadData(
+            "gains: the motion does not tell any of them; use a motion that turns the joints "
+            "against gravity, with and without the load"
+        )
+    return told
+
+
+def _constants(robot: Robot) -> Array:
+    """The torque constants of the description (joints), nan where a motor turns several joints."""
+    log, none = robot.log, np.full(len(robot.joints), np.nan)
+    if log is None or log.torques != CURRENT:
+        return none
+    ratios = np.array(log.ratios)
+    alone = np.count_nonzero(ratios, axis=0) == 1
+    alone &= np.count_nonzero(ratios, axis=1) == 1
+    return np.where(alone, log.constants, np.nan)
+
+
+def table(found: Told, robot: Robot, of: Table) -> Table:
+    """A row for each joint, with its 95 % interval; empty where the gain is not told."""
+    k, errors = found.gains.factors, found.gains.errors
+    span = np.exp(HALF * errors)
+    columns = (k, k * errors, k / span, k * span, found.constants / k)
+    rows = [
+        (j, *(float(x[j - 1]) if found.known[j - 1] else np.nan for x in columns))
+        for j in range(1, len(robot.joints) + 1)
+    ]
+    extra = {
+        "covariance": found.gains.covariance.tolist(),
+        "wrong": [j + 1 for j in found.wrong],
+    }
+    meta = replace(of.meta, kind="gains", extra=extra)
+    return table_of("gains", schemas.load("gains").arrow(), rows, meta)
+
+
+def told(found: Told) -> Iterator[str]:
+    """The gains, which of them are wrong, and what the motion does not tell."""
+    parts = [f"joint {j + 1} {_gain(found.gains, j)}" for j in np.flatnonzero(found.known).tolist()]
+    yield f"logged over true torque: {', '.join(parts)}"
+    if found.wrong:
+        k = found.gains.factors
+        texts = [
+            f"joint {j + 1} logs {abs(100.0 * (k[j] - 1.0)):.2g} % too "
+            f"{'much' if k[j] > 1.0 else 'little'}"
+            for j in found.wrong
+        ]
+        yield f"wrong: {', '.join(texts)} (its torque constant, gear ratio or unit)"
+    else:
+        yield "none of them differs from 1"
+    if unknown := np.flatnonzero(~found.known).tolist():
+        yield f"not told by this motion: joint {', '.join(str(j + 1) for j in unknown)}"
+
+
+def _gain(gains: Gains, j: int) -> str:
+    k = gains.factors[j]
+    digits = max(1, 1 - int(np.floor(np.log10(HALF * k * gains.errors[j]))))
+    return f"{k:.{digits}f} {plus_minus(float(k * gains.errors[j]))}"
+
+
+def toml_lines(found: Told) -> str:
+    """The [[joint]] entries of a TOML file, with the torque constants that make the gains 1."""
+    lines = ["# The torque constants that the gains of `scarid gains` make right."]
+    if np.isnan(found.constants).any():
+        lines.append("# Without an own constant: what to multiply the logged torque by.")
+    for j, constant in enumerate(found.constants):
+        lines += ["", f"[[joint]]  # {j + 1}"]
+        if not found.known[j]:
+            lines.append("# not told")
+            continue
+        own = bool(np.isfinite(constant))
+        value = (constant if own else 1.0) / found.gains.factors[j]
+        unit = f"N m/A, in place of {constant:g}" if own else "of the logged torque"
+        lines.append(f"torque_constant = {value:.5g}  # {unit}; gain {_gain(found.gains, j)}")
+    return "\n".join([*lines, ""])
