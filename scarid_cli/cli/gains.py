@@ -52,7 +52,7 @@ def command() -> None:
     wrote for them. The bare robot is identified beforehand, best from the same motion. Joints share
     parameters, so that each log tells the gains relative to each other; the weight of the load
     tells the factor that they have in common. Friction and offsets may differ from log to log.
-    A gain that the motion does not tell within 10 % is empty, and is named. `scarid identify --gains`
-    takes the table, and divides the torques by these gains. The robot needs a URDF (pip install
-    'scarid[urdf]').
+    A gain that the motion does not tell within 10 % is empty, and is named. `scarid identify
+    --gains` takes the table, and divides the torques by these gains. The robot needs a URDF (pip
+    install 'scarid[urdf]').
     """

@@ -47,6 +47,14 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
     help="Also fit the time by which the torques lead the motion. Holds the whole log in memory.  "
     "[default: --align for a measurement only]",
 )
+@options.input_file("--gains", help="Divide the torques by the gains that `scarid gains` wrote.")
+@click.option(
+    "--free-gains",
+    metavar="ANCHOR",
+    help="Estimate the gain of each joint's torque as well, and divide the torques by them. ANCHOR "
+    "fixes the factor that all have in common: the number of a joint, whose gain is 1; `masses`, "
+    "those of the URDF; or `constants`, within --torque-gain-error.",
+)
 @click.option(
     "--essential",
     is_flag=True,
@@ -62,7 +70,8 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
     "--torque-gain-error",
     metavar="PART",
     help="Standard error of the torque constants, such as 1% or 0.01, which no log can show. It is "
-    "added to the errors of the parameters.  [default: 0]",
+    "added to the errors of the parameters; with --free-gains, it is what is known of each gain "
+    "before the log.  [default: 0]",
 )
 @click.option(
     "--variance",

@@ -8,15 +8,22 @@ from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import read, searching
 from scarid_cli.io.table import Table
 from scarid_cli.stages import blind
+from scarid_cli.stages.corrected import corrected
 
 PARAMETERS = ("parameter", "estimate")  # columns of a table of parameters
 
 
-def loaded(job: Job, files: tuple[str, ...], robot: str | None, arm: Robot) -> Table:
-    """The parameters of the loaded robot: a table of them, or what its logs give."""
+def loaded(
+    job: Job, files: tuple[str, ...], robot: str | None, arm: Robot, gains: list[float]
+) -> Table:
+    """The parameters of the loaded robot: a table of them, or what its logs give.
+
+    The torques of logs are divided by the `gains` (joints) of the bare robot, if there are any.
+    """
     if len(files) == 1 and _is_parameters(job, files[0]):
         return job.read(files[0], "parameters")
     logs, arm = read_logs(job, files, robot or arm.name, lambda file, own: read(job, file, own))
+    logs = [corrected(log, gains) for log in logs] if gains else logs
     result = blind.identified(logs, arm, progress=searching(job))
     verdict, reasons = result.meta.extra["verdict"], result.meta.extra["reasons"]
     job.say(f"the loaded robot: {verdict}: {reasons[0]}")

@@ -46,8 +46,9 @@ USES = {
     "motion": ("`differentiate`", "`identify`, `validate`"),
     "parameters": (
         "`identify`",
-        "`validate --parameters`, `compare`, `payload --parameters`, `gains --parameters`, `urdf --parameters`, "
-        "`export --parameters`, `report`, `identify --initial`, `trajgen --after`",
+        "`validate --parameters`, `compare`, `payload --parameters`, `gains --parameters`, "
+        "`urdf --parameters`, `export --parameters`, `report`, `identify --initial`, "
+        "`trajgen --after`",
     ),
     "trace": ("`identify --trace`", "`report`"),
     "metrics": ("`validate`", "`report`"),

@@ -14,8 +14,8 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.logs import CURRENT
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.gains import KNOWN
-from scarid_cli.arrays import Array
-from scarid_cli.errors import BadData, UsageFault
+from scarid_cli.arrays import Array, Marks
+from scarid_cli.errors import BadData
 from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
@@ -37,9 +37,9 @@ class Told:
     constants: Array
 
     @property
-    def known(self) -> Array:
+    def known(self) -> Marks:
         """Which gains are told (joints)."""
-        return np.asarray(self.gains.errors < KNOWN)
+        return np.asarray(self.gains.errors < KNOWN, dtype=bool)
 
     @property
     def wrong(self) -> list[int]:

@@ -21,6 +21,7 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import SEGMENT, Table, number, segment_field, with_columns
 from scarid_cli.stages import Sink
+from scarid_cli.stages.corrected import TORQUE_GAINS
 from scarid_cli.stages.parameters import parameters
 from scarid_cli.stages.reach import Reach
 from scarid_cli.stages.rows import treated
@@ -83,7 +84,7 @@ def identify(
         failed=[finding.text for finding in findings if finding.status == FAILED],
     )
     extra = dict(result.meta.extra)
-    kept = ("bandwidth", "velocity_noise")  # by which validate takes a later log
+    kept = ("bandwidth", "velocity_noise", TORQUE_GAINS)  # by which validate takes a later log
     extra |= {fact: value for fact in kept if (value := table.meta.extra.get(fact))}
     if treatment.counting:
         extra["left_out"] = checkpoint.left_out.counts

@@ -13,6 +13,7 @@ from scarid_cli.algorithms.statistics.joint_products import JointProducts
 from scarid_cli.algorithms.statistics.outcome import Outcome
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import Table
+from scarid_cli.stages.corrected import gains_of
 
 PRODUCTS = "joint_products"  # key of the metadata
 REMEDY = "write the table with `identify -o parameters.parquet`"
@@ -43,7 +44,7 @@ def _packed(values: Any) -> dict[str, list[Any]]:
 
 
 def products_of(table: Table, robot: Robot) -> Judged:
-    """What the metadata of a parameter table say about the rows of each joint."""
+    """What the metadata of a parameter table say about the rows of each joint, as logged."""
     stored = table.meta.extra.get(PRODUCTS)
     if stored is None:
         raise BadData(
@@ -66,5 +67,8 @@ def products_of(table: Table, robot: Robot) -> Judged:
         lower = np.zeros((len(at), len(at)))
         lower[np.tril_indices(len(at))] = joint["products"]
         own[np.ix_(at, at)] = lower + np.tril(lower, -1).T
+    gains = np.array(gains_of(table) or np.ones(joints))[:, None]
+    values[:, -1] *= gains  # of the torques as they were logged
+    values[:, :, -1] *= gains
     products = JointProducts(values, np.array(stored["rows"]), stored["inflation"])
     return Judged(products, np.array(stored["biases"]).reshape(-1, p))

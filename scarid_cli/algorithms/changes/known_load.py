@@ -10,14 +10,15 @@ from the products of the rows of each joint.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
 from scarid_cli.algorithms.changes.payload import MASS, MOMENTS
 from scarid_cli.algorithms.statistics.joint_products import JointProducts
-from scarid_cli.arrays import Array, Marks
+from scarid_cli.arrays import Array, Marks, Numbers
 
 STEPS = 50
 CLOSE = 1e-9  # change of the logarithms of the gains, below which they have converged
@@ -84,10 +85,14 @@ class Log:
 
 @dataclass(frozen=True)
 class Gains:
-    """The logarithms of the gains (joints), and their covariance (joints, joints)."""
+    """The logarithms of the gains (joints), and their covariance (joints, joints).
+
+    `unknowns` are those of the logs, at these gains.
+    """
 
     logarithms: Array
     covariance: Array
+    unknowns: Array
 
     @property
     def factors(self) -> Array:
@@ -118,20 +123,43 @@ def with_load(bare: Judged, loaded: Judged, B: Array, shared: Marks, load: Load)
     return fitted(logs, known, mean)
 
 
+def alone(judged: Judged, error: float, fixed: Collection[int]) -> Gains:
+    """The gains relative to those of the joints (from 0) that are `fixed`, from one log."""
+    p = judged.products.values.shape[1] - 1
+    return fitted([Log(judged, np.eye(p))], np.zeros((p, p)), np.zeros(p), error, fixed)
+
+
+def scaled(found: Gains, apriori: Array, moments: Numbers, untold: Collection[int]) -> Gains:
+    """The gains with the factor by which the first moments are those of a description.
+
+    `moments` are the places of the first moments among the parameters, of which a description has
+    `apriori` values. They are the gravity torques of a robot. The error of the factor is that of
+    regression: what the moments scatter about the description's.
+    """
+    a, b = apriori[moments], found.unknowns[moments]
+    factor = float(a @ b / (a @ a))
+    rest = a * (b - factor * a)
+    error = sqrt(float(rest @ rest) * len(a) / (len(a) - 1)) / float(a @ a)
+    told = np.array([j not in untold for j in range(len(found.logarithms))], dtype=np.float64)
+    logarithms = found.logarithms + np.log(factor) * told
+    covariance = found.covariance + (error / factor) ** 2 * np.outer(told, told)
+    return Gains(logarithms, covariance, found.unknowns / factor)
+
+
 def fitted(
     logs: Sequence[Log],
     known: Array,
     mean: Array,
     error: float = BEFORE,
-    fixed: int | None = None,
+    fixed: Collection[int] = (),
 ) -> Gains:
     """The gains that fit all logs, of which each is known to this relative `error` beforehand.
 
     `known` (unknowns, unknowns) is the information about the unknowns, whose likeliest values are
-    their `mean`. The gain of the joint that is `fixed` (from 0) is 1.
+    their `mean`. The gains of the joints that are `fixed` (from 0) are 1.
     """
     joints = len(logs[0].products.values)
-    free = [j for j in range(joints) if j != fixed]
+    free = [j for j in range(joints) if j not in fixed]
     u, n = np.zeros(joints), len(mean)
     weights = [np.ones(joints) for _ in logs]
     for _ in range(STEPS):
@@ -149,7 +177,7 @@ def fitted(
         u = u + step
         if np.max(np.abs(step)) < CLOSE:
             break
-    return Gains(u, _covariance(logs, weights, u, x, H, at, free))
+    return Gains(u, _covariance(logs, weights, u, x, H, at, free), x)
 
 
 def _unknowns(
@@ -165,12 +193,13 @@ def _unknowns(
 
 
 def _weights(log: Log, k: Array, theta: Array) -> Array:
-    """The inverse variances of the residuals of each joint."""
+    """The inverse variances of the residuals of each joint, of noise that is correlated in time."""
     A = log.products.values
     along = np.column_stack((-np.outer(k, theta), np.ones(len(k))))
     squares = np.einsum("ji,jik,jk->j", along, A, along)
     least = 1e-18 * A[:, -1, -1] + TINY
-    return np.asarray(log.products.counts / np.maximum(squares, least))
+    variances = np.maximum(squares, least) * log.products.inflation
+    return np.asarray(log.products.counts / variances)
 
 
 def _system(
@@ -210,23 +239,16 @@ def _covariance(
     at: Array,
     free: list[int],
 ) -> Array:
-    """The covariance of the logarithms: of noise that is correlated in time, and of biases."""
+    """The covariance of the logarithms: that of the noise, and the largest of the biases."""
     n, k = len(x), np.exp(u)
-    middle, moves = H.copy(), []
-    for log, weight in zip(logs, weights, strict=True):
-        own, _ = _of_log(log, weight, k, x)
-        middle += (log.products.inflation - 1.0) * own
-        moves.append([_moved(log, weight, k, x, bias) for bias in log.judged.biases])
     inner = _solved(H[np.ix_(at, at)], np.eye(len(at)))
-    noise = inner @ middle[np.ix_(at, at)] @ inner.T
     found = np.zeros((len(k), len(k)))
-    found[np.ix_(free, free)] = noise[n:, n:]
-    for own_moves in moves:
-        shifts = np.zeros((len(own_moves), len(k)))
-        for row, move in zip(shifts, own_moves, strict=True):
-            row[free] = (inner @ move[at])[n:]
-        if len(shifts):
-            found += np.diag(np.max(shifts**2, axis=0))
+    found[np.ix_(free, free)] = inner[n:, n:]
+    for log, weight in zip(logs, weights, strict=True):
+        shifts = np.zeros((len(log.judged.biases), len(k)))
+        for row, bias in zip(shifts, log.judged.biases, strict=True):
+            row[free] = (inner @ _moved(log, weight, k, x, bias)[at])[n:]
+        found += np.diag(np.max(shifts**2, axis=0, initial=0.0))
     return found
 
 

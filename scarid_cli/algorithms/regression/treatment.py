@@ -6,6 +6,10 @@ from dataclasses import dataclass
 
 from scarid_cli.algorithms.regression.counting import Counting
 
+# One for all joints, or the errors of each in several directions (directions, joints), in each of
+# which they are wrong together.
+GainErrors = float | tuple[tuple[float, ...], ...]
+
 
 @dataclass(frozen=True)
 class Treatment:
@@ -16,7 +20,7 @@ class Treatment:
     (joints) [rad/s or m/s] are left out, and those near a reversal or standstill as `counting`
     says; it is None if all rows count. Three more options concern the fit: `align` also fits the
     time by which the torques lead the motion, `essential` drops parameters that are not essential,
-    and `gain_error` is the relative standard error of the torque constants.
+    and `gain_errors` are the relative standard errors of the torque constants.
     """
 
     skip: tuple[int, int] = (0, 0)
@@ -25,7 +29,7 @@ class Treatment:
     counting: Counting | None = None
     align: bool = False
     essential: bool = False
-    gain_error: float = 0.0
+    gain_errors: GainErrors = 0.0
 
     @property
     def holds(self) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.estimation import Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.treatment import GainErrors
 from scarid_cli.algorithms.statistics.additions import Addition
 from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
@@ -92,7 +93,7 @@ def diagnose(
     modelled: Array | None = None,
     model: Model | None = None,
     doubt: Array | None = None,
-    gain_error: float = 0.0,
+    gain_errors: GainErrors = 0.0,
     suspected: frozenset[str] = frozenset(),
     shared: frozenset[str] = frozenset(),
     curves: Collection[int] = (),
@@ -104,7 +105,7 @@ def diagnose(
     regressor; the others are nuisance parameters. `modelled` (columns) are the estimates that
     predict torques later, by which the residuals of the joints are stated. `doubt` (own) is how far
     the estimates may be off because torques may lead as behind a low-pass or as behind a delay.
-    `gain_error` is the relative standard error of the torque constants. Intervals allow for the
+    `gain_errors` are the relative standard errors of the torque constants. Intervals allow for the
     alternatives that are `suspected` even where they are not significant, for all that is possible
     of those that are `shared`, because other joints have them, and for any curve of the friction of
     the joints (from 0) of `curves`.
@@ -135,7 +136,7 @@ def diagnose(
     known = scatter[:own]
     if curves:
         known = np.maximum(known, trial.errors_with_curves(curves))
-    stated = _stated(found.fit.part(slice(own)), known, effects, gain_error * gains)
+    stated = _stated(found.fit.part(slice(own)), known, effects, moves_by(gain_errors, gains))
     return Diagnostics(
         covariance=covariance and covariance.part(own),
         blocks=blocks,
@@ -196,6 +197,17 @@ def _stated(fit: Fit, scatter: Array, effects: tuple[Effect, ...], gains: Array)
     )
 
 
+def moves_by(errors: GainErrors, gains: Array) -> Array:
+    """How far the estimates move (directions, own) by the errors of the torque constants.
+
+    `gains` (joints, own) is how far they move per relative change of the constant of a joint.
+    """
+    if isinstance(errors, float | int):
+        return np.asarray(errors * gains)
+    found: Array = np.array(errors).reshape(-1, len(gains)) @ gains
+    return found
+
+
 def _weights(found: Estimation, joints: int) -> Array:
     """What the rows of each joint were multiplied by (joints)."""
     if found.scores is None or found.scores.whitening is None:
@@ -221,7 +233,7 @@ def _noise_errors(
 def _counts(white: Rows, whole: Blocks, *, whitened: bool) -> Array:
     """The number of rows of each joint that were fitted."""
     if whitened:  # all rows of these are in the memory
-        return np.count_nonzero(white.scales, axis=0).astype(np.float64)
+        return np.asarray(np.count_nonzero(white.scales, axis=0), dtype=np.float64)
     return np.asarray(whole.total[:, -1, -1])
 
 
@@ -231,7 +243,7 @@ def _inflation(fit: Fit, scatter: Array) -> float:
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = scatter[: len(classical)] ** 2 / classical
     ratios = ratios[np.isfinite(ratios) & (ratios > 0.0)]
-    return median(ratios) if len(ratios) else 1.0
+    return float(median(ratios)) if len(ratios) else 1.0
 
 
 def _matrix(fit: Fit, scatter: Array, shifts: list[Array]) -> Array:

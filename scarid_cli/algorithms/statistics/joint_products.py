@@ -29,6 +29,15 @@ class JointProducts:
     counts: Array
     inflation: float
 
+    @property
+    def strongest(self) -> int:
+        """The joint (from 0) with the largest torque of parameters that it shares with others."""
+        G, c = self.values[:, :-1, :-1], self.values[:, :-1, -1]
+        theta = np.linalg.lstsq(G.sum(axis=0), c.sum(axis=0), rcond=None)[0]
+        shared = np.count_nonzero(np.diagonal(G, axis1=1, axis2=2), axis=0) > 1
+        theta = theta * shared
+        return int(np.argmax(np.einsum("i,jik,k->j", theta, G, theta)))
+
     @classmethod
     def of(
         cls, total: Array, own: int, ignored: Sequence[int], counts: Array, inflation: float

@@ -11,7 +11,7 @@ from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
-from scarid_cli.algorithms.regression.treatment import Treatment
+from scarid_cli.algorithms.regression.treatment import GainErrors, Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
@@ -79,7 +79,7 @@ class Problem:
         return estimates
 
     def diagnostics(
-        self, gain_error: float, suspected: frozenset[str] = frozenset()
+        self, gain_errors: GainErrors, suspected: frozenset[str] = frozenset()
     ) -> Diagnostics:
         doubt = self.lead.doubt if self.lead else None
         found = diagnose(
@@ -90,7 +90,7 @@ class Problem:
             modelled=self.modelled,
             model=self.model,
             doubt=None if doubt is None else doubt[: self.own],
-            gain_error=gain_error,
+            gain_errors=gain_errors,
             suspected=suspected,
             shared=frozenset(x.name for x in self.additions) - {OFFSET},
             curves={x.joint for x in self.additions if x.name in DECAYED},
@@ -205,7 +205,7 @@ def outcome(
     The treatment says whether the delay of the torques is fitted too, and parameters are dropped.
     """
     given = _Given(estimator, initial, end, robot, align=treatment.align)
-    whole, diagnostics = _explained(given, treatment.gain_error)
+    whole, diagnostics = _explained(given, treatment.gain_errors)
     problem, products, effects = whole, whole.products(diagnostics), diagnostics.effects
     covariance, reduction = diagnostics.matrix, None
     thin = end.subsample.thin if treatment.align else 1
@@ -214,7 +214,7 @@ def outcome(
         reduction = essential(whole.found.fit, noise, whole.own)
         if reduction.dropped:
             problem = whole.reduced(reduction)
-            diagnostics = problem.diagnostics(treatment.gain_error)
+            diagnostics = problem.diagnostics(treatment.gain_errors)
     own, fit = problem.own, problem.found.fit
     kept = (reduction.kept if reduction else list(range(own)))[:own]
     lead, delay = problem.lead, None
@@ -260,14 +260,14 @@ class _Given:
     align: bool
 
 
-def _explained(given: _Given, gain_error: float) -> tuple[Problem, Diagnostics]:
+def _explained(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnostics]:
     """The problem with what alone explains nearly all that the model does not; its diagnostics.
 
     If nothing does, it is the plain one. With it, what was significant before must not be clear,
     nor another alternative for the torques.
     """
     plain = _problem(given)
-    diagnostics = plain.diagnostics(gain_error)
+    diagnostics = plain.diagnostics(gain_errors)
     if not (given.align and plain.model):
         return plain, diagnostics
     suspected = frozenset(effect.name for effect in clear(diagnostics.effects))
@@ -276,7 +276,7 @@ def _explained(given: _Given, gain_error: float) -> tuple[Problem, Diagnostics]:
             wider = _problem(given, _shapes(given, plain, plain.model, explanation))
         except NotIdentifiableError:
             continue
-        found = wider.diagnostics(gain_error, suspected)
+        found = wider.diagnostics(gain_errors, suspected)
         left = {effect.name for effect in clear(found.effects, explanation.rest)}
         there = wider.added(found.scatter) > explanation.threshold
         if there and not left & {*suspected, *TORQUES}:

@@ -7,6 +7,7 @@ from scarid_cli.cli.loaded import loaded
 from scarid_cli.errors import UsageFault
 from scarid_cli.interval import HALF
 from scarid_cli.stages import gains as stage
+from scarid_cli.stages.corrected import gains_of
 from scarid_cli.stages.documents import of_gains
 
 
@@ -31,7 +32,7 @@ def run(
     bare = job.read(parameters, "parameters")
     arm = job.robot(robot, bare)
     load = stage.load_in(arm, frame, (kg, error), place)
-    found = stage.gains(bare, loaded(job, files, robot, arm), arm, load)
+    found = stage.gains(bare, loaded(job, files, robot, arm, gains_of(bare)), arm, load)
     result = stage.table(found, arm, bare)
     if lines:
         lines.write(stage.toml_lines(found))

@@ -13,6 +13,7 @@ from scarid_cli.algorithms.checks.finding import WARNING, Finding
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
@@ -36,7 +37,9 @@ from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document
 from scarid_cli.stages import blind
 from scarid_cli.stages.blind import FOR_MOTION, Choices, Chosen, Prepared
+from scarid_cli.stages.corrected import corrected, correction, gains_of, told_gains
 from scarid_cli.stages.documents import identification
+from scarid_cli.stages.free import Anchor, freed
 from scarid_cli.stages.parameters import identified
 
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
@@ -60,11 +63,18 @@ def run(
     arm, treatment = for_robot(arm, choices.treatment, given)
     settings = {**choices.settings, **_single(given["forgetting"], arm.names)}
     choices = replace(choices, treatment=treatment)
+    if given["gains"]:
+        logs, choices = _corrected(job, given["gains"], logs, arm, choices)
     prepared = blind.prepared(logs, arm, choices, progress=searching(job))
     chosen = prepared.chosen
     tell_of(job, prepared, logs, _options(chosen))
     start = _initial(job, given["initial"], arm)
     solver = chosen.method(**settings)
+    untold = list[int]()
+    if given["free_gains"]:
+        anchor = Anchor.of(given["free_gains"], _common(treatment), len(arm.joints))
+        found = freed(prepared, arm, settings, start, anchor)
+        prepared, untold = found.prepared, found.untold
     fixed = _fixed(prepared, arm, solver, given["smooth_sign"])
     places: list[Checkpoint] = []
     findings: list[Finding] = []
@@ -87,6 +97,7 @@ def run(
     for finding in findings:
         if finding.status == WARNING:
             job.say(f"warning: {finding.text}")
+    _tell_of_gains(job, result, untold)
     _tell(job, prepared.motion, arm.name, chosen, result.meta.extra)
     return _status(job, require, result.meta.extra)
 
@@ -109,6 +120,33 @@ def _choices(given: dict[str, Any]) -> Choices:
         bandwidth=given["bandwidth"],
         all_rows=given["all_rows"],
     )
+
+
+def _corrected(
+    job: Job, file: str, logs: list[Table], arm: Robot, choices: Choices
+) -> tuple[list[Table], Choices]:
+    """The logs with corrected torques; the intervals then allow for the errors of the gains."""
+    found = correction(job.read(file, "gains"), len(arm.joints), _common(choices.treatment))
+    treatment = replace(choices.treatment, gain_errors=found.errors)
+    made = [corrected(log, found.gains.tolist()) for log in logs]
+    return made, replace(choices, treatment=treatment)
+
+
+def _common(treatment: Treatment) -> float:
+    """The error of all torque constants that was stated."""
+    return treatment.gain_errors if isinstance(treatment.gain_errors, float) else 0.0
+
+
+def _tell_of_gains(job: Job, result: Table, untold: list[int]) -> None:
+    """Say by which gains the torques were divided."""
+    if gains := gains_of(result):
+        job.say(f"torques are divided by the gains of their joints: {told_gains(gains)}")
+    if untold:
+        joints = ", ".join(str(j + 1) for j in untold)
+        job.say(
+            f"the log does not tell the gain of joint {joints}, taken as 1; --torque-gain-error "
+            "states how well it is known"
+        )
 
 
 def _save(place: Document, checkpoint: Checkpoint, fixed: dict[str, Any]) -> None:
@@ -162,6 +200,13 @@ def _require_possible(asked: Chosen, given: dict[str, Any]) -> None:
     name, method, treatment = asked.name, asked.method, asked.treatment
     if given["trace"] and not method.RECURSIVE:
         raise UsageFault(f"--trace: {name} has no estimates after every sample; use rls or ekf")
+    if given["gains"] and given["free_gains"]:
+        raise UsageFault("--free-gains finds the gains that --gains states; give one of them")
+    if given["free_gains"] and (method.FOLLOWS or given["trace"] or given["save"]):
+        raise UsageFault(
+            "--free-gains needs all rows twice, with velocities and accelerations; leave out "
+            "--trace, --save and didim"
+        )
     if treatment.align and not method.ALIGNS:
         raise UsageFault(f"--align cannot be combined with --estimator {name}")
     row_by_row = given["save"] or given["resumed"] or given["trace"]
@@ -202,6 +247,7 @@ def _fixed(
         "settings": json.loads(json.dumps(known)),
         "slow": list(chosen.treatment.slow),
         "smooth_sign": sign,
+        **({"gains": gains} if (gains := gains_of(prepared.motion)) else {}),
     }
 
 

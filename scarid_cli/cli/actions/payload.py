@@ -5,6 +5,7 @@ from __future__ import annotations
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.loaded import loaded
 from scarid_cli.stages import payload as stage
+from scarid_cli.stages.corrected import gains_of
 from scarid_cli.stages.estimates import estimates_with_covariance
 
 
@@ -14,7 +15,7 @@ def run(
     """Write the table of the payload, and say what hangs there."""
     bare = job.read(parameters, "parameters")
     arm = job.robot(robot, bare)
-    found = loaded(job, files, robot, arm)
+    found = loaded(job, files, robot, arm, gains_of(bare))
     hung, link = stage.payload(
         estimates_with_covariance(bare, arm), estimates_with_covariance(found, arm), frame
     )

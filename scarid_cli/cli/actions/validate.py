@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -27,6 +28,7 @@ from scarid_cli.stages import blind
 from scarid_cli.stages import validate as stage
 from scarid_cli.stages.blind import Choices, Passed
 from scarid_cli.stages.changes import Known, known
+from scarid_cli.stages.corrected import corrected, gains_of, told_gains
 from scarid_cli.stages.documents import validation
 from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.parameters import Identified, apriori, identified
@@ -57,6 +59,9 @@ def run(
     logs, arm = read_logs(job, files, stated, partial(read, job), skip=given["skip"])
     tables += [_described(arm) for _ in range(parameters.count(APRIORI))]
     arm, treatment = for_robot(arm, treatment, given)
+    gains = _gains(tables)
+    if gains:
+        logs = [corrected(log, gains) for log in logs]
     choices = Choices(
         align=False, treatment=treatment, bandwidth=given["bandwidth"], all_rows=given["all_rows"]
     )
@@ -78,11 +83,24 @@ def run(
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
     if len(tables) > 1:
         job.say(f"pooled the parameters of {len(tables)} identifications, by their information")
+    if gains:
+        job.say(f"torques are divided by the gains of the identification: {told_gains(gains)}")
     if not before.testable:
         for text in _failed(reach, arm, table):
             job.say(f"warning: {text}")
     _tell(job, model, before, result.meta.extra)
     return _status(job, require, result.meta.extra)
+
+
+def _gains(tables: Sequence[Table]) -> list[float]:
+    """The gains by which the torques of the identifications were divided; none if empty."""
+    found = [gains_of(table) for table in tables]
+    if any(gains != found[0] for gains in found):
+        raise UsageFault(
+            "--parameters: the tables were identified with other gains of the torques; identify "
+            "all logs with one table of gains (identify --gains)"
+        )
+    return found[0] if found else []
 
 
 def _described(arm: Robot) -> Table:
