@@ -66,6 +66,7 @@ class Job:
         self.remarks = Remarks(place.say)
         self._selection = selection_of(options)
         self._lacking: list[tuple[str, Lacking]] = []
+        self._begun: dict[str, Table] = {}
 
     def output(self, path: str, wanted: str | None = None, *, readable: bool = False) -> Output:
         """The output for a table; opened before anything is read, so that mistakes show at once.
@@ -242,9 +243,16 @@ class Job:
             self.notes.append(remark)
         return robot
 
+    def columns_of(self, path: str) -> list[str]:
+        """The columns of a table, which is read afterwards."""
+        self._begun[path] = self._opened_table(path)
+        return self._begun[path].columns
+
     def _opened_table(
         self, path: str, through: Callable[[ByteSource], ByteSource] | None = None
     ) -> Table:
+        if path in self._begun:
+            return self._begun.pop(path)
         return self._followed(self.opened(path), through)
 
     def _followed(

@@ -20,7 +20,8 @@ def loaded(
 
     The torques of logs are divided by the `gains` (joints) of the bare robot, if there are any.
     """
-    if len(files) == 1 and _is_parameters(job, files[0]):
+    files = files or ("-",)
+    if len(files) == 1 and {*PARAMETERS} <= {*job.columns_of(files[0])}:
         return job.read(files[0], "parameters")
     logs, arm = read_logs(job, files, robot or arm.name, lambda file, own: read(job, file, own))
     logs = [corrected(log, gains) for log in logs] if gains else logs
@@ -28,13 +29,3 @@ def loaded(
     verdict, reasons = result.meta.extra["verdict"], result.meta.extra["reasons"]
     job.say(f"the loaded robot: {verdict}: {reasons[0]}")
     return result
-
-
-def _is_parameters(job: Job, file: str) -> bool:
-    source = job.opened(file)
-    start = source.peek_lines(1) if not source.peek(4).startswith((b"PAR1", b"ARRO")) else b""
-    if start:
-        return start.startswith(b"parameter,")
-    import pyarrow.parquet as pq
-
-    return file.endswith(".parquet") and {*PARAMETERS} <= {*pq.read_schema(file).names}

@@ -9,7 +9,7 @@ from scarid_cli.cli.declare import declare
 
 
 @declare("payload")
-@click.argument("files", metavar="LOADED...", nargs=-1, required=True, type=options.INPUT)
+@click.argument("files", metavar="[LOADED]...", nargs=-1, type=options.INPUT)
 @options.input_file(
     "--parameters",
     required=True,

@@ -126,6 +126,7 @@ CHECKS: dict[str, Check] = {
     "biased": truth,
     "evidence": _or_none(_evidence),
     "joint_products": _products,
+    "wrong": _list(_count),
     "torque_gains": _or_none(_list(lambda x: number(x) and x > 0.0)),
     "torque_constants": _or_none(_rows_of_joints),
     "joints": lambda x: _list(text)(x) or _list(_of({"deviation": _or_none(_size)}))(x),

@@ -7,8 +7,10 @@ from collections.abc import Iterator, Sequence
 from scarid_cli.reporting import published, torques
 from scarid_cli.reporting.estimates import changes, constants, estimates, fit, said_of, verdicts
 from scarid_cli.reporting.evolution import evolution
+from scarid_cli.reporting.gains import gains
 from scarid_cli.reporting.kinds import (
-    Comparison,
+    OF_NO_METHOD,
+    JointGains,
     Measurement,
     Metrics,
     MotionEstimate,
@@ -24,7 +26,7 @@ from scarid_cli.reporting.wording import experiment_of, grouped, of_kind
 
 def sections(results: Sequence[Result], values: published.Values | None = None) -> list[Section]:
     """Everything that these results have to say, with published values beside them."""
-    labels = (r.name.label for r in results if not isinstance(r, (Measurement, Comparison)))
+    labels = (r.name.label for r in results if not isinstance(r, OF_NO_METHOD))
     colours = {name: i for i, name in enumerate(dict.fromkeys(labels))}
     results = published.beside(results, values or {})
     return [
@@ -38,6 +40,7 @@ def sections(results: Sequence[Result], values: published.Values | None = None) 
         ),
         *_of_estimates(results, colours),
         *_of_torques(results, colours),
+        *gains(of_kind(results, JointGains)),
     ]
 
 

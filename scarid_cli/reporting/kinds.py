@@ -87,6 +87,20 @@ class Comparison(Result):
 
 
 @dataclass(frozen=True)
+class JointGains(Result):
+    """The gain of each joint's torque, with its 95 % interval, nan where it is not told.
+
+    `wrong` are the joints (from 1) whose gain differs from 1.
+    """
+
+    joints: tuple[int, ...]
+    factors: tuple[float, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    wrong: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class Prediction(_PerJoint):
     """Measured and predicted torque of each joint and their difference, as curves (2, points)."""
 
@@ -106,6 +120,9 @@ class Measurement(Result):
     positions: tuple[Array, ...]
     references: tuple[Array, ...]
     tracking: tuple[float, ...]
+
+
+OF_NO_METHOD = (Measurement, Comparison, JointGains)  # which methods do not differ in
 
 
 @dataclass(frozen=True)

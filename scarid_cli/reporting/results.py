@@ -17,11 +17,13 @@ from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
 from scarid_cli.printable import printable
 from scarid_cli.reporting.common import with_common
-from scarid_cli.reporting.kinds import Comparison, Metrics, Parameters, Result
+from scarid_cli.reporting.kinds import Comparison, JointGains, Metrics, Parameters, Result
 from scarid_cli.reporting.naming import name_of, names_of
 from scarid_cli.reporting.records import measurement, motion, prediction, trace
 from scarid_cli.reporting.said import files_of, of_comparison, of_validation
 from scarid_cli.reporting.source import Source
+
+WRONG = "wrong"  # key of the metadata of gains
 
 
 class NotReported(UsageFault):
@@ -38,12 +40,12 @@ def reportable(table: Table) -> Table:
     if kind in (*schemas.KINDS, "via"):
         raise NotReported(
             f"{table.name} is a {kind} table; report takes parameters, trace, metrics, comparison, "
-            "prediction, motion and measurement tables"
+            "gains, prediction, motion and measurement tables"
         )
     raise BadData(
         f"{table.name}: found the columns {printable(', '.join(table.columns))}, expected a "
-        "parameters, trace, metrics, comparison, prediction, motion or measurement table; name the "
-        "columns as docs/tables.md does"
+        "parameters, trace, metrics, comparison, gains, prediction, motion or measurement table; "
+        "name the columns as docs/tables.md does"
     )
 
 
@@ -117,6 +119,19 @@ def _comparison(source: Source) -> Comparison:
     return Comparison(source.name, source.robot, said)
 
 
+def _gains(source: Source) -> JointGains:
+    rows = _rows(source.table)
+    return JointGains(
+        name=source.name,
+        robot=source.robot,
+        joints=tuple(rows["joint"]),
+        factors=_numbers(rows, "gain"),
+        low=_numbers(rows, "low"),
+        high=_numbers(rows, "high"),
+        wrong=tuple(source.table.meta.extra.get(WRONG, ())),
+    )
+
+
 def _rows(table: Table) -> dict[str, list[Any]]:
     """All values of a small table by column; it must have a row."""
     rows: dict[str, list[Any]] = {column: [] for column in table.columns}
@@ -148,6 +163,7 @@ READERS: dict[str, Callable[[Source], Result]] = {
     "trace": trace,
     "metrics": _metrics,
     "comparison": _comparison,
+    "gains": _gains,
     "prediction": prediction,
     "motion": motion,
     "measurement": measurement,

@@ -6,8 +6,10 @@ from collections.abc import Iterator, Sequence
 
 from scarid_cli.reporting import published
 from scarid_cli.reporting.estimates import said_of
+from scarid_cli.reporting.gains import gains
 from scarid_cli.reporting.kinds import (
-    Comparison,
+    OF_NO_METHOD,
+    JointGains,
     Measurement,
     Metrics,
     MotionEstimate,
@@ -26,7 +28,7 @@ from scarid_cli.reporting.wording import of_kind
 
 def view_of(results: Sequence[Result]) -> View:
     """The order and the colours of the methods among these results."""
-    labels = (r.name.label for r in results if not isinstance(r, (Measurement, Comparison)))
+    labels = (r.name.label for r in results if not isinstance(r, OF_NO_METHOD))
     colours = {name: i for i, name in enumerate(dict.fromkeys(labels))}
     return View(ranking(results), colours)
 
@@ -47,6 +49,7 @@ def chapters(
     yield from estimation.over_time(view, of_kind(results, Trace))
     yield from estimated[1:]
     yield from signals.logs(view, of_kind(results, Measurement))
+    yield from map(_plain, gains(of_kind(results, JointGains)))
     yield from map(_plain, published.settings(results, values))
 
 
