@@ -17,6 +17,7 @@
 # make gauntlet       the blind procedure on four robots under all conditions (an hour)
 # make bench-mixtures the blind procedure on logs with random mixtures of imperfections
 # make bench-gains    torques of one joint in another unit: named, and the estimates
+# make bench-known-load   torque constants from a load whose mass is known: within their intervals?
 # make bench-coarse   the choice of a bandwidth where positions are coarse
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
 # make bench-checks    what check says of logs with known faults
@@ -38,7 +39,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -130,6 +131,10 @@ gauntlet: $(VENV)/tested
 
 bench-mixtures: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/mixtures.py
+
+bench-known-load: $(VENV)/tested
+	cd benchmarks && ../$(BIN)/python known_load.py
+	cd benchmarks && ../$(BIN)/python known_load.py --free
 
 bench-coarse: $(VENV)/tested
 	cd benchmarks && ../$(BIN)/python coarse.py

@@ -47,14 +47,6 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
     help="Also fit the time by which the torques lead the motion. Holds the whole log in memory.  "
     "[default: --align for a measurement only]",
 )
-@options.input_file("--gains", help="Divide the torques by the gains that `scarid gains` wrote.")
-@click.option(
-    "--free-gains",
-    metavar="ANCHOR",
-    help="Estimate the gain of each joint's torque as well, and divide the torques by them. ANCHOR "
-    "fixes the factor that all have in common: the number of a joint, whose gain is 1; `masses`, "
-    "those of the URDF; or `constants`, within --torque-gain-error.",
-)
 @click.option(
     "--essential",
     is_flag=True,
@@ -66,12 +58,20 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
     "--from", "resumed", metavar="STATE", help="Continue the estimation that --save wrote."
 )
 @heading(ERRORS)
+@options.input_file("--gains", help="Divide the torques by the gains that `scarid gains` wrote.")
+@click.option(
+    "--free-gains",
+    metavar="ANCHOR",
+    help="Estimate the gain of each joint's torque as well, and divide the torques by them. ANCHOR "
+    "fixes the factor that all have in common: the number of a joint, whose gain is 1; `masses`, "
+    "those of the URDF; or `constants`, within --torque-gain-error.",
+)
 @click.option(
     "--torque-gain-error",
     metavar="PART",
-    help="Standard error of the torque constants, such as 1% or 0.01, which no log can show. It is "
-    "added to the errors of the parameters; with --free-gains, it is what is known of each gain "
-    "before the log.  [default: 0]",
+    help="Standard error of the torque constants, such as 1% or 0.01. No log shows the factor that "
+    "all have in common. It is added to the errors of the parameters; with --free-gains, it is "
+    "what is known of each gain before the log.  [default: 0]",
 )
 @click.option(
     "--variance",

@@ -150,7 +150,8 @@ def constants(group: Sequence[Parameters]) -> list[Section]:
     section = Section(
         title=titled("Torque constants", found.name.experiment),
         note="By how many percent an estimate is too large if the torque constant of a joint is "
-        "1 % too large. No log shows such an error: state it with identify --torque-gain-error.",
+        "1 % too large. A log shows how constants differ, and never the factor that all have in "
+        "common: state it with identify --torque-gain-error, or weigh a load with scarid gains.",
         headers=("parameter", *(f"joint {i}" for i in range(1, joints + 1))),
         rows=tuple(
             (name, *(number(_ratio(x, estimates[name])) for x in row))

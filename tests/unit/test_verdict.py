@@ -61,6 +61,9 @@ def evidence(**changes: object) -> Evidence:
         effects=(effect(PARALLEL), effect(SIGNALS)),
         gains=np.ones((2, 8)),
         consequences=KNOWN,
+        totals=np.zeros((2, 10, 10)),
+        counts=np.ones(2),
+        inflation=1.0,
     )
     plain_evidence = Evidence(
         names=SCARA.names,
