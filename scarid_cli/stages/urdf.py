@@ -10,6 +10,7 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.drives import drives
 from scarid_cli.algorithms.robots.physical import Physical, chi_square, inertia_of, nearest
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table, number, table_of
@@ -28,8 +29,10 @@ def physical(identified: Estimates) -> Physical:
     return nearest(identified.robot, identified.full, identified.covariance, identified.dropped)
 
 
-def document(text: str, robot: Robot, found: Physical, command: str) -> str:
-    """The URDF with the new inertias and friction.
+def document(
+    text: str, robot: Robot, found: Physical, command: str, table: Sequence[str] = ()
+) -> str:
+    """The URDF with the new inertias, friction and motors; the lines of a table as a comment.
 
     Links fixed to a moving link are part of its body and lose their own inertia.
     """
@@ -38,15 +41,13 @@ def document(text: str, robot: Robot, found: Physical, command: str) -> str:
     for body, (own, fixed) in zip(found.bodies, robot.body.links, strict=True):
         links[own] = Inertial.of(body[9], body[6:9], inertia_of(body))
         links |= dict.fromkeys(fixed)
-    friction, written = {}, set()
-    for i, name in enumerate(robot.body.joint_names, start=1):
-        own_names = (f"fv{i}", f"fs{i}")
-        if all(own in found.axes for own in own_names):
-            friction[name] = (found.axes[own_names[0]], found.axes[own_names[1]])
-            written |= set(own_names)
-    rest = ", ".join(f"{k} {x:.6g}" for k, x in found.axes.items() if k not in written)
+    own_drives = drives(robot, found.axes)
+    moved = own_drives.axes
+    friction = {x.joint: (x.viscous, x.coulomb) for x in moved if x.viscous or x.coulomb}
+    motors = {x.joint: (x.inertia, x.gear) for x in moved if x.inertia}
+    rest = ", ".join(f"{name} {x:.6g}" for name, x in own_drives.not_in_urdf(found.axes).items())
     remark = f"{command}; not part of the URDF: {rest}" if rest else command
-    return rewritten(text, links, friction, remark)
+    return rewritten(text, links, friction, remark, motors, table)
 
 
 def base_table(table: Table, identified: Estimates, found: Physical) -> Table:

@@ -31,6 +31,7 @@ from scarid_cli.algorithms.robots.capsules import capsule_of
 from scarid_cli.algorithms.robots.controls import control_of
 from scarid_cli.algorithms.robots.coupled import COUPLED_TERMS
 from scarid_cli.algorithms.robots.description import Parameter, Robot
+from scarid_cli.algorithms.robots.identified import with_estimates
 from scarid_cli.algorithms.robots.joints import JOINT_UNITS, Joint, joint_of
 from scarid_cli.algorithms.robots.logs import coupled, gear_ratio, log_of
 from scarid_cli.algorithms.robots.rigid import GRAVITY, STANDARD_UNITS, SYMBOLS, Body, Posture
@@ -57,6 +58,7 @@ KEYS = (
     "coupling",
     "capsule",
     "control",
+    "estimates",
     "log",
     "imperfections",
     "masses",
@@ -98,7 +100,7 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
     for entry in values.tables("coupling", document.get("coupling", [])):
         parameters += _coupled(entry, entries)
     values.distinct("parameter", [parameter.name for parameter in parameters])
-    return with_base_parameters(
+    found_robot = with_base_parameters(
         Robot(
             name,
             values.text("title", document["title"]),
@@ -110,6 +112,7 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
             imperfections=imperfections_of(document, len(found)),
         )
     )
+    return with_estimates(found_robot, document)
 
 
 def _wrong_number(entries: int, axes: int, body: Body) -> str:

@@ -126,6 +126,11 @@ class Robot:
         )
         return replace(self, parameters=(*self.parameters, *added))
 
+    def with_values(self, values: dict[str, float]) -> Robot:
+        """The robot with other a priori values of some parameters, by name."""
+        parameters = (replace(p, apriori=values.get(p.name, p.apriori)) for p in self.parameters)
+        return replace(self, parameters=tuple(parameters))
+
     def regressor(self, q: Array, dq: Array, ddq: Array) -> Array:
         """The regressor W (samples, joints, parameters) of tau = W theta (paper eq. 3 and 25).
 

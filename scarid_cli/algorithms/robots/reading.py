@@ -13,6 +13,7 @@ from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.controls import control_of
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.files import require_shallow, text_of
+from scarid_cli.algorithms.robots.identified import with_estimates
 from scarid_cli.algorithms.robots.joints import joint_of
 from scarid_cli.algorithms.robots.lines import UnknownKey, line_of
 from scarid_cli.algorithms.robots.logs import log_of
@@ -23,7 +24,7 @@ from scarid_cli.errors import UsageFault
 ROBOTS = Path(__file__).parent
 NAMED_TERMS: dict[str, type[Term]] = {**AXIS_TERMS, **PLANAR_TERMS}  # that [[parameter]] may name
 DEFAULT_ROBOT = "scara2"
-KEYS = ("title", "joint", "parameter", "control", "coupling", "log", "imperfections")
+KEYS = ("title", "joint", "parameter", "control", "coupling", "estimates", "log", "imperfections")
 
 
 def built_in() -> list[str]:
@@ -36,7 +37,7 @@ def load(name: str) -> Robot:
     try:
         return _loaded(name)
     except UnknownKey as error:
-        line = line_of(text_of(_path(name)), error.table, error.key)
+        line = line_of(text_of(path_of(name)), error.table, error.key)
         where = f"{name}, line {line}" if line else name
         raise UsageFault(f"{where}: not a robot description: {_line(error)}") from None
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
@@ -58,7 +59,7 @@ def _loaded(name: str) -> Robot:
     if not name.endswith(".toml") and name not in known:
         choice = ", ".join(known)
         raise UsageFault(f"unknown robot {name!r}; choose {choice}, or a .toml or .urdf file")
-    path = _path(name)
+    path = path_of(name)
     text = text_of(path)
     require_shallow(text)
     document = tomllib.loads(text)
@@ -67,7 +68,8 @@ def _loaded(name: str) -> Robot:
     return _robot(name, document)
 
 
-def _path(name: str) -> Path:
+def path_of(name: str) -> Path:
+    """The file of a robot: that of a built-in one, or the one of this name."""
     return ROBOTS / f"{name}.toml" if name in built_in() else Path(name)
 
 
@@ -87,7 +89,7 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
         raise ValueError("it has no [[joint]] or no [[parameter]]; give at least one of each")
     values.distinct("name", [parameter.name for parameter in parameters])
     values.distinct("term of a joint", [(p.term.NAME, *p.term.joints) for p in parameters])
-    return Robot(
+    robot = Robot(
         name=name,
         title=values.text("title", document["title"]),
         joints=joints,
@@ -96,6 +98,7 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
         log=log_of(document, len(joints)),
         imperfections=imperfections_of(document, len(joints)),
     )
+    return with_estimates(robot, document)
 
 
 def _parameter(entry: dict[str, Any], joints: int) -> Parameter:

@@ -175,7 +175,7 @@ class Body:
         return [*read(self.path, self.joints).doubts, *follows]
 
     @property
-    def _moving(self) -> list[str]:
+    def moving(self) -> list[str]:
         """The names of the axes and of the joints that follow them, from the base to the tip."""
         return list(self.model.names)[1:]
 
@@ -190,16 +190,16 @@ class Body:
 
         Those that joints carry which follow an axis have the numbers after the last axis.
         """
-        after = iter(range(len(self.joint_names) + 1, len(self._moving) + 1))
+        after = iter(range(len(self.joint_names) + 1, len(self.moving) + 1))
         numbers = {name: i for i, name in enumerate(self.joint_names, start=1)}
-        return [numbers[name] if name in numbers else next(after) for name in self._moving]
+        return [numbers[name] if name in numbers else next(after) for name in self.moving]
 
     @cached_property
     def following(self) -> Following:
         """How the joints of the chain move with its axes."""
         tree, followers = read(self.path, self.joints), _chain(self.path, self.joints).followers
         axis, ratio, offset = [], [], []
-        for name in self._moving:
+        for name in self.moving:
             driver, turns, at = name, 1.0, 0.0
             while driver in followers and driver not in self.joint_names:
                 at += turns * tree.offsets[driver]
@@ -208,7 +208,7 @@ class Body:
             axis.append(self.joint_names.index(driver))
             ratio.append(turns)
             offset.append(at)
-        own = np.array([self._moving.index(name) for name in self.joint_names], dtype=np.int64)
+        own = np.array([self.moving.index(name) for name in self.joint_names], dtype=np.int64)
         return Following(np.array(axis, dtype=np.int64), np.array(ratio), np.array(offset), own)
 
     @property
@@ -218,7 +218,7 @@ class Body:
         for k in follows.followers:
             axis, offset = self.joint_names[follows.axis[k]], follows.offset[k]
             beside = f" {offset:+g}" if offset else ""
-            told.append(f"{self._moving[k]} = {follows.ratio[k]:g} {axis}{beside}")
+            told.append(f"{self.moving[k]} = {follows.ratio[k]:g} {axis}{beside}")
         return told
 
     def pose(self, q: Array) -> Pose:
@@ -235,7 +235,7 @@ class Body:
             if str(frame.type) == "BODY" and frame.parentJoint:
                 together[frame.parentJoint].append(frame.name)
         found = []
-        for i, name in enumerate(self._moving, start=1):
+        for i, name in enumerate(self.moving, start=1):
             own = child[name]
             found.append((own, [link for link in together[i] if link != own]))
         return found
@@ -260,7 +260,7 @@ class Body:
         Massless frames come before links with a mass.
         """
         tree = read(self.path, self.joints)
-        last = tree.model.getJointId(self._moving[-1])
+        last = tree.model.getJointId(self.moving[-1])
         tips = [name for name, number in tree.frames.items() if number == last]
         fixed = [
             f.name for f in tree.model.frames if f.parentJoint == last and f.name in self.frames
