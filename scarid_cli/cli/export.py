@@ -63,16 +63,16 @@ def command() -> None:
     parameter.
 
     \b
-    c       a C99 header without dependencies, for a controller: `arm_gravity(q, tau)`,
-            `arm_inverse_dynamics(q, dq, ddq, tau)`, `arm_mass_matrix(q, M)` and
-            `arm_friction(dq, tau)`, with the identified numbers in one structure
-    matlab  the same as a class with static functions: `tau = arm.gravity(q)`
-    toml    the description with a table [estimates], which every command reads: `simulate --robot`
-            then moves the identified robot
-    urdf    the file of `scarid urdf`: physically consistent bodies, friction, motors
-    mjcf    the same bodies for MuJoCo, with armature, damping, frictionloss, gears and offsets;
-            needs pip install 'scarid[sim,urdf]'
-    json    parameters, bodies and drives of each link and axis, by a published schema
+    c       a C99 header without dependencies, for a controller: gravity,
+            inverse dynamics, mass matrix and friction, with the numbers in
+            one structure
+    matlab  the same as a class with static functions: tau = arm.gravity(q)
+    toml    the description with a table [estimates], which every command
+            reads: `simulate --robot` then moves the identified robot
+    urdf    the file of `scarid urdf`: possible bodies, friction, motors
+    mjcf    the same bodies for MuJoCo, with armature, damping, frictionloss,
+            gears and offsets; needs pip install 'scarid[sim,urdf]'
+    json    parameters, bodies and drives of each link and axis, by a schema
 
     The torques of c, matlab and toml are those that `scarid validate` predicts, without the delay
     and without what identify fitted beside the parameters. Bodies that are physically possible have

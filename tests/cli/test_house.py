@@ -89,8 +89,8 @@ def test_what_the_program_imports_it_declares() -> None:
                 imported |= {alias.name.partition(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 imported.add((node.module or "").partition(".")[0])
-    # Of the extras `urdf`, where pinocchio is called pin, `logs` and `hdf5`.
-    extra = {"cvxpy", "h5py", "pinocchio", "rosbags"}
+    # Of the extras `urdf`, where pinocchio is called pin, `sim`, `logs` and `hdf5`.
+    extra = {"cvxpy", "h5py", "mujoco", "pinocchio", "rosbags"}
     assert imported - set(sys.stdlib_module_names) - {"scarid_cli"} == names | extra
 
 
