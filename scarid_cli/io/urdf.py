@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -63,8 +64,7 @@ def rewritten(
     _set_motors(robot, motors or {})
     if table:
         lines = "".join(f"\n    {line}" for line in table).replace("--", "- -")
-        comment: ElementTree.Element = ElementTree.Comment(f"{lines}\n  ")  # type: ignore[assignment]
-        _append(robot, comment)
+        _append(robot, ElementTree.Comment(f"{lines}\n  "))
     return ElementTree.tostring(robot, encoding="unicode", xml_declaration=True) + "\n"
 
 
@@ -91,6 +91,7 @@ def _set_motors(robot: ElementTree.Element, motors: Mapping[str, tuple[float, fl
         own = {"name": joint, "mass": rotor, "gear_ratio": _text(gear)}
         ElementTree.SubElement(rotors, "joint", own)
     if motors:
+        ElementTree.indent(rotors, level=1)
         _append(robot, rotors)
 
 
@@ -104,11 +105,15 @@ def _transmission(robot: ElementTree.Element, joint: str) -> ElementTree.Element
             ElementTree.SubElement(made, tag, name=name), "hardwareInterface"
         )
         interface.text = EFFORT
+    ElementTree.SubElement(made[-1], "mechanicalReduction")
+    for tag in ("rotor_inertia", "gear_ratio"):
+        ElementTree.SubElement(made[-1], f"{{{DRAKE}}}{tag}")
+    ElementTree.indent(made, level=1)
     _append(robot, made)
     return made
 
 
-def _append(robot: ElementTree.Element, element: ElementTree.Element) -> None:
+def _append(robot: ElementTree.Element, element: Any) -> None:
     """Add an element at the end, indented as those before it are."""
     end = robot[-1].tail
     robot[-1].tail = robot.text

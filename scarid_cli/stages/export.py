@@ -24,7 +24,7 @@ WORD = re.compile(r"\W")
 def c_header(found: Identified, name: str, remark: str, notes: Sequence[str] = ()) -> str:
     """The header, whose functions begin with a name; `notes` follow the remark at its top."""
     sizes, parts = _parts(found)
-    told = "\n * ".join([remark, *notes]).replace("*/", "* /")
+    told = "\n *".join([remark, *_spaced(notes)]).replace("*/", "* /")
     return _filled("dynamics.h", _c_tables(sizes, parts), identifier(name), told)
 
 
@@ -39,7 +39,12 @@ def matlab_class(found: Identified, name: str, remark: str, notes: Sequence[str]
         "weight": parts["gravity"],
     }
     tables = "\n".join(f"        {key} = {_matrix(x)};" for key, x in properties.items())
-    return _filled("dynamics.m", tables, identifier(name), "\n% ".join([remark, *notes]))
+    return _filled("dynamics.m", tables, identifier(name), "\n%".join([remark, *_spaced(notes)]))
+
+
+def _spaced(lines: Sequence[str]) -> list[str]:
+    """The lines after the mark of a comment."""
+    return [f" {line}".rstrip() for line in lines]
 
 
 def identifier(name: str) -> str:

@@ -30,7 +30,7 @@ def modelled(table: Table, robot: Robot, found: Physical | None, rows: Sequence[
         for i, row in enumerate(rows)
     ]
     added = rows[len(robot.parameters) :]  # constants of terms, such as vs1
-    places = [*map(_place, robot.parameters), *(("axis", int(row.name[-1])) for row in added)]
+    places = [*map(_place, robot.parameters), *(("axis", int(row.name[2:])) for row in added)]
 
     def of(kind: str, number: int) -> list[Row]:
         return [x for x, place in zip(told, places, strict=True) if place == (kind, number)]
