@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from itertools import groupby, pairwise
 from math import isfinite
 from typing import Any
@@ -42,12 +42,13 @@ class Metadata:
         return replace(self, extra={k: x for k, x in self.extra.items() if k not in keys})
 
     def to_json(self) -> bytes:
-        return json.dumps(asdict(self), sort_keys=True, separators=(",", ":")).encode()
+        document = {name.name: getattr(self, name.name) for name in fields(self)}  # no copies
+        return json.dumps(document, sort_keys=True, separators=(",", ":")).encode()
 
     @classmethod
     def from_json(cls, document: bytes) -> Metadata:
-        fields = json.loads(document)
-        meta = cls(**{**fields, "history": tuple(fields["history"])})
+        known = json.loads(document)
+        meta = cls(**{**known, "history": tuple(known["history"])})
         texts = all(isinstance(x, str | None) for x in (meta.kind, meta.robot))
         entries = all(map(_is_entry, meta.history))
         values = isinstance(meta.extra, dict) and facts.sound(meta.extra)

@@ -16,8 +16,9 @@ from scarid_cli.algorithms.tuning.equivalent import chain, equivalent, typed
 from scarid_cli.algorithms.tuning.lead import without_lead
 from scarid_cli.algorithms.tuning.likelihood import noise_floor
 from scarid_cli.algorithms.tuning.lowpassed import ORDER, Segment, removed
-from scarid_cli.algorithms.tuning.scatter import Choice, Scatter, chosen, curve
+from scarid_cli.algorithms.tuning.scatter import Choice, Scatter, chosen, curve, lowest
 from scarid_cli.algorithms.tuning.search import Trial
+from scarid_cli.algorithms.tuning.spread import spread
 from scarid_cli.errors import BadData
 from scarid_cli.stages.record import Record
 from scarid_cli.stages.tune import BANDWIDTH, SCATTER, Progress, Tried, nearest
@@ -64,13 +65,14 @@ class Bandwidth:
 def bandwidth(record: Record, robot: Robot, progress: Progress = lambda: None) -> Bandwidth:
     """The cut-off at which estimates of the parameters of this robot agree best."""
     segments = record.segments
-    points = curve(robot, segments, record.h, progress)
+    sample, share = spread(segments, record.h, lowest(robot, segments, record.h))
+    points = curve(robot, sample, record.h, progress, share)
     if not _known(points):
         raise _too_few(record, robot)
     for _ in range(CHOICES):
         before = chosen(points).cutoff
-        steady = without_lead(robot, segments, record.h, before)
-        again = curve(robot, steady, record.h, progress) if steady else []
+        steady = without_lead(robot, sample, record.h, before)
+        again = curve(robot, steady, record.h, progress, share) if steady else []
         points = again if _known(again) else points
         if not again or abs(log2(chosen(points).cutoff / before)) < NEAR:
             break

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -11,15 +12,17 @@ import pyarrow as pa
 from scarid_cli.algorithms.checks.finding import FAILED, Finding
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiableError
-from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.rows import Rows, regressed, thinning
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.outcome import outcome
+from scarid_cli.algorithms.statistics.subsample import MOST_COVERED, Subsample
 from scarid_cli.algorithms.statistics.verdict import combination
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import SEGMENT, Table, number, segment_field, with_columns
+from scarid_cli.memory import limit
 from scarid_cli.stages import Sink
 from scarid_cli.stages.corrected import TORQUE_GAINS
 from scarid_cli.stages.parameters import parameters
@@ -27,6 +30,9 @@ from scarid_cli.stages.reach import Reach
 from scarid_cli.stages.rows import treated
 from scarid_cli.stages.suspicions import of_model
 from scarid_cli.stages.times import Times
+
+NUMBER = 8  # bytes
+COPIES = 8  # of the rows at most, while they are judged (`make bench-memory`)
 
 
 def identify(
@@ -56,9 +62,8 @@ def identify(
     estimator = estimator.for_robot(robot)
     if checkpoint is None:
         holds = treatment.holds or estimator.HOLDS
-        state = estimator.init(initial)
-        thins = treatment.align and not estimator.RECURSIVE  # for which each row counts
-        checkpoint = Checkpoint.at_start(state, table.period, holds=holds, thins=thins)
+        held = _held(table, robot, estimator, treatment) if holds else None
+        checkpoint = Checkpoint.at_start(estimator.init(initial), table.period, held)
     times, reach = Times(table, checkpoint.seen), Reach(len(robot.joints))
     watched = times.watched(reach.watched(table))
     checkpoint = _after_all_rows(watched, robot, estimator, treatment, checkpoint, trace, watch)
@@ -72,7 +77,7 @@ def identify(
     findings += reach.findings(robot, table.period)
     in_units = all(finding.status != FAILED for finding in findings)
     if in_units and not estimator.FOLLOWS:
-        findings += of_model(checkpoint.subsample.rows(), robot)
+        findings += of_model(regressed(checkpoint.subsample.rows(), robot), robot)
     result = parameters(
         found,
         robot,
@@ -91,6 +96,21 @@ def identify(
     return replace(result, meta=replace(result.meta, extra=extra))
 
 
+def _held(table: Table, robot: Robot, estimator: BaseEstimator, treatment: Treatment) -> Subsample:
+    """The rows that are held: all, or of many as many as say all that their bandwidth lets pass.
+
+    Of a log that is still too long for the memory, less are held.
+    """
+    numbers = limit() // (NUMBER * COPIES)
+    stated = treatment.counting.bandwidth if treatment.counting else None
+    bandwidth = stated or table.meta.extra.get("bandwidth")
+    bare = len(robot.parameters) if treatment.align and not treatment.decimate else 0
+    if treatment.align and not estimator.RECURSIVE:  # for which each row counts
+        covers = min(MOST_COVERED, numbers)
+        return Subsample.held(thinning(table.period, bandwidth), bare, covers)
+    return Subsample.held(1, bare, sys.maxsize)
+
+
 def _after_all_rows(
     table: Table,
     robot: Robot,
@@ -106,11 +126,14 @@ def _after_all_rows(
         meta = replace(table.meta, kind="trace", robot=robot.name)
         trace.start(replace(table, schema=schema, meta=meta).arrow_schema())
     parts = treated(table, robot, treatment, checkpoint.seen, estimator, checkpoint.left_out)
+    allowed = limit()
     for batch, rows in parts:
         if treatment.align:  # then the rows of the subsample are fitted
             checkpoint = _with_sample(checkpoint, rows)
+            _require_memory(table, checkpoint, allowed)
             continue
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
+        _require_memory(table, checkpoint, allowed)
         if watch and not estimator.HOLDS:
             watch(partial(_estimates, estimator, checkpoint))
         if trace and batch is not None:
@@ -119,6 +142,18 @@ def _after_all_rows(
     if treatment.align:  # only then are there many rows, and none that follow
         checkpoint = replace(checkpoint, subsample=checkpoint.subsample.packed())
     return checkpoint
+
+
+def _require_memory(table: Table, checkpoint: Checkpoint, allowed: int) -> None:
+    """Refuse rows that could not be judged in the memory [bytes] that may be used."""
+    needed = checkpoint.subsample.size * NUMBER * COPIES
+    if needed > allowed:
+        raise bad_data(
+            table.name,
+            f"rows that need {needed / 1e6:.0f} MB of memory, and more",
+            expected=f"at most {allowed / 1e6:.0f} MB",
+            remedy="give fewer rows (--from-time and --to-time), or allow more by SCARID_MEMORY",
+        )
 
 
 def _estimates(estimator: BaseEstimator, checkpoint: Checkpoint) -> Array:

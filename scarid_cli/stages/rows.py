@@ -13,8 +13,9 @@ from scarid_cli.algorithms.regression.counting import LeftOut, counted
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.rows import (
     Rows,
+    bare,
     joined,
-    rows_of,
+    regressed,
     runs,
     without_slow,
 )
@@ -46,7 +47,8 @@ def treated(
 
     Rows that are decimated are a single part, without a batch. `seen` is the number of the first
     sample. The rows include the reference position and velocity if the estimator needs them and the
-    table has them; for one that follows the reference, the rows are those of the reference.
+    table has them; for one that follows the reference, the rows are those of the reference. Where
+    the delay of the torques is fitted and nothing is decimated, rows are bare, as few may be kept.
     """
     fitted = 0
     if treatment.counting:
@@ -94,7 +96,9 @@ def _parts(
         reference = None
         if known and estimator and estimator.REFERENCE:
             reference = _signals(robot, kept, *REFERENCE)
-        rows = rows_of(robot, motion, at, table.period, slow=slow, reference=reference)
+        rows = bare(motion, at, table.period, reference)
+        rows = rows if treatment.align and not treatment.decimate else regressed(rows, robot)
+        rows = rows if slow is None else without_slow(rows, slow)
         yield kept, replace(rows, bandwidth=bandwidth, order=order)
 
 

@@ -16,7 +16,7 @@ from defaults import PERIOD
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics import checkpoint
+from scarid_cli.algorithms.statistics import subsample
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
@@ -210,7 +210,7 @@ def test_rows_of_a_long_record_are_thinned_before_the_delay_is_fitted(
         return found(replace(table, batches=iter([batch])), "wls", align=True, slow=(0.1, 0.1))
 
     whole = estimated()
-    monkeypatch.setattr(checkpoint, "MOST_HELD", 100_000)
+    monkeypatch.setattr(subsample, "MOST_HELD", 100_000)
     thinned = estimated()
     assert "thinned" not in whole.meta.extra
     assert thinned.meta.extra["thinned"] == 4
@@ -275,4 +275,4 @@ def test_estimators_that_hold_their_rows_are_judged_by_all_of_them(
     solver = ESTIMATORS.load(estimator)()
     identify(motion(), SCARA, solver, SCARA.apriori, keep=kept.append)
     assert (kept[-1].blocks is None) == holds
-    assert kept[-1].subsample.covers == holds
+    assert (kept[-1].subsample.covers > 0) == holds

@@ -80,12 +80,25 @@ def test_a_subsample_is_thinned_before_segments_are_dropped() -> None:
 @pytest.mark.parametrize("thinnest", [1, 5])
 def test_a_subsample_may_cover_the_whole_record(sizes: tuple[int, ...], thinnest: int) -> None:
     W = np.arange(60_000.0).reshape(-1, 1, 1)
-    empty = Subsample(samples=5_000, thinnest=thinnest, covers=True)
+    empty = Subsample(samples=5_000, thinnest=thinnest, covers=10**9)
     kept = fed(empty, plain(W, W[:, :, 0]), sizes)
     assert isinstance(kept, Subsample)
     thin = {1: 1, 5: 4}[thinnest]
     np.testing.assert_array_equal(kept.rows().W[:, 0, 0], np.arange(0.0, 60_000.0, thin))
     np.testing.assert_array_equal(kept.packed().rows().W, kept.rows().W)
+
+
+@pytest.mark.parametrize("sizes", SIZES)
+def test_a_subsample_that_covers_is_thinned_further_where_it_would_be_too_large(
+    sizes: tuple[int, ...],
+) -> None:
+    W = np.arange(60_000.0).reshape(-1, 1, 1)
+    numbers_a_sample = 1 + 1 + 1 + plain(W, W[:, :, 0]).motion.shape[0]
+    empty = Subsample(samples=5_000, thinnest=4, covers=10_000 * numbers_a_sample)
+    kept = fed(empty, plain(W, W[:, :, 0]), sizes)
+    assert isinstance(kept, Subsample)
+    np.testing.assert_array_equal(kept.rows().W[:, 0, 0], np.arange(0.0, 60_000.0, 8))
+    assert kept.size == 7_500 * numbers_a_sample
 
 
 @pytest.mark.parametrize("sizes", SIZES)

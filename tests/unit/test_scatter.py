@@ -9,7 +9,7 @@ import pytest
 from scipy import signal
 from stages.tables import SCARA
 
-from scarid_cli.algorithms.tuning import lowpassed, scatter
+from scarid_cli.algorithms.tuning import lowpassed, scatter, spread
 from scarid_cli.algorithms.tuning.lowpassed import Segment
 
 H = 2e-3
@@ -205,3 +205,16 @@ def test_the_lowpass_is_scipys() -> None:
     assert found.motion[0] == pytest.approx(inner, abs=1e-9)
     v = np.gradient(expected, H, axis=1)[:, end : expected.shape[1] - end][:, ::step]
     assert found.motion[1] == pytest.approx(v, abs=2e-3 * np.abs(v).max())
+
+
+def test_blocks_choose_nearly_what_the_record_chooses(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Although their estimates scatter more: the scatter is that of the whole record."""
+    long = arm(240.0)
+    monkeypatch.setattr(spread, "ROWS", 1000)
+    monkeypatch.setattr(spread, "PERIODS", 8.0)
+    lowest = scatter.lowest(SCARA, [long], H)
+    blocks, share = spread.spread([long], H, lowest)
+    assert share < 0.5
+    whole = scatter.chosen(scatter.curve(SCARA, [long], H)).cutoff
+    of_blocks = scatter.chosen(scatter.curve(SCARA, blocks, H, share=share)).cutoff
+    assert of_blocks == pytest.approx(whole, rel=0.5)

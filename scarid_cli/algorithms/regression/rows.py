@@ -12,6 +12,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array, Numbers
 
 INTERVAL = 0.005  # s: rows are thinned to intervals of at most this length
+RATE = 4.0  # of a bandwidth: a row in each of so many parts of its period holds all that it passes
 
 
 @dataclass(frozen=True)
@@ -79,10 +80,19 @@ def rows_of(
     Rows of a joint that is slower than `slow` (joints) [rad/s or m/s] are left out, because Coulomb
     friction near rest is not sign(dq).
     """
-    q, dq, ddq, tau = motion
-    y = np.ascontiguousarray(tau.T)
-    rows = Rows(robot.regressor(q, dq, ddq), y, np.ones(y.shape), at, h, motion, reference)
+    rows = regressed(bare(motion, at, h, reference), robot)
     return rows if slow is None else without_slow(rows, slow)
+
+
+def bare(motion: Array, at: Numbers, h: float, reference: Array | None = None) -> Rows:
+    """The rows of a motion as `rows_of` has them, but with a W that has no columns yet."""
+    y = np.ascontiguousarray(motion[3].T)
+    return Rows(np.empty((*y.shape, 0)), y, np.ones(y.shape), at, h, motion, reference)
+
+
+def regressed(rows: Rows, robot: Robot) -> Rows:
+    """The rows with the regressor of the robot as W, if they are bare."""
+    return rows if rows.W.shape[2] else replace(rows, W=robot.regressor(*rows.motion[:3]))
 
 
 def without_slow(rows: Rows, slow: Array) -> Rows:
@@ -96,9 +106,13 @@ def faded(rows: Rows, factor: float) -> Rows:
     return replace(rows, scales=rows.scales * np.exp(0.5 * ages * np.log(factor))[:, None])
 
 
-def thinning(h: float) -> int:
-    """Every how many-th of samples h [s] apart are kept, to be at most 5 ms apart if they can."""
-    return max(1, int(INTERVAL / h + 1e-9)) if h > 0.0 else 1
+def thinning(h: float, bandwidth: float | None = None) -> int:
+    """Every how many-th of samples h [s] apart are kept.
+
+    They are then RATE per period of the bandwidth [Hz], or at most 5 ms apart if that is not known.
+    """
+    interval = 1.0 / (RATE * bandwidth) if bandwidth else INTERVAL
+    return max(1, int(interval / h + 1e-9)) if h > 0.0 else 1
 
 
 def thinned(rows: Rows) -> Rows:

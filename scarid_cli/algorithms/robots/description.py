@@ -164,10 +164,14 @@ class Robot:
         parameters = tuple(self.parameters[i] for i in kept)
         places = [p.term.place for p in parameters if isinstance(p.term, StandardTerm)]
         if self.body and len(places) == len(parameters):
-            columns = self.body.columns(*motion)
-            links = np.zeros(columns.shape[2])
-            links[places] = theta
-            return np.asarray(columns @ links)
+            torques = np.empty(motion.shape[:0:-1])
+            for start in range(0, len(torques), BLOCK):
+                part = slice(start, start + BLOCK)
+                columns = self.body.columns(*motion[:, :, part])
+                links = np.zeros(columns.shape[2])
+                links[places] = theta
+                torques[part] = columns @ links
+            return torques
         return replace(self, parameters=parameters).regressor(*motion) @ theta
 
     def torques(self, W: Array, theta: Array) -> Array:

@@ -8,7 +8,7 @@ from typing import Any
 from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.rows import thinning
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.subsample import MOST_HELD, Subsample
+from scarid_cli.algorithms.statistics.subsample import Subsample
 
 
 @dataclass(frozen=True)
@@ -27,20 +27,11 @@ class Checkpoint:
     left_out: LeftOut = field(default_factory=LeftOut)
 
     @classmethod
-    def at_start(
-        cls, state: Any, h: float, *, holds: bool = False, thins: bool = False
-    ) -> Checkpoint:
+    def at_start(cls, state: Any, h: float, held: Subsample | None = None) -> Checkpoint:
         """The checkpoint before the first sample of a record sampled every h [s].
 
-        `holds`: the estimation keeps rows of the whole record in memory; all, unless it `thins`
-        them where they are many.
+        `held` is what an estimation begins with that keeps rows of the whole record in memory.
         """
-        if holds:
-            held = Subsample(
-                samples=MOST_HELD,
-                numbers=MOST_HELD,
-                thinnest=thinning(h) if thins else 1,
-                covers=True,
-            )
+        if held:
             return cls(state, held, None)
         return cls(state, Subsample(thinnest=thinning(h)), Blocks.every(h))

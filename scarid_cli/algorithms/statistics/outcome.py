@@ -10,7 +10,7 @@ import numpy as np
 from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableError
-from scarid_cli.algorithms.regression.rows import Rows, faded, thinned
+from scarid_cli.algorithms.regression.rows import Rows, faded, regressed, thinned
 from scarid_cli.algorithms.regression.treatment import GainErrors, Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
@@ -299,7 +299,7 @@ def _shapes(given: _Given, plain: Problem, model: Model, explanation: Explanatio
 def _problem(given: _Given, shapes: Shapes | None = None) -> Problem:
     """The problem, with these shapes of torques beside the model."""
     estimator, initial, end, robot = given.estimator, given.initial, given.end, given.robot
-    rows, lead, joints = end.subsample.rows(), None, tuple[int, ...]()
+    rows, lead, joints = regressed(end.subsample.rows(), robot), None, tuple[int, ...]()
     if given.align:
         rows = end.left_out.settled(rows)
         rows = shapes.beside(rows) if shapes else rows

@@ -10,7 +10,8 @@ from scarid_cli.algorithms.regression.rows import Rows, joined
 
 MOST_SAMPLES = 16_384  # of a streamed record
 MOST_NUMBERS = 2_000_000  # in the arrays of these samples, unless FEWEST_SAMPLES have more
-MOST_HELD = 20_000_000  # numbers, before a record that is held is thinned
+MOST_HELD = 4_000_000  # numbers, before a record that is held is thinned
+MOST_COVERED = 20_000_000  # numbers, before it is thinned more than it should
 FEWEST_SAMPLES = 4096
 MOST_SEGMENTS = 8
 
@@ -20,24 +21,31 @@ class Subsample:
     """Every `thin`-th sample of every `stride`-th segment of a record.
 
     At most `samples` are held, with at most so many `numbers`. As the record grows, the samples are
-    thinned first, until every `thinnest`-th is left; after that, segments are dropped, unless the
-    subsample `covers` the whole record. `total` is the number of samples of the record so far, and
-    `counted` the number of their rows whose scale is not zero.
+    thinned first, until every `thinnest`-th is left; after that, segments are dropped, or samples
+    are thinned further to `covers` numbers of the whole record, if this is not 0. Bare rows will
+    get W with so many `columns`. `total` is the number of samples of the record so far, and
+    `counted` that of their rows whose scale is not 0.
     """
 
     parts: tuple[Rows, ...] = ()
     samples: int = MOST_SAMPLES
     numbers: int = MOST_NUMBERS
     thinnest: int = 1
-    covers: bool = False
+    covers: int = 0
+    columns: int = 0
     thin: int = 1
     stride: int = 1
     total: int = 0
     counted: int = 0
 
+    @classmethod
+    def held(cls, thinnest: int, columns: int, covers: int) -> Subsample:
+        """No samples yet of a record that is held, of which every `thinnest`-th would do."""
+        return cls((), MOST_HELD, MOST_HELD, thinnest, covers, columns)
+
     def add(self, rows: Rows) -> Subsample:
         """The subsample after the next samples of the record."""
-        limit = min(self.samples, max(FEWEST_SAMPLES, self.numbers // _size(rows)))
+        limit = min(self.samples, max(FEWEST_SAMPLES, self.numbers // self._size(rows)))
         parts, thin, stride = list(self.parts), self.thin, self.stride
         start = 0
         while start < rows.samples:
@@ -47,7 +55,7 @@ class Subsample:
             if number % stride == 0:
                 parts += _thinned([rows.part(slice(start, stop))], thin)
             while len({int(part.at[0]) // segment for part in parts}) > MOST_SEGMENTS:
-                if 2 * thin <= self.thinnest:
+                if 2 * thin <= self.thinnest or self._is_too_large(parts):
                     thin, segment = 2 * thin, 2 * segment
                     parts = _thinned(parts, thin)
                 elif self.covers:
@@ -70,9 +78,24 @@ class Subsample:
         """Whether the subsample has every sample of the record."""
         return self.thin == self.stride == 1
 
+    @property
+    def size(self) -> int:
+        """How many numbers the arrays hold."""
+        return sum(part.samples * self._size(part) for part in self.parts)
+
     def packed(self) -> Subsample:
         """The same in one part, of which `rows` makes no copy, and to which nothing is added."""
         return replace(self, parts=(joined(self.parts),)) if self.parts else self
+
+    def _is_too_large(self, parts: list[Rows]) -> bool:
+        """Whether these parts have more numbers than a subsample that covers the record may."""
+        return 0 < self.covers < sum(x.samples * self._size(x) for x in parts)
+
+    def _size(self, rows: Rows) -> int:
+        """How many numbers the arrays hold for one sample."""
+        arrays = (rows.W, rows.y, rows.scales, rows.motion)
+        held = sum(array.size for array in arrays) // max(1, rows.samples)
+        return max(1, int(held + self.columns * rows.y.shape[1]))
 
     def rows(self) -> Rows:
         """The rows of the subsample, with `at` and `h` those of the thinned record."""
@@ -84,9 +107,3 @@ def _thinned(parts: list[Rows], thin: int) -> list[Rows]:
     """The samples whose number is a multiple of `thin`, copied so that the rest can be freed."""
     chosen = [(part, np.flatnonzero(part.at % thin == 0)) for part in parts]
     return [part.part(at) for part, at in chosen if len(at)]
-
-
-def _size(rows: Rows) -> int:
-    """How many numbers the arrays hold for one sample."""
-    arrays = (rows.W, rows.y, rows.scales, rows.motion)
-    return max(1, sum(array.size for array in arrays) // max(1, rows.samples))

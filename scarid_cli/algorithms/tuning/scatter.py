@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -36,6 +37,7 @@ PLATEAU = 1.5  # times the least scatter, up to which a cut-off is as good as th
 WIDTH = 4  # cut-offs of a plateau
 RIDGE = 1e-10  # added to the squares of columns of unit length
 EXACT = 1e-12  # share of the torques' squares that counts as no residual
+SHAKEN = 512  # rows, at least, that show what noise does to the regressor
 
 
 @dataclass(frozen=True)
@@ -74,16 +76,20 @@ def curve(
     segments: Sequence[Segment],
     h: float,
     progress: Callable[[], object] = lambda: None,
+    share: float = 1.0,
 ) -> list[Scatter]:
-    """The scatter over the cut-off, from the lowest one up to where it has doubled; h [s]."""
+    """The scatter over the cut-off, from the lowest one up to where it has doubled; h [s].
+
+    The segments are this `share` of the record.
+    """
     found: list[Scatter] = []
     best: Estimate | None = None
     noise = white(segments)
-    cutoff = _first(robot, segments, h)
+    cutoff = lowest(robot, segments, h)
     while cutoff < HIGHEST / h:
         parts = [part for s in segments if (part := lowpassed(s, h, cutoff, robot.motors))]
         shaken = np.array([acceleration_noise(x, cutoff, h) for x in noise.tolist()])
-        point, estimate = at_cutoff(robot, parts, cutoff, shaken, best)
+        point, estimate = at_cutoff(robot, parts, cutoff, shaken, best, share)
         found.append(point)
         if estimate is not None and (best is None or estimate.error < best.error):
             best = estimate
@@ -106,7 +112,7 @@ def chosen(points: Sequence[Scatter]) -> Choice:
     return Choice(points[(first + last) // 2].cutoff, (points[first].cutoff, points[last].cutoff))
 
 
-def _first(robot: Robot, segments: Sequence[Segment], h: float) -> float:
+def lowest(robot: Robot, segments: Sequence[Segment], h: float) -> float:
     """The lowest cut-off: with ten independent rows for each parameter, and above the motion.
 
     Below the bandwidth of the motion the parameters may scatter little, and are wrong nevertheless.
@@ -138,10 +144,12 @@ def at_cutoff(
     cutoff: float,
     noise: Array,
     best: Estimate | None,
+    sampled: float = 1.0,
 ) -> tuple[Scatter, Estimate | None]:
     """The jackknife at one cut-off; infinite where the rows do not determine a joint's residual.
 
-    noise (joints) is that of the accelerations, and `best` the best estimate of lower cut-offs.
+    noise (joints) is that of the accelerations, `best` the best estimate of lower cut-offs, and
+    `sampled` the share of the record that the parts are: the whole scatters so much less.
     """
     joints, count = len(robot.joints), len(robot.parameters)
     if not parts:
@@ -154,36 +162,64 @@ def at_cutoff(
     rows = counts.sum(axis=1)
     if not np.all(rows > count / joints + 1):
         return Scatter(cutoff, np.inf, int(rows.sum()), share), None
-    W = robot.regressor(q, dq, ddq)
-    signs = np.random.default_rng(0).choice((-1.0, 1.0), ddq.shape)
-    noisy = robot.regressor(q, dq, ddq + noise[:, None] * signs) - W
     variances = np.array([y[k].var() for y, k in zip(tau, counts, strict=True)])
-    sums, noises = sums_of(W, tau, counts), sums_of(noisy, tau, counts).sum(axis=0)
-    estimate = _jackknife(sums, noises, rows, variances, best)
+    sums = np.array([
+        products(robot.regressor(q[:, part], dq[:, part], ddq[:, part]), tau[:, part],
+                 counts[:, part])
+        for part in parts_of(q.shape[1])
+    ])  # fmt: skip
+    noises = _of_noise(robot, (q, dq, ddq), noise, counts)
+    estimate = _jackknife(sums, noises, rows, variances, best, sampled)
     return Scatter(cutoff, estimate.error, int(rows.sum()), share), estimate
+
+
+def _of_noise(robot: Robot, motion: tuple[Array, ...], noise: Array, counts: Marks) -> Array:
+    """N'N of what noise (joints) of the accelerations adds to W, as `products` has it for W.
+
+    It is N of some rows for all.
+    """
+    every = max(1, counts.shape[1] // SHAKEN)
+    q, dq, ddq = (x[:, ::every] for x in motion)
+    signs = np.random.default_rng(0).choice((-1.0, 1.0), ddq.shape)
+    added = robot.regressor(q, dq, ddq + noise[:, None] * signs) - robot.regressor(q, dq, ddq)
+    return np.asarray(every * products(added, np.zeros_like(q), counts[:, ::every]))
+
+
+def parts_of(samples: int) -> list[slice]:
+    """The parts of so many samples."""
+    edges = (np.arange(PARTS + 1) * samples // PARTS).tolist()
+    return [slice(first, last) for first, last in pairwise(edges)]
 
 
 def sums_of(W: Array, tau: Array, counts: Marks) -> Array:
     """[W y]'[W y] of the rows that count (parts, joints, parameters + 1, parameters + 1)."""
-    samples, joints, count = W.shape
-    edges = np.arange(PARTS + 1) * samples // PARTS
-    sums = np.empty((PARTS, joints, count + 1, count + 1))
-    for j in range(joints):
-        rows = np.column_stack((W[:, j], tau[j])) * counts[j][:, None]
-        for k in range(PARTS):
-            part = rows[edges[k] : edges[k + 1]]
-            sums[k, j] = part.T @ part
+    return np.array([products(W[part], tau[:, part], counts[:, part]) for part in parts_of(len(W))])
+
+
+def products(W: Array, tau: Array, counts: Marks) -> Array:
+    """[W y]'[W y] of the rows that count (joints, parameters + 1, parameters + 1)."""
+    _, joints, count = W.shape
+    sums = np.empty((joints, count + 1, count + 1))
+    for j, chosen in enumerate(counts):
+        rows = np.empty((int(np.count_nonzero(chosen)), count + 1))
+        rows[:, :count], rows[:, count] = W[chosen, j], tau[j, chosen]
+        sums[j] = rows.T @ rows
     return sums
 
 
 def _jackknife(
-    sums: Array, noises: Array, rows: Numbers, variances: Array, best: Estimate | None
+    sums: Array,
+    noises: Array,
+    rows: Numbers,
+    variances: Array,
+    best: Estimate | None,
+    sampled: float = 1.0,
 ) -> Estimate:
     """The parameters, with the trace of their covariance and the square of their bias as error.
 
     sums: of each part and joint, as `sums_of` gives them, and of each joint those of the `noises`;
-    rows (joints); variances of the torques (joints). The bias is that of the best estimate of lower
-    cut-offs, which noise has shrunk less.
+    rows (joints); variances of the torques (joints); `sampled` is the share of the record. The bias
+    is that of the best estimate of lower cut-offs, which noise has shrunk less.
     """
     p = sums.shape[-1] - 1
     total = sums.sum(axis=0)
@@ -195,7 +231,7 @@ def _jackknife(
     driven = varies(variances, total[:, p, p] / rows)
     shares = total[driven, :p, :p] / (rows * variances)[driven, None, None]
     squares = shares.sum(axis=0) / len(rows)
-    scatter = float((PARTS - 1) / PARTS * np.einsum("ki,ij,kj->", off, squares, off))
+    scatter = sampled * float((PARTS - 1) / PARTS * np.einsum("ki,ij,kj->", off, squares, off))
     clean = best or Estimate(theta, squares, scatter)
     system = weighted.sum(axis=0)
     system[:p, p] = np.tensordot(weights, noises, (0, 0))[:p, :p] @ clean.theta
