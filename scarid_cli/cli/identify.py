@@ -54,6 +54,13 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
     "its relative standard deviation is more than 30 times the smallest one and the fit gets no "
     "worse than noise explains.",
 )
+@click.option(
+    "--consistent",
+    is_flag=True,
+    help="Estimates that rigid bodies can have: those nearest to the free ones, in units of their "
+    "errors, with positive masses and inertias, and with friction and motor inertias that are not "
+    "negative. Intervals keep to that as well. Needs a URDF, and cvxpy (extra `urdf`).",
+)
 @options.input_file(
     "--from", "resumed", metavar="STATE", help="Continue the estimation that --save wrote."
 )

@@ -33,6 +33,7 @@ def treatment_of(given: dict[str, Any]) -> Treatment:
         slow=slow_of(given),
         align=bool(given.get("align")),
         essential=given.get("essential", False),
+        consistent=given.get("consistent", False),
         gain_errors=_part(given.get("torque_gain_error") or "0", "--torque-gain-error"),
     )
 

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
@@ -16,7 +17,7 @@ from scarid_cli.algorithms.regression.rows import Rows, regressed, thinning
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
-from scarid_cli.algorithms.statistics.outcome import outcome
+from scarid_cli.algorithms.statistics.outcome import Outcome, outcome
 from scarid_cli.algorithms.statistics.subsample import MOST_COVERED, Subsample
 from scarid_cli.algorithms.statistics.verdict import combination
 from scarid_cli.arrays import Array
@@ -30,6 +31,9 @@ from scarid_cli.stages.reach import Reach
 from scarid_cli.stages.rows import treated
 from scarid_cli.stages.suspicions import of_model
 from scarid_cli.stages.times import Times
+
+if TYPE_CHECKING:  # cvxpy takes a second to import
+    from scarid_cli.algorithms.robots.possible import Possible
 
 NUMBER = 8  # bytes
 COPIES = 8  # of the rows at most, while they are judged (`make bench-memory`)
@@ -78,6 +82,9 @@ def identify(
     in_units = all(finding.status != FAILED for finding in findings)
     if in_units and not estimator.FOLLOWS:
         findings += of_model(regressed(checkpoint.subsample.rows(), robot), robot)
+    bodies = None
+    if treatment.consistent:
+        found, bodies = _constrained(found, robot, checkpoint.subsample.rows())
     result = parameters(
         found,
         robot,
@@ -87,6 +94,7 @@ def identify(
         matched=_matched(table),
         unexplained=times.unexplained(found.diagnostics.bursts),
         failed=[finding.text for finding in findings if finding.status == FAILED],
+        bodies=bodies,
     )
     extra = dict(result.meta.extra)
     kept = ("bandwidth", "velocity_noise", TORQUE_GAINS)  # by which validate takes a later log
@@ -109,6 +117,13 @@ def _held(table: Table, robot: Robot, estimator: BaseEstimator, treatment: Treat
         covers = min(MOST_COVERED, numbers)
         return Subsample.held(thinning(table.period, bandwidth), bare, covers)
     return Subsample.held(1, bare, sys.maxsize)
+
+
+def _constrained(found: Outcome, robot: Robot, rows: Rows) -> tuple[Outcome, Possible]:
+    """The outcome, and the nearest estimates that rigid bodies can have."""
+    from scarid_cli.stages.possible import constrained  # cvxpy takes a second to import
+
+    return constrained(found, robot, rows)
 
 
 def _after_all_rows(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -26,10 +26,14 @@ from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, table_of
 from scarid_cli.stages.products import PRODUCTS, stored_products
 
+if TYPE_CHECKING:  # cvxpy takes a second to import
+    from scarid_cli.algorithms.robots.possible import Possible
+
 EVIDENCE = "evidence"  # key of the metadata
 BIASES = "biases"  # key of the evidence
 ADDITIONS = "additions"  # key of the metadata
 GAINS, WIDENED_BY_GAINS = "relative_gains", "widened_by_gains"  # keys of the metadata
+CONSISTENT = "consistent"  # key of the metadata
 LARGEST = 1e15  # of an estimate, in any unit: beyond it sums of squares overflow
 
 
@@ -145,23 +149,29 @@ def parameters(
     matched: bool = False,
     unexplained: str = "",
     failed: Sequence[str] = (),
+    bodies: Possible | None = None,
 ) -> Table:
     """The parameter table, with the verdict in its metadata.
 
     `matched` tells that torques and derivatives are known to have passed the same filter, and
     `unexplained` which torques are not explained, if they are few. `failed` are the checks that the
-    log did not pass.
+    log did not pass. `bodies` are the estimates that rigid bodies can have, in place of the free
+    ones.
     """
     labels = Labels.of(found, robot)
     known_errors = found.diagnostics.covariance
     nan = np.full(len(found.kept), np.nan)
     robust = found.diagnostics.errors if known_errors else nan
     half = robust * found.diagnostics.quantiles
-    estimates = found.found.fit.estimates
+    free = found.found.fit.estimates
+    estimates = bodies.estimates[labels.kept] if bodies else free
+    low, high = estimates - half, estimates + half
+    if bodies:
+        low, high = bodies.low[labels.kept], bodies.high[labels.kept]
     errors = found.found.fit.standard_errors(variance=variance)
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = 100.0 * errors / np.abs(estimates)
-    statistics = (errors, relative, robust, estimates - half, estimates + half)
+    statistics = (errors, relative, robust, low, high)
     columns: list[Sequence[Any]] = [labels.names, labels.units, labels.placed(estimates, 0.0)]
     columns += [labels.placed(values, np.nan) for values in statistics]
     schema = schemas.load("parameters").arrow()
@@ -173,7 +183,12 @@ def parameters(
     evidence = replace(
         _evidence(found, labels, treatment), matched=matched, unexplained=unexplained, failed=failed
     )
+    if bodies:
+        evidence = replace(evidence, estimates=estimates, bodies=bodies)
     extra = _judged(evidence, robot) | _facts(found, labels)
+    if bodies:
+        extra[CONSISTENT] = {"distance": bodies.distance, "explained": bodies.explained}
+        extra["full_estimates"] = found.full.estimates.tolist()
     return table_of("identify", schema, zip(*columns, strict=True), replace(meta, extra=extra))
 
 

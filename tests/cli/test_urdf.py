@@ -220,3 +220,30 @@ def test_a_motion_that_is_none_is_refused_before_anything_is_reported(
     result = here("scarid urdf --parameters p.csv --motion p.csv arm.toml -o new.urdf")
     refused(result, 65, "p.csv, column t: found the columns")
     assert not (folder / "new.urdf").exists()
+
+
+def test_consistent_estimates_are_those_of_rigid_bodies(folder: Path, here: Run) -> None:
+    """A copy of the URDF with them has them, and `validate` finds nothing changed."""
+    noisy = load(str(folder / "arm.toml"))
+    write_motion(folder / "motion.csv", noisy, sines(2, 600, 2.0, 1), 0.5)
+    done = here(f"{IDENTIFY.replace('p.csv', 'p.parquet')} --consistent")
+    assert done.status == 0, done.err
+    done = here("scarid urdf --parameters p.parquet --base near.csv arm.toml -o new.urdf")
+    assert "no parameter moved by more than 0" in done.err or "e-" in done.err, done.err
+    table = read_table(folder / "p.parquet")
+    low, value, high = (table.column(n).to_numpy() for n in ("low", "estimate", "high"))
+    assert np.all((low <= value) & (value <= high))
+    known = np.array([name[:2] in ("fv", "fs") for name in table.column("parameter").to_pylist()])
+    assert np.all(low[known] >= -1e-6)
+    extra = json.loads(table.schema.metadata[b"scarid"])["extra"]
+    assert extra["consistent"]["distance"] <= extra["consistent"]["explained"]
+    done = here("scarid validate --robot arm.toml --parameters p.parquet motion.csv -q -o v.csv")
+    assert done.status == 0, done.err
+
+
+def test_consistent_needs_bodies(shell: Shell) -> None:
+    done = shell(
+        "scarid trajgen | scarid simulate | scarid differentiate | scarid identify --consistent"
+    )
+    assert done.status == 2
+    assert "--consistent: scara2 is not described by bodies; it needs a robot of a URDF" in done.err

@@ -70,8 +70,8 @@ def nearest(
     zero where that is possible (see `_smallest`): without other constraints this is least squares
     without their columns, if `estimates` and `covariance` are those of all parameters.
     """
-    arm = _Arm.of(robot)
-    away, tie = _whitened(arm.base, estimates, covariance)
+    arm = Arm.of(robot)
+    away, tie = whitened(arm.base, estimates, covariance)
     differences = arm.cvxpy.hstack([away, *(np.sqrt(PRICE) * x for x in arm.beyond)])
     constraints = [*arm.constraints, *tie]
     zero, penalty = np.empty(0, dtype=np.int64), 0.0
@@ -83,7 +83,7 @@ def nearest(
         penalty = arm.cvxpy.sum_squares(arm.cvxpy.multiply(1.0 / smallest, scaled))
         zero = at[smallest <= NEGLIGIBLE]
     cost = arm.cvxpy.sum_squares(differences) + penalty
-    _solve(arm.cvxpy.Problem(arm.cvxpy.Minimize(cost), constraints))
+    solved(arm.cvxpy.Problem(arm.cvxpy.Minimize(cost), constraints))
     distance = float(np.linalg.norm(away.value)) if away.size else 0.0
     return _rounded(robot, arm, zero, distance)
 
@@ -101,7 +101,7 @@ def chi_square(freedom: int) -> float:
 
 
 @dataclass(frozen=True)
-class _Arm:
+class Arm:
     """The unknowns of the semidefinite program, and what is linear or quadratic in them.
 
     `base` = of_bodies @ bodies + of_axes @ beside; `beyond` is the difference of the bodies from
@@ -118,7 +118,7 @@ class _Arm:
     beyond: list[Any]
 
     @classmethod
-    def of(cls, robot: Robot) -> _Arm:
+    def of(cls, robot: Robot) -> Arm:
         cvxpy = _cvxpy()
         assert robot.body
         links = robot.body.link_numbers
@@ -150,7 +150,7 @@ class _Arm:
         return self.of_bodies @ self.cvxpy.hstack(self.bodies) + self.of_axes @ self.beside
 
 
-def _whitened(base: Any, estimates: Array, covariance: Array) -> tuple[Any, list[Any]]:
+def whitened(base: Any, estimates: Array, covariance: Array) -> tuple[Any, list[Any]]:
     """The whitened difference z with base - estimates = C^(1/2) z, and this constraint.
 
     C^(1/2) instead of C^(-1/2): the equation stays well scaled when C is nearly singular.
@@ -170,7 +170,7 @@ def _whitened(base: Any, estimates: Array, covariance: Array) -> tuple[Any, list
 
 
 def _smallest(
-    arm: _Arm, scaled: Any, differences: Any, constraints: list[Any], price: float
+    arm: Arm, scaled: Any, differences: Any, constraints: list[Any], price: float
 ) -> Array:
     """The smallest absolute values of dropped parameters (`scaled`), at least NEGLIGIBLE.
 
@@ -181,13 +181,13 @@ def _smallest(
     cvxpy = arm.cvxpy
     cost = cvxpy.Problem(cvxpy.Minimize(cvxpy.sum_squares(differences)), constraints)
     # As a cone: a sum of squares that may be 1e4 is beyond the accuracy of the solver.
-    near = cvxpy.norm(differences) <= np.sqrt(_solve(cost) + price)
-    _solve(cvxpy.Problem(cvxpy.Minimize(cvxpy.norm1(scaled)), [*constraints, near]))
+    near = cvxpy.norm(differences) <= np.sqrt(solved(cost) + price)
+    solved(cvxpy.Problem(cvxpy.Minimize(cvxpy.norm1(scaled)), [*constraints, near]))
     smallest: Array = np.maximum(np.abs(scaled.value), NEGLIGIBLE)
     return smallest
 
 
-def _rounded(robot: Robot, arm: _Arm, zero: Numbers, distance: float) -> Physical:
+def _rounded(robot: Robot, arm: Arm, zero: Numbers, distance: float) -> Physical:
     """The solution, with zeros for what the solver leaves of them."""
     bodies = np.array([np.asarray(body.value, dtype=np.float64) for body in arm.bodies])
     bodies[np.abs(bodies) < SOLVER_ROUNDING] = 0.0
@@ -255,7 +255,7 @@ def _combinations(robot: Robot, names: list[str]) -> Array:
     return matrix
 
 
-def _solve(problem: Any) -> float:
+def solved(problem: Any) -> float:
     """The minimum; an answer of reduced accuracy will do."""
     from cvxpy.error import SolverError
 

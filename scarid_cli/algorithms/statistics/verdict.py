@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,6 +30,9 @@ from scarid_cli.algorithms.statistics.sentences import (
 )
 from scarid_cli.arrays import Array
 
+if TYPE_CHECKING:  # cvxpy takes a second to import
+    from scarid_cli.algorithms.robots.possible import Possible
+
 GOOD, ROUGH, DOUBTFUL, NOT_IDENTIFIABLE = "good", "rough", "doubtful", "not identifiable"
 GRADES = (GOOD, ROUGH, DOUBTFUL, NOT_IDENTIFIABLE)  # from the best
 DOUBT = 30.0  # %: half the width of the interval above which a parameter counts as unknown
@@ -45,6 +49,7 @@ VAGUE = 0.1
 UNKNOWN = 0.3  # the same, with all alternatives allowed for: beyond it a torque is not known
 UNMATCHED = " (if the motion was not matched, use scarid differentiate --match)"
 CAUSE = "`scarid check LOG` looks for the cause (units, signs, order of joints)"
+BODIES = ", or --consistent for the nearest estimates that are possible"
 LASTING = 0.2  # s: what friction makes that the model lacks at a reversal is shorter
 FEW = 3  # unknown parameters that are named
 
@@ -80,7 +85,8 @@ class Evidence:
 
     The verdict does not recommend the options of the `treatment` that are already in use, nor a
     `matched` motion if this one is known to be so. `unexplained` says at which times the torques
-    are not explained, if they are few, and `failed` which checks the log did not pass.
+    are not explained, if they are few, and `failed` which checks the log did not pass. `bodies` are
+    given if the estimates are those of rigid bodies.
     """
 
     names: Sequence[str]
@@ -93,6 +99,7 @@ class Evidence:
     matched: bool = False
     unexplained: str = ""
     failed: Sequence[str] = ()
+    bodies: Possible | None = None
 
 
 def verdict(evidence: Evidence, robot: Robot) -> Verdict:
@@ -304,6 +311,8 @@ def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
 
     Such friction would drive the robot, and no controller or simulator can use such an inertia.
     """
+    if evidence.bodies:
+        return _no_bodies(evidence, evidence.bodies)
     inertias = _inertia_negative(evidence)
     rows = _friction_known(evidence, robot)
     negative = [row for row in rows if row[2] < 0.0]
@@ -325,9 +334,26 @@ def _impossible(evidence: Evidence, robot: Robot) -> list[str]:
         values = ", ".join(f"{inertias[j]:.2g}" for j in rest)
         reasons.append(
             f"the inertia of {joints_named(rest)} is negative ({values}), which is impossible: use "
-            "a log with larger accelerations"
+            f"a log with larger accelerations{BODIES if robot.body else ''}"
         )
     return reasons
+
+
+def _no_bodies(evidence: Evidence, found: Possible) -> list[str]:
+    """Whether no rigid bodies are as near to the free estimates as the truth would be."""
+    if not found.reached:
+        return [
+            f"the free estimates are {found.distance:.2g} standard errors away from what any rigid "
+            f"bodies have, and their errors explain {found.explained:.2g}: {CAUSE}"
+        ]
+    within = _width(evidence) * evidence.diagnostics.consequences.torque
+    far = np.flatnonzero(found.moved > within)
+    if not len(far):
+        return []
+    return [
+        f"any rigid bodies move the torque of {joints_named((far + 1).tolist())} by "
+        f"{percents(found.moved[far].tolist())}, more than its interval: {CAUSE}"
+    ]
 
 
 def _inertia_negative(evidence: Evidence) -> dict[int, float]:

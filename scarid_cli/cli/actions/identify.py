@@ -41,6 +41,7 @@ from scarid_cli.stages.corrected import corrected, correction, gains_of, told_ga
 from scarid_cli.stages.documents import identification
 from scarid_cli.stages.free import Anchor, freed
 from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.possible import require_bodies
 
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
 
@@ -61,6 +62,8 @@ def run(
     reading = partial(_read, job, choices.of_motion().method)
     logs, arm = read_logs(job, files, robot, reading, skip=given["skip"])
     arm, treatment = for_robot(arm, choices.treatment, given)
+    if treatment.consistent:
+        require_bodies(arm)
     settings = {**choices.settings, **_single(given["forgetting"], arm.names)}
     choices = replace(choices, treatment=treatment)
     if given["gains"]:
