@@ -81,6 +81,19 @@ def run(group: click.Group, words: Sequence[str]) -> int:
         return Chain(contexts).run()
 
 
+def called(group: click.Group, words: Sequence[str], place: Place) -> int:
+    """Run one command at this place, and return its exit status; it writes to no terminal."""
+    with group.make_context("scarid", list(words)) as context:
+        stage = _parsed(group, context, list(words))
+        stage.obj = place
+        try:
+            with _named(stage.command_path), stage:
+                stage.command.invoke(stage)
+        except click.exceptions.Exit as stop:
+            return stop.exit_code
+    return OK
+
+
 def _parsed(group: click.Group, parent: click.Context, words: list[str]) -> click.Context:
     with _named(f"scarid {words[0]}"):
         name, command, rest = group.resolve_command(parent, words)

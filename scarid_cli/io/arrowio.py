@@ -41,7 +41,7 @@ def read_stream(source: ByteSource) -> Table:
         if not STOP.number:
             incoming.require_whole()
 
-    return _table(source.name, reader.schema, batches())
+    return of_arrow(source.name, reader.schema, batches())
 
 
 class Handed(ByteSource):
@@ -53,7 +53,7 @@ class Handed(ByteSource):
     def __init__(self, table: Table) -> None:
         super().__init__(0, STDIN)
         self._ahead = END_OF_STREAM
-        self.table = _table(STDIN, table.arrow_schema(), table.batches)
+        self.table = of_arrow(STDIN, table.arrow_schema(), table.batches)
 
     @property
     def regular(self) -> bool:
@@ -84,7 +84,7 @@ def read_file(source: ByteSource) -> Table:
             blocks.require_moderate([block])
             yield reader.get_batch(i)
 
-    return _table(source.name, reader.schema, batches())
+    return of_arrow(source.name, reader.schema, batches())
 
 
 def _is_verifiable(source: ByteSource) -> bool:
@@ -124,7 +124,7 @@ def read_parquet(source: ByteSource) -> Table:
         raise _unreadable(source.name, error) from None
     batches = file.iter_batches(batch_size=pages.rows_at_once(file), use_threads=False)
     found = _counted(batches, source.name, file.metadata)
-    return replace(_table(source.name, file.schema_arrow, found), length=file.metadata.num_rows)
+    return replace(of_arrow(source.name, file.schema_arrow, found), length=file.metadata.num_rows)
 
 
 def _counted(batches: Iterator[pa.RecordBatch], name: str, footer: Any) -> Iterator[pa.RecordBatch]:
@@ -147,7 +147,8 @@ def _unreadable(name: str, error: Exception) -> ScaridError:
     return BadData(f"{name}: not a complete Arrow or Parquet table ({reason}); write it again")
 
 
-def _table(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> Table:
+def of_arrow(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) -> Table:
+    """The table of Arrow batches, with what the metadata say; damage that is found is BadData."""
     document = (schema.metadata or {}).get(METADATA_KEY)
     try:
         meta = Metadata.from_json(document) if document else Metadata()

@@ -96,11 +96,11 @@ def test_what_the_program_imports_it_declares() -> None:
 
 def test_a_wheel_has_every_package_and_every_file_of_data() -> None:
     declared = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]
-    listing = ["git", "ls-files", "scarid_cli", "schemas"]
+    listing = ["git", "ls-files", "scarid", "scarid_cli", "schemas"]
     done = subprocess.run(listing, cwd=ROOT, capture_output=True, text=True, check=True)
     tracked = done.stdout.split()
     folders = {Path(name).parent for name in tracked}
-    packages = {".".join(folder.parts) for folder in folders if folder.parts[0] == "scarid_cli"}
+    packages = {".".join(folder.parts) for folder in folders if folder.parts[0] != "schemas"}
     assert set(declared["packages"]) == packages | {"scarid_cli.schemas"}
     data = declared["package-data"]
     for name in tracked:
