@@ -51,7 +51,7 @@ from conditions import (
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.estimators import rls, wls
-from scarid_cli.algorithms.regression.rows import joined
+from scarid_cli.algorithms.regression.rows import joined, regressed
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.alignment import aligned
@@ -196,7 +196,7 @@ def hindsight(robot: Robot, measured: Table, noise: float) -> Iterator[Array | N
         treatment = Treatment(counting=counted(motion.meta, None), align=True)
         try:
             parts = [rows for _, rows in treated(motion, robot, treatment)]
-            rows, solver = joined(parts), wls.Estimator()
+            rows, solver = regressed(joined(parts), robot), wls.Estimator()
             start = np.zeros(rows.W.shape[2] + 1)
             first = solver.of_rows(rows).fit.estimates
             found = aligned(solver, start, rows, first, len(robot.parameters))
