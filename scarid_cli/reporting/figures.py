@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import ceil, isfinite
 from typing import Any
 
@@ -67,33 +68,47 @@ def drawn(sections: Sequence[Section]) -> list[list[str]]:
 
 def draw(plot: Plot, *, captioned: bool = False) -> str:
     """The plot as an SVG document, with its caption above it if it is to be `captioned`."""
-    document = _saved(plot, captioned=captioned, format="svg", metadata=NO_METADATA).decode()
-    return re.sub(r'(?<= d=")[^"]*', _hundredths, document)
+    with styled():
+        return svg(_figure(plot, captioned=captioned))
 
 
 def png(plot: Plot) -> bytes:
     """The plot as a PNG, on white, with its caption."""
-    return _saved(plot, captioned=True, format="png", dpi=DPI, metadata={"Software": None})
-
-
-def _saved(plot: Plot, *, captioned: bool, **how: Any) -> bytes:
-    with matplotlib.rc_context(), warnings.catch_warnings():
-        # A user's matplotlibrc must not change the report, nor a missing glyph print a warning.
-        warnings.filterwarnings("ignore", message="Glyph .* missing")
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(STYLE)
-        figure = _figure(plot)
-        if captioned:
-            figure.suptitle(plot.caption, fontsize="medium", x=0.01, ha="left")
+    with styled():
         out = io.BytesIO()
-        figure.savefig(out, **how)
+        figure = _figure(plot, captioned=True)
+        figure.savefig(out, format="png", dpi=DPI, metadata={"Software": None})
     return out.getvalue()
 
 
-def _figure(plot: Plot) -> Figure:
+@contextlib.contextmanager
+def styled() -> Iterator[None]:
+    """The style of all figures: a user's matplotlibrc must not change them."""
+    with matplotlib.rc_context(), warnings.catch_warnings():
+        # Nor must a missing glyph print a warning.
+        warnings.filterwarnings("ignore", message="Glyph .* missing")
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(STYLE)
+        yield
+
+
+def svg(figure: Figure) -> str:
+    """The figure, made while `styled`, as an SVG document."""
+    out = io.StringIO()
+    figure.savefig(out, format="svg", metadata=NO_METADATA)
+    return re.sub(r'(?<= d=")[^"]*', _hundredths, out.getvalue())
+
+
+def _figure(plot: Plot, *, captioned: bool) -> Figure:
     if isinstance(plot, Bars):
-        return _bars(plot)
-    return forest(plot, FIGURE_WIDTH, PALETTE[0]) if isinstance(plot, Ranges) else _panels(plot)
+        figure = _bars(plot)
+    elif isinstance(plot, Ranges):
+        figure = forest(plot, FIGURE_WIDTH, PALETTE[0])
+    else:
+        figure = _panels(plot)
+    if captioned:
+        figure.suptitle(plot.caption, fontsize="medium", x=0.01, ha="left")
+    return figure
 
 
 def _hundredths(path: re.Match[str]) -> str:
@@ -163,6 +178,7 @@ def _panels(plot: Panels) -> Figure:
         axes.set_ylabel(panel.axis)
         if plot.logarithmic:
             axes.set(xscale="log", yscale="log")
+            plain_powers(axes)
         else:
             axes.locator_params(axis="y", nbins=5)
     _label_across(grid, len(plot.panels), columns, plot.across)
@@ -173,6 +189,14 @@ def _panels(plot: Panels) -> Figure:
         for axes, panel in zip(grid, plot.panels, strict=False):
             _own_legend(axes, panel)
     return figure
+
+
+def plain_powers(axes: Axes) -> None:
+    """Number the logarithmic axes as 0.01, 0.1, 1: powers would be set as mathematics."""
+    for axis in (axes.xaxis, axes.yaxis):
+        if axis.get_scale() == "log":
+            axis.set_major_formatter(lambda value, _: f"{value:g}")
+            axis.set_minor_formatter(lambda *_: "")
 
 
 def _style(series: Series) -> dict[str, Any]:

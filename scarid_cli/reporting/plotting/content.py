@@ -115,7 +115,8 @@ def _curves(table: Table, chosen: Sequence[Group], *, residuals: bool) -> Panels
         reading.add(t, matrix(batch, columns))
     points = {name: curve.points() for name, curve in reading.curves.items()}
     if not any(curve.size for curve in points.values()):
-        raise _nothing(table, f"{reading.rows:,} rows without a value", "at least one")
+        found = f"{reading.rows:,} rows without a value" if reading.rows else "no rows"
+        raise _nothing(table, found, "at least one value")
     panels: list[Panel] = []
     for group in chosen:
         panels.append(_panel(table, group.columns, points))
