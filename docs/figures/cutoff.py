@@ -8,6 +8,7 @@ scarid differentiate --method zero-phase --set cutoff=CUTOFF --match log.parquet
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -21,7 +22,7 @@ CUTOFFS = (1, 1.5, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48)  # Hz
 SHOWN = ("ZZ1R", "ZZ2", "L1MX2")
 
 
-def data() -> Data:
+def data(wanted: Sequence[float] = CUTOFFS) -> Data:
     """The share of the torque that scatter makes [%], and estimates relative to the truth."""
     simulate, tune, identify = __doc__.strip().split("\n")[2:5]
     robot = load("scara2")
@@ -31,7 +32,7 @@ def data() -> Data:
         run(simulate)
         run(tune)
         rows = [r for r in pq.read_table("trials.parquet").to_pylist() if r["judge"] == "scatter"]
-        for cutoff in CUTOFFS:
+        for cutoff in wanted:
             run(identify.replace("CUTOFF", f"{cutoff:g}"))
             table = pq.read_table(f"{cutoff:g}.parquet").to_pylist()
             for row in table:
@@ -47,6 +48,12 @@ def data() -> Data:
         "chosen": rounded([f for f, r in zip(cutoffs, rows, strict=True) if r["best"]])[0],
         "ratios": ratios,
     }
+
+
+def part() -> Data:
+    """The choice, without the estimates, which a test compares."""
+    found = data(())
+    return {name: found[name] for name in ("cutoffs", "scatter", "chosen")}
 
 
 def drawn(found: Data) -> Figure:
