@@ -9,10 +9,10 @@ scarid validate --parameters parameters.parquet motion.parquet --predictions tor
 from __future__ import annotations
 
 import pyarrow.parquet as pq
-from matplotlib.figure import Figure
-
 from figures import common
 from figures.common import INK, PALETTE, Data, thinned
+from matplotlib.figure import Figure
+
 from scarid_cli.algorithms.robots.reading import load
 
 KINDS = ("no-match", "match")
