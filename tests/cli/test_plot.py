@@ -47,6 +47,16 @@ def test_a_plot_is_as_wide_as_the_terminal(
     assert width - 12 <= max(map(len, lines)) <= width
 
 
+@pytest.mark.parametrize("columns", ["0", "1", "x", "9" * 11])
+def test_no_width_breaks_a_plot(
+    columns: str, log: Path, scarid: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", columns)
+    found = scarid("plot", log)
+    assert (found.status, found.err) == (0, "")
+    assert 20 <= max(map(len, found.out.splitlines()[1:])) <= 1000
+
+
 def test_a_pipe_gets_no_colours(log: Path, scarid: Run) -> None:
     out = scarid("plot", log).out
     assert "\033" not in out

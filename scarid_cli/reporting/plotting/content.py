@@ -213,7 +213,7 @@ def _require_values(values: Array, columns: Sequence[str], table: Table, rows: i
 def _caption(table: Table, rows: int, times: Sequence[float] = ()) -> str:
     """The name of the table, its kind, its rows and its time."""
     kind = kind_of(table)
-    parts = [kind or "table", f"{rows:,} rows"]
+    parts = [kind or "table", f"{rows:,} row{'s' if rows != 1 else ''}"]
     parts += [f"{times[0]:.6g} s to {times[-1]:.6g} s"] if times else []
     return f"{printable(table.name)}: {', '.join(parts)}"
 

@@ -16,6 +16,7 @@ from scarid_cli.reporting.plotting.canvas import Canvas, Limits
 
 LABEL = 9  # characters of a number beside the axis
 NARROWEST = 38  # characters of a panel, below which panels stand below each other
+LEAST, MOST = 24, 1000  # characters of a plot
 GAP = 2  # characters between panels
 LINES = 36  # of all panels, if that leaves enough for each
 LOWEST, HIGHEST = 4, 10  # lines of a panel
@@ -25,10 +26,15 @@ MARKS = " ×+o#%"  # where only another curve than the first is, and there are n
 
 @dataclass(frozen=True)
 class Screen:
-    """The width in characters, and whether there are colours."""
+    """The width in characters that the window has, and whether there are colours."""
 
-    width: int
+    window: int
     coloured: bool
+
+    @property
+    def width(self) -> int:
+        """The width that is drawn; $COLUMNS may say anything."""
+        return min(max(self.window, LEAST), MOST)
 
     def paint(self, text: str, curve: int | None) -> str:
         """The text in the colour of a curve."""
