@@ -23,6 +23,7 @@ COMMANDS = {
     "payload": "Find what hangs on the flange: mass, centre and inertia.",
     "gains": "Find the gain of each joint's torque from a load that is known.",
     "report": "Print tables and draw figures of parameters, traces, metrics and predictions.",
+    "plot": "Draw a table on the terminal, or as an SVG or a PNG.",
     "urdf": "Write identified parameters into a URDF as physically consistent links.",
     "export": "Write identified dynamics as C for a controller.",
     "methods": "List the methods that commands offer, or describe one.",

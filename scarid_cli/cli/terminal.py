@@ -39,7 +39,7 @@ def wrapped(start: str, text: str, indent: int, *, hanging: int = 0, descriptor:
         return f"{start}{text}"
     import textwrap
 
-    width = max(_columns(descriptor), NARROWEST + indent)
+    width = max(columns_of(descriptor), NARROWEST + indent)
     begin = indent + len(text) - len(text.lstrip())
     lines = textwrap.wrap(
         text.lstrip(),
@@ -52,7 +52,7 @@ def wrapped(start: str, text: str, indent: int, *, hanging: int = 0, descriptor:
     return start + "\n".join(lines)[indent:]
 
 
-def _columns(descriptor: int) -> int:
+def columns_of(descriptor: int) -> int:
     """The width of the window: as $COLUMNS says, else as the terminal does."""
     stated = os.environ.get("COLUMNS", "")
     if stated.isdecimal() and int(stated):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import ceil, isfinite
 from typing import Any
 
@@ -15,7 +16,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from scarid_cli.reporting.curves import broken
-from scarid_cli.reporting.parts import Bars, Panels, Plot, Section, Series
+from scarid_cli.reporting.parts import Bars, Panel, Panels, Plot, Ranges, Section, Series
+from scarid_cli.reporting.ranges import forest
 
 # Colours that colour-blind readers can distinguish: Okabe and Ito's palette, but wine (of Tol's
 # muted palette) for its yellow, which is hardly visible on white. Black is for measurements.
@@ -23,6 +25,7 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8
 DASHES = ("-", "-.", ":", (0, (1, 4)))  # of the first, second, ... turn through the palette
 INK = "#222222"
 BEYOND = 10.0  # times the doubtful value: the axis of bars ends there at the latest
+DPI = 150
 FIGURE_WIDTH = 6.7  # inches, the width of the text on an A4 page
 
 STYLE = {
@@ -63,17 +66,49 @@ def drawn(sections: Sequence[Section]) -> list[list[str]]:
     return [[draw(plot) for plot in section.plots] for section in sections]
 
 
-def draw(plot: Plot) -> str:
-    """The plot as an SVG document."""
+def draw(plot: Plot, *, captioned: bool = False) -> str:
+    """The plot as an SVG document, with its caption above it if it is to be `captioned`."""
+    with styled():
+        return svg(_figure(plot, captioned=captioned))
+
+
+def png(plot: Plot) -> bytes:
+    """The plot as a PNG, on white, with its caption."""
+    with styled():
+        out = io.BytesIO()
+        figure = _figure(plot, captioned=True)
+        figure.savefig(out, format="png", dpi=DPI, metadata={"Software": None})
+    return out.getvalue()
+
+
+@contextlib.contextmanager
+def styled() -> Iterator[None]:
+    """The style of all figures: a user's matplotlibrc must not change them."""
     with matplotlib.rc_context(), warnings.catch_warnings():
-        # A user's matplotlibrc must not change the report, nor a missing glyph print a warning.
+        # Nor must a missing glyph print a warning.
         warnings.filterwarnings("ignore", message="Glyph .* missing")
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
-        figure = _bars(plot) if isinstance(plot, Bars) else _panels(plot)
-        out = io.StringIO()
-        figure.savefig(out, format="svg", metadata=NO_METADATA)
+        yield
+
+
+def svg(figure: Figure) -> str:
+    """The figure, made while `styled`, as an SVG document."""
+    out = io.StringIO()
+    figure.savefig(out, format="svg", metadata=NO_METADATA)
     return re.sub(r'(?<= d=")[^"]*', _hundredths, out.getvalue())
+
+
+def _figure(plot: Plot, *, captioned: bool) -> Figure:
+    if isinstance(plot, Bars):
+        figure = _bars(plot)
+    elif isinstance(plot, Ranges):
+        figure = forest(plot, FIGURE_WIDTH, PALETTE[0])
+    else:
+        figure = _panels(plot)
+    if captioned:
+        figure.suptitle(plot.caption, fontsize="medium", x=0.01, ha="left")
+    return figure
 
 
 def _hundredths(path: re.Match[str]) -> str:
@@ -141,11 +176,27 @@ def _panels(plot: Panels) -> Figure:
         if panel.limits:
             axes.set_ylim(*panel.limits)
         axes.set_ylabel(panel.axis)
-        axes.locator_params(axis="y", nbins=5)
-    _label_time(grid, len(plot.panels), columns)
+        if plot.logarithmic:
+            axes.set(xscale="log", yscale="log")
+            plain_powers(axes)
+        else:
+            axes.locator_params(axis="y", nbins=5)
+    _label_across(grid, len(plot.panels), columns, plot.across)
     figure.align_ylabels()
-    _legend(figure, plot)
+    if len({tuple(one.name for one in panel.series) for panel in plot.panels}) == 1:
+        _legend(figure, plot)
+    else:
+        for axes, panel in zip(grid, plot.panels, strict=False):
+            _own_legend(axes, panel)
     return figure
+
+
+def plain_powers(axes: Axes) -> None:
+    """Number the logarithmic axes as 0.01, 0.1, 1: powers would be set as mathematics."""
+    for axis in (axes.xaxis, axes.yaxis):
+        if axis.get_scale() == "log":
+            axis.set_major_formatter(lambda value, _: f"{value:g}")
+            axis.set_minor_formatter(lambda *_: "")
 
 
 def _style(series: Series) -> dict[str, Any]:
@@ -156,13 +207,22 @@ def _style(series: Series) -> dict[str, Any]:
     return {"color": colour_of(series.colour), "linestyle": dashes}
 
 
-def _label_time(grid: Sequence[Axes], used: int, columns: int) -> None:
-    """The time axis is labelled under the lowest panel of each column."""
+def _label_across(grid: Sequence[Axes], used: int, columns: int, across: str) -> None:
+    """The horizontal axis is labelled under the lowest panel of each column."""
     for axes in grid[used:]:
         axes.remove()
     for axes in grid[max(0, used - columns) : used]:
         axes.tick_params(labelbottom=True)
-        axes.set_xlabel("t [s]")
+        axes.set_xlabel(across)
+
+
+def _own_legend(axes: Axes, panel: Panel) -> None:
+    """The names of curves that differ from panel to panel; the axis names a single one."""
+    if len(panel.series) > 1:
+        handles = [Line2D([], [], **_style(one)) for one in panel.series]
+        names = [one.name for one in panel.series]
+        place = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.0}
+        axes.legend(handles, names, ncols=len(names), **place)
 
 
 def _legend(figure: Figure, plot: Panels) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isfinite
+from math import copysign, inf, isfinite
 from typing import Any
 
 from scarid_cli.arrays import Array
@@ -12,6 +12,7 @@ from scarid_cli.arrays import Array
 NONE = "-"
 GAP = 2  # characters between the columns of a table
 PANELS = 8  # of a figure at most, so that it fits a page
+ENOUGH = 100.0  # percent: an interval that is wider than its value on a side contains zero
 
 
 @dataclass(frozen=True)
@@ -51,15 +52,54 @@ class Panel:
 
 @dataclass(frozen=True)
 class Panels:
-    """Panels in columns with one legend above; `level` names their horizontal lines."""
+    """Panels in columns with one legend above; `level` names their horizontal lines.
+
+    `across` names the horizontal axis of all panels. Both axes may be `logarithmic`.
+    """
 
     caption: str
     panels: tuple[Panel, ...]
     columns: int
     level: str = ""
+    across: str = "t [s]"
+    logarithmic: bool = False
 
 
-Plot = Bars | Panels
+@dataclass(frozen=True)
+class Range:
+    """A value with the ends of its 95 % interval, nan where unknown."""
+
+    name: str
+    unit: str
+    value: float
+    low: float
+    high: float
+
+    def shares(self) -> tuple[float, float]:
+        """By how many percent of the value the ends differ from it; infinite at a value of zero."""
+        low, high = (_percent(end - self.value, self.value) for end in (self.low, self.high))
+        return low, high
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Values with their intervals, as a forest: the ends in percent of each value."""
+
+    caption: str
+    rows: tuple[Range, ...]
+
+    @property
+    def widest(self) -> float:
+        """The end of the axis [%]: the widest interval, but at most ENOUGH."""
+        ends = [abs(end) for row in self.rows for end in row.shares() if isfinite(end)]
+        return min(1.05 * max(ends, default=ENOUGH) or ENOUGH, ENOUGH)
+
+
+def _percent(part: float, whole: float) -> float:
+    return 100.0 * part / abs(whole) if whole else copysign(inf, part) if part else part
+
+
+Plot = Bars | Panels | Ranges
 
 
 @dataclass(frozen=True)

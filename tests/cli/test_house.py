@@ -61,6 +61,7 @@ STREAMING = {
     "simulate": ["simulate", "reference.csv"],
     "convert": ["convert"],
     "info": ["info"],
+    "plot": ["plot"],
 }
 
 

@@ -23,7 +23,8 @@ INPUTS = {
     "trajgen": (),
 }
 COMMANDS = ("trajgen", "simulate", "resample", "check", "filter", "tune", "differentiate",
-            "identify", "validate", "compare", "payload", "gains", "export", "report", "convert", "info")  # fmt: skip
+            "identify", "validate", "compare", "payload", "gains", "export", "report", "plot", "convert",
+            "info")  # fmt: skip
 ENVIRONMENTS = (
     {"SCARID_FORMAT": "x"}, {"SCARID_FORMAT": ""}, {"SCARID_ROBOT": "x"}, {"SCARID_ROBOT": ""},
     {"SCARID_MAX_BATCH": "x"}, {"SCARID_MAX_BATCH": "0"}, {"SCARID_MAX_BATCH": "1"},
