@@ -19,6 +19,13 @@ SECTIONS: Navigation = {
         "tutorials/*.md",
     ],
     "How-to": [
+        "howto/describe-a-robot.md",
+        "howto/plan-an-experiment.md",
+        "howto/choose-a-soft-sensor.md",
+        "howto/read-a-verdict.md",
+        "howto/state-a-motor-constant.md",
+        "howto/find-a-payload.md",
+        "howto/gate-a-ci-job.md",
         "howto/*.md",
         "real-logs.md",
         "python.md",

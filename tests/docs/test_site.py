@@ -83,7 +83,7 @@ def test_links_lead_to_where_the_files_stand_on_the_site() -> None:
         "[a](pipes.md#failures) [b](repository/samples) ![c](x.svg) [d](https://e.f) `](docs/g)`"
     )
     assert relinked("[a](../../DESIGN.md)", "docs/howto/b.md") == "[a](../repository/DESIGN.md)"
-    assert targets("[a](../DESIGN.md) [b](#c)", "docs/d.md") == {"DESIGN.md"}
+    assert targets("[a](../DESIGN.md) [b](#c)", "docs/pipes.md") == {"DESIGN.md"}
 
 
 def test_the_start_page_is_the_first_part_of_the_readme() -> None:
