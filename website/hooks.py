@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT))  # the package need not be installed, and its kern
 from dialect import adapted  # noqa: E402
 from navigation import INDEX, navigation, pages  # noqa: E402
 from reference import reference  # noqa: E402
-from relinking import first_part, outside, relinked  # noqa: E402
+from relinking import first_part, outside, relinked, title  # noqa: E402
 
 GENERATED = reference()
 OUTSIDE = outside(ROOT)
@@ -56,5 +56,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     if name in GENERATED:
         return markdown
     source = SOURCES.get(name, f"docs/{name}")
-    text = first_part(markdown) if source == "README.md" else markdown
-    return adapted(relinked(text, source))
+    if name == INDEX:
+        page.meta["hide"] = ["navigation"]  # the tabs say it
+    text = first_part(markdown) if name == INDEX else markdown
+    return adapted(relinked(text, source, lambda path: title(ROOT / path)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from collections.abc import Iterator
 
@@ -11,8 +12,9 @@ from scarid_cli.cli import COMMANDS, scarid
 from scarid_cli.cli.headings import KEY, OUTPUT
 from scarid_cli.cli.methods import REGISTRIES
 
+WIDTH = 96  # characters: of what a command lists below its options
 VERBATIM = "\b"  # click's mark of a paragraph that is not to be wrapped
-SPECIAL = re.compile(r"(`[^`]*`)|([*<>|\[\]])")
+SPECIAL = re.compile(r"(`[^`]*`)|(--[a-z][\w-]*)|([*<>|\[\]])")
 # A line of a method's description that begins an item: `Delay: ...`, `gate = 20: ...`.
 ITEM = re.compile(r"(Delay|Rule|Matched[\w ]*|[a-z][\w ,]*(?: = [^:]+)+)(?: \([^)]*\))?:? ")
 
@@ -46,15 +48,19 @@ def _command(name: str) -> str:
 def _described(command: click.Command, parent: click.Context) -> Iterator[str]:
     """The help of a command: what it does, examples, usage, options under their headings."""
     context = click.Context(command, info_name=command.name, parent=parent)
-    for paragraph in (command.help or "").split("\f")[0].split("\n\n"):
+    for paragraph in inspect.cleandoc(command.help or "").split("\n\n"):
         yield from _paragraph(paragraph)
         yield ""
     usage = " ".join((context.command_path, *command.collect_usage_pieces(context)))
     yield from ("```text", usage, "```", "")
     for title, records in _options(command, context).items():
-        yield from (f"**{title}**", "")
+        yield from (f"## {title}", "")
         for names, text in records:
             yield from (f"`{names}`", f":   {escaped(text)}", "")
+    after = click.HelpFormatter(width=WIDTH)
+    command.format_epilog(context, after)
+    if listed := after.getvalue().strip():
+        yield from ("## Choices", "", "```text", listed, "```", "")
 
 
 def _paragraph(text: str) -> Iterator[str]:
@@ -69,6 +75,8 @@ def _options(command: click.Command, context: click.Context) -> dict[str, list[t
     """The names and the help of the options, under the headings of `scarid COMMAND --help`."""
     sections: dict[str, list[tuple[str, str]]] = {}
     for parameter in command.get_params(context):
+        if not isinstance(parameter, click.Option):
+            continue
         own = parameter in command.params
         title = vars(parameter).get(KEY, "Options") if own else OUTPUT
         if record := parameter.get_help_record(context):
@@ -77,8 +85,13 @@ def _options(command: click.Command, context: click.Context) -> dict[str, list[t
 
 
 def escaped(text: str) -> str:
-    """Text as Markdown that shows it; what stands in backticks is code."""
-    return SPECIAL.sub(lambda found: found[1] or f"\\{found[2]}", " ".join(text.split()))
+    """Text as Markdown that shows it; what stands in backticks is code, as options are."""
+
+    def shown(found: re.Match[str]) -> str:
+        code, option, mark = found.groups()
+        return code or (f"`{option}`" if option else f"\\{mark}")
+
+    return SPECIAL.sub(shown, " ".join(text.split()))
 
 
 def _methods() -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import posixpath
 import re
+from collections.abc import Callable
 from pathlib import Path, PurePosixPath
 
 from navigation import INDEX
@@ -15,7 +16,7 @@ from navigation import INDEX
 # A link or picture of Markdown, or of HTML in it; code is left alone.
 LINK = re.compile(
     r"(?P<code>^ *```.*?^ *```$|`[^`\n]*`)"
-    r"|(?P<start>\]\(|(?:src|srcset|href)=\")(?P<target>[^)\s\"#]+)(?P<anchor>#[^)\s\"]*)?",
+    r"|(?P<start>(?:\[(?P<text>[\w/.-]+\.md))?\]\(|(?:src|srcset|href)=\")(?P<target>[^)\s\"#]+)(?P<anchor>#[^)\s\"]*)?",
     re.DOTALL | re.MULTILINE,
 )
 LAST_OF_INDEX = "\n## The commands\n"  # from here on, the navigation says it
@@ -34,8 +35,11 @@ def targets(text: str, source: str) -> set[str]:
     return {path for path in found if path}
 
 
-def relinked(text: str, source: str) -> str:
-    """The text of a file of the repository, with the links that it has on the site."""
+def relinked(text: str, source: str, titles: Callable[[str], str]) -> str:
+    """The text of a file of the repository, with the links that it has on the site.
+
+    Where a link says the name of a page, the site says its title, as `titles` has it.
+    """
     here = posixpath.dirname(place(source))
 
     def moved(match: re.Match[str]) -> str:
@@ -43,7 +47,8 @@ def relinked(text: str, source: str) -> str:
         if not path:
             return match[0]
         there = posixpath.relpath(place(path), here or ".")
-        return f"{match['start']}{there}{match['anchor'] or ''}"
+        start = f"[{titles(path)}](" if match["text"] else match["start"]
+        return f"{start}{there}{match['anchor'] or ''}"
 
     return LINK.sub(moved, text)
 
@@ -54,6 +59,12 @@ def _file(match: re.Match[str], source: str) -> str | None:
     if match["code"] or not target or ":" in target:
         return None
     return posixpath.normpath(posixpath.join(posixpath.dirname(source), target))
+
+
+def title(page: Path) -> str:
+    """The first heading of a page."""
+    lines = page.read_text("utf-8").splitlines() if page.is_file() else []
+    return next((line[2:] for line in lines if line.startswith("# ")), page.name)
 
 
 def first_part(readme: str) -> str:

@@ -74,15 +74,19 @@ def test_the_page_of_methods_has_each() -> None:
 
 
 def test_help_is_shown_as_it_is() -> None:
-    assert escaped("a * b\n  <c> `d * e` [f]") == r"a \* b \<c\> `d * e` \[f\]"
+    assert escaped("a * b\n  <c> `d --e` [f], --g") == r"a \* b \<c\> `d --e` \[f\], `--g`"
 
 
 def test_links_lead_to_where_the_files_stand_on_the_site() -> None:
     text = "[a](docs/pipes.md#failures) [b](samples/) ![c](docs/x.svg) [d](https://e.f) `](docs/g)`"
-    assert relinked(text, "README.md") == (
+    assert relinked(text, "README.md", str.upper) == (
         "[a](pipes.md#failures) [b](repository/samples) ![c](x.svg) [d](https://e.f) `](docs/g)`"
     )
-    assert relinked("[a](../../DESIGN.md)", "docs/howto/b.md") == "[a](../repository/DESIGN.md)"
+    assert (
+        relinked("[a](../../DESIGN.md)", "docs/howto/b.md", str.upper)
+        == "[a](../repository/DESIGN.md)"
+    )
+    assert relinked("[docs/a.md](docs/a.md#b)", "README.md", str.upper) == "[DOCS/A.MD](a.md#b)"
     assert targets("[a](../DESIGN.md) [b](#c)", "docs/pipes.md") == {"DESIGN.md"}
 
 
