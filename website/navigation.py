@@ -13,6 +13,7 @@ Navigation = dict[str, list[str]]
 
 SECTIONS: Navigation = {
     "Tutorials": [
+        "your-robot-from-bag-to-urdf.md",
         "from-a-bag-to-mujoco.md",
         "beside-the-robot.md",
         "batch.md",

@@ -86,7 +86,9 @@ def test_links_lead_to_where_the_files_stand_on_the_site() -> None:
         relinked("[a](../../DESIGN.md)", "docs/howto/b.md", str.upper)
         == "[a](../repository/DESIGN.md)"
     )
-    assert relinked("[docs/a.md](docs/a.md#b)", "README.md", str.upper) == "[DOCS/A.MD](a.md#b)"
+    assert relinked("[docs/pipes.md](docs/pipes.md#b)", "README.md", str.upper) == (
+        "[DOCS/PIPES.MD](pipes.md#b)"
+    )
     assert targets("[a](../DESIGN.md) [b](#c)", "docs/pipes.md") == {"DESIGN.md"}
 
 
