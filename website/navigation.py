@@ -34,6 +34,7 @@ SECTIONS: Navigation = {
     "Reference": [
         "reference/commands/*.md",
         "reference/methods.md",
+        "reference/exit-statuses.md",
         "pipes.md",
         "tables.md",
         "formats.md",

@@ -5,30 +5,38 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Iterator
+from pathlib import Path
 
 import click
+from relinking import relinked, title
 
 from scarid_cli.cli import COMMANDS, scarid
 from scarid_cli.cli.headings import KEY, OUTPUT
 from scarid_cli.cli.methods import REGISTRIES
 
+ROOT = Path(__file__).resolve().parent.parent
 WIDTH = 96  # characters: of what a command lists below its options
 VERBATIM = "\b"  # click's mark of a paragraph that is not to be wrapped
 SPECIAL = re.compile(r"(`[^`]*`)|(--[a-z][\w-]*)|([*<>|\[\]])")
 # A line of a method's description that begins an item: `Delay: ...`, `gate = 20: ...`.
 ITEM = re.compile(r"(Delay|Rule|Matched[\w ]*|[a-z][\w ,]*(?: = [^:]+)+)(?: \([^)]*\))?:? ")
+SETTING = re.compile(r"^([a-z][\w ,]*(?: = [^\s:]+)+)(?=[:\s])")
 
 STATUS = """## Exit status
 
 0 after success, 2 after wrong usage, 65 for bad data, 74 if reading or writing failed;
-[all statuses](../../pipes.md#failures).
+[all statuses](../exit-statuses.md).
 """
+FAILURES = "[Failures](../pipes.md#failures) of one command in a pipe, and what becomes of files."
 
 
 def reference() -> dict[str, str]:
     """The text of each generated page, by its name on the site."""
     commands = {f"reference/commands/{name}.md": _command(name) for name in COMMANDS}
-    return commands | {"reference/methods.md": _methods()}
+    return commands | {
+        "reference/methods.md": _methods(),
+        "reference/exit-statuses.md": _statuses(),
+    }
 
 
 def _command(name: str) -> str:
@@ -53,8 +61,8 @@ def _described(command: click.Command, parent: click.Context) -> Iterator[str]:
         yield ""
     usage = " ".join((context.command_path, *command.collect_usage_pieces(context)))
     yield from ("```text", usage, "```", "")
-    for title, records in _options(command, context).items():
-        yield from (f"## {title}", "")
+    for heading, records in _options(command, context).items():
+        yield from (f"## {heading}", "")
         for names, text in records:
             yield from (f"`{names}`", f":   {escaped(text)}", "")
     after = click.HelpFormatter(width=WIDTH)
@@ -94,6 +102,15 @@ def escaped(text: str) -> str:
     return SPECIAL.sub(shown, " ".join(text.split()))
 
 
+def _statuses() -> str:
+    """The table of the page on pipes, by itself."""
+    page = (ROOT / "docs" / "pipes.md").read_text("utf-8")
+    table = re.search(r"^\| exit status.*?(?=\n\n)", page, flags=re.DOTALL | re.MULTILINE)
+    assert table, "docs/pipes.md has no table of exit statuses"
+    linked = relinked(table[0], "docs/pipes.md", lambda path: title(ROOT / path))
+    return f"# Exit statuses\n\n{linked.replace('](', '](../')}\n\n{FAILURES}\n"
+
+
 def _methods() -> str:
     lines = ["# Methods", "", "What `scarid methods NAME` prints, for every method.", ""]
     for option, registry in REGISTRIES.items():
@@ -117,5 +134,6 @@ def _items(text: str) -> Iterator[str]:
             item = bool(ITEM.match(part))
             if not item or not listed:
                 yield ""
-            yield f"- {escaped(part)}" if item else escaped(part)
+            text = escaped(SETTING.sub(r"`\1`", part))
+            yield f"- {text}" if item else text
             listed = item

@@ -17,6 +17,7 @@ from navigation import INDEX, SECTIONS, lost, navigation, pages
 from reference import escaped, reference
 from relinking import first_part, outside, place, relinked, targets
 
+from scarid_cli import errors
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.cli import COMMANDS, scarid
 
@@ -71,6 +72,12 @@ def test_the_page_of_methods_has_each() -> None:
     page = reference()["reference/methods.md"]
     for name in (*DIFFERENTIATORS.names, *ESTIMATORS.names):
         assert f"\n### {name}\n" in page
+
+
+def test_the_page_of_statuses_has_those_of_the_program() -> None:
+    page = reference()["reference/exit-statuses.md"]
+    declared = {value for value in vars(errors).values() if isinstance(value, int)}
+    assert declared <= {int(status) for status in re.findall(r"^\| (\d+) \|", page, re.MULTILINE)}
 
 
 def test_help_is_shown_as_it_is() -> None:
