@@ -29,6 +29,7 @@
 # make bench-batch LOGS=1000   a pipe, then, and a batch of a simulated fleet; PARTS="growth killed"
 # make docs     generate docs/tables.md from schemas/
 # make figures  the figures of the documentation (FIGURES="pipe stated": these only)
+# make site     the documentation as a site that needs no network: build/site/index.html
 # make samples  generate the small log and its parameters under samples/
 # make clean    remove everything that the other targets made
 #
@@ -40,7 +41,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -192,8 +193,22 @@ FIGURES :=
 figures: $(VENV)/installed
 	cd docs && $(TESTING) ../$(BIN)/python -m figures $(FIGURES)
 
+# Not the package, only what the site needs: its pages are made of declarations, without kernels.
+SITE := .venv-site
+
+$(SITE)/installed: pyproject.toml
+	@test -x $(SITE)/bin/python || $(PYTHON) -m venv $(SITE)
+	@$(SITE)/bin/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["site"], sep="\n")' > $(SITE)/requirements.txt
+	@$(SITE)/bin/python -m pip --disable-pip-version-check --quiet install --requirement $(SITE)/requirements.txt
+	@touch $@
+
+# The variable hides what the theme says of other programs than this site.
+site: $(SITE)/installed
+	@NO_MKDOCS_2_WARNING=1 $(SITE)/bin/mkdocs build --quiet --strict
+	@echo 'build/site/index.html'
+
 clean:
-	rm -rf build $(VENV) .venv-batch *.egg-info .hypothesis .pytest_cache .mypy_cache .ruff_cache
+	rm -rf build $(VENV) .venv-batch $(SITE) *.egg-info .hypothesis .pytest_cache .mypy_cache .ruff_cache
 	rm -f scarid_cli/kernels/*.so
 
 # --- the paper's procedure ------------------------------------------------------------------------

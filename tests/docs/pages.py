@@ -19,6 +19,7 @@ PAGES = sorted(
     for path in (
         *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "DESIGN.md")),
         *(ROOT / "docs").glob("*.md"),
+        *(ROOT / "docs" / "howto").glob("*.md"),
         ROOT / "samples" / "README.md",
     )
     if path.is_file()
