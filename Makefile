@@ -27,6 +27,7 @@
 # make test-batch     the batch by Snakemake: killed, restarted, the same bytes
 # make test-slurm     the same on a Slurm that runs on this machine alone
 # make bench-batch LOGS=1000   a pipe, then, and a batch of a simulated fleet; PARTS="growth killed"
+# make man      the man pages, into build/man
 # make docs     generate docs/tables.md from schemas/
 # make samples  generate the small log and its parameters under samples/
 # make clean    remove everything that the other targets made
@@ -39,7 +40,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -186,6 +187,9 @@ bench-batch: $(VENV)/installed $(BATCH)/installed
 
 docs: $(VENV)/installed
 	$(BIN)/python -m scarid_cli.reporting.schemas > docs/tables.md
+
+man: $(VENV)/installed
+	$(BIN)/python -m scarid_cli.cli.manual build/man
 
 clean:
 	rm -rf build $(VENV) .venv-batch *.egg-info .hypothesis .pytest_cache .mypy_cache .ruff_cache
