@@ -28,6 +28,7 @@
 # make test-slurm     the same on a Slurm that runs on this machine alone
 # make bench-batch LOGS=1000   a pipe, then, and a batch of a simulated fleet; PARTS="growth killed"
 # make man      the man pages, into build/man
+# make wheel    the source distribution and the wheel, audited, into build/dist
 # make docs     generate docs/tables.md from schemas/
 # make samples  generate the small log and its parameters under samples/
 # make clean    remove everything that the other targets made
@@ -190,6 +191,16 @@ docs: $(VENV)/installed
 
 man: $(VENV)/installed
 	$(BIN)/python -m scarid_cli.cli.manual build/man
+
+$(VENV)/packaging: pyproject.toml | $(BIN)/python
+	$(PIP) install 'abi3audit>=0.0.26' 'build>=1.2'
+	@touch $@
+
+wheel: $(VENV)/packaging  # made of the source distribution, so that one lacks nothing
+	rm -rf build/dist
+	$(BIN)/python -m build --outdir build/dist .
+	@for wheel in build/dist/*abi3*.whl; do \
+	  if [ -e "$$wheel" ]; then $(BIN)/abi3audit --strict --summary "$$wheel"; fi; done
 
 clean:
 	rm -rf build $(VENV) .venv-batch *.egg-info .hypothesis .pytest_cache .mypy_cache .ruff_cache
