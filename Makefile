@@ -27,6 +27,8 @@
 # make test-batch     the batch by Snakemake: killed, restarted, the same bytes
 # make test-slurm     the same on a Slurm that runs on this machine alone
 # make bench-batch LOGS=1000   a pipe, then, and a batch of a simulated fleet; PARTS="growth killed"
+# make man      the man pages, into build/man
+# make wheel    the source distribution and the wheel, audited, into build/dist
 # make docs     generate docs/tables.md from schemas/
 # make figures  the figures of the documentation (FIGURES="pipe stated": these only)
 # make site     the documentation as a site that needs no network: build/site/index.html
@@ -41,7 +43,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -206,6 +208,19 @@ $(SITE)/installed: pyproject.toml
 site: $(SITE)/installed
 	@NO_MKDOCS_2_WARNING=1 $(SITE)/bin/mkdocs build --quiet --strict
 	@echo 'build/site/index.html'
+
+man: $(VENV)/installed
+	$(BIN)/python -m scarid_cli.cli.manual build/man
+
+$(VENV)/packaging: pyproject.toml | $(BIN)/python
+	$(PIP) install 'abi3audit>=0.0.26' 'build>=1.2'
+	@touch $@
+
+wheel: $(VENV)/packaging  # made of the source distribution, so that one lacks nothing
+	rm -rf build/dist
+	$(BIN)/python -m build --outdir build/dist .
+	@for wheel in build/dist/*abi3*.whl; do \
+	  if [ -e "$$wheel" ]; then $(BIN)/abi3audit --strict --summary "$$wheel"; fi; done
 
 clean:
 	rm -rf build $(VENV) .venv-batch $(SITE) *.egg-info .hypothesis .pytest_cache .mypy_cache .ruff_cache

@@ -1,10 +1,18 @@
-"""Build of the compiled kernels; everything else is declared in pyproject.toml.
+"""Build of the compiled kernels and of the man pages; pyproject.toml declares everything else.
 
 Each `scarid_cli/kernels/NAME.py` with a `NAME.pxd` beside it becomes an extension. Without a
-working C compiler the build goes on with a warning, and the same file runs interpreted.
+working C compiler the build goes on with a warning, makes a wheel for any machine, and the same
+files run interpreted.
 """
 
 import os
+import sys
+import sysconfig
+import tempfile
+import warnings
+from distutils.ccompiler import new_compiler
+from distutils.errors import CCompilerError, DistutilsExecError
+from distutils.sysconfig import customize_compiler
 from pathlib import Path
 
 from Cython.Build import cythonize
@@ -21,13 +29,40 @@ DIRECTIVES = {
 # Loops as short as a regressor has columns: the checks before vectors cost more than they save.
 SHORT_LOOPS = {"information": ["-fno-tree-vectorize"]}
 
+
+def compiles() -> bool:
+    """Whether a C extension can be compiled and linked here."""
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder, "trial.c")
+        source.write_text("#include <Python.h>\nint trial(void) { return 0; }\n", "utf-8")
+        compiler = new_compiler()
+        customize_compiler(compiler)
+        compiler.add_include_dir(sysconfig.get_path("include"))
+        try:
+            objects = compiler.compile([str(source)], output_dir=folder)
+            compiler.link_shared_object(objects, str(Path(folder, "trial.so")))
+        except (CCompilerError, DistutilsExecError) as error:
+            warnings.warn(f"the kernels are not compiled: {error}", stacklevel=1)
+            return False
+    return True
+
+
+def man_pages() -> list[str]:
+    """The files of the man pages, written into build/man."""
+    sys.path.insert(0, str(Path(__file__).parent))
+    from scarid_cli.cli.manual.__main__ import write
+
+    return [str(path) for path in write(Path("build/man"))]
+
+
 extensions = cythonize(
     [
         Extension(
             f"scarid_cli.kernels.{pxd.stem}",
             [str(pxd.with_suffix(".py"))],
             # No contraction to fused multiply-add: compiled and interpreted bits stay equal.
-            extra_compile_args=["-O3", "-ffp-contract=off", *SHORT_LOOPS.get(pxd.stem, [])],
+            # No symbols of debuggers, which are two thirds of a wheel.
+            extra_compile_args=["-O3", "-g0", "-ffp-contract=off", *SHORT_LOOPS.get(pxd.stem, [])],
             define_macros=[("Py_LIMITED_API", "0x030B0000")],
             py_limited_api=True,
         )
@@ -39,10 +74,12 @@ extensions = cythonize(
 for extension in extensions:
     extension.optional = True  # set after cythonize, which does not carry it over
 
+compiled = compiles()
 setup(
-    ext_modules=extensions,
+    ext_modules=extensions if compiled else [],
+    data_files=[("share/man/man1", man_pages())],
     options={
-        "bdist_wheel": {"py_limited_api": "cp311"},
+        "bdist_wheel": {"py_limited_api": "cp311"} if compiled else {},
         "build_ext": {"parallel": os.cpu_count()},
     },
 )

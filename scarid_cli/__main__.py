@@ -92,6 +92,11 @@ def run() -> None:
     sys.meta_path.insert(0, WithoutPandas())
     if not sys.warnoptions:  # python -W, PYTHONWARNINGS
         warnings.simplefilter("ignore")  # those of libraries are for programmers
+    if instruction := os.environ.get("_SCARID_COMPLETE"):  # the Tab key of a shell
+        from scarid_cli.cli import completing
+
+        completing.answer(scarid, instruction)
+        sys.exit(_flushed(0))
     # A command in the background of a script ignores SIGINT, as it should.
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, STOP.asked)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from typing import Any
 
 import click
 
@@ -31,6 +32,7 @@ COMMANDS = {
     "convert": "Convert between table formats, or turn a recorded log into a table.",
     "tee": "Write a table to a file, and pass it on.",
     "info": "Describe a table: kind, columns, units, sampling, history.",
+    "completion": "Print the completion script of a shell.",
     "help": "Explain a command.",
 }
 
@@ -57,6 +59,16 @@ class LazyGroup(click.Group):
             near = get_close_matches(name, COMMANDS, 1)
             ctx.fail(f"no such command {name!r}{f'; did you mean {near[0]}?' if near else ''}")
         return super().resolve_command(ctx, args)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[Any]:
+        """The commands, with the lines of the help, and the options."""
+        from click.shell_completion import CompletionItem
+
+        names = [name for name in COMMANDS if name.startswith(incomplete)]
+        return [
+            *(CompletionItem(name, help=COMMANDS[name]) for name in names),
+            *click.Command.shell_complete(self, ctx, incomplete),
+        ]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         with formatter.section("Commands"):

@@ -32,6 +32,7 @@ from scarid_cli.io.roles import ROLES
     "units",
     multiple=True,
     metavar="COLUMNS=UNIT",
+    shell_complete=options.offered("columns"),
     help="The unit of columns in the log (deg, rpm, mN m, ms, ...), which are converted to rad, "
     "N m, s; * and ? match any name; repeatable.",
 )

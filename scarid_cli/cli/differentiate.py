@@ -27,10 +27,16 @@ from scarid_cli.cli.headings import METHOD, heading
     "given",
     multiple=True,
     metavar="NAME=VALUE[,VALUE...]",
+    shell_complete=options.offered("settings"),
     help="A setting of the method, one value for all joints or one per joint; repeatable.",
 )
 @options.input_file("--settings", help="Settings that `scarid tune --save` wrote.")
-@click.option("--preset", metavar="NAME", help="Named settings; table1 is that of the paper.")
+@click.option(
+    "--preset",
+    metavar="NAME",
+    shell_complete=options.offered("presets"),
+    help="Named settings; table1 is that of the paper.",
+)
 @click.option(
     "--match/--no-match",
     default=None,

@@ -14,6 +14,7 @@ from scarid_cli.cli.declare import declare
     "-c",
     "--columns",
     metavar="NAMES",
+    shell_complete=options.offered("columns"),
     help="The columns to filter, separated by commas; * and ? match any name.  [default: all "
     "q1, q2, ... and tau1, tau2, ...]",
 )

@@ -5,10 +5,11 @@ from __future__ import annotations
 import click
 
 from scarid_cli.cli.headings import Command
+from scarid_cli.cli.options import offered
 
 
 @click.command(name="help", cls=Command)
-@click.argument("words", nargs=-1, metavar="[COMMAND]")
+@click.argument("words", nargs=-1, metavar="[COMMAND]", shell_complete=offered("commands"))
 @click.pass_context
 def command(ctx: click.Context, words: tuple[str, ...]) -> None:
     """Explain a command, as `scarid COMMAND --help` does; without a COMMAND, list all.

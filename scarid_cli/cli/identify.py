@@ -27,6 +27,7 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
 @click.option(
     "--forgetting",
     metavar="FACTOR[,NAME=FACTOR...]",
+    shell_complete=options.offered("parameters"),
     help="Forgetting factor of rls per sample, followed by other factors for single parameters.  "
     "[default: 1]",
 )

@@ -25,7 +25,7 @@ REGISTRIES = {
 
 
 @click.command(name="methods")
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=options.offered("methods"))
 @options.common
 def command(name: str | None, **_rest: Any) -> None:
     """List the methods that commands offer, or describe one: source, delay, rule and settings.

@@ -23,12 +23,30 @@ SELECTION = ("from_time", "to_time", "rows", "missing")
 SHARED = (*SELECTION, "output", "format", "no_history", "quiet", "verbose", "debug")
 
 
+def offered(what: str) -> Callable[[click.Context, click.Parameter, str], list[Any]]:
+    """What the shell offers at the Tab key: a function of `completing`, imported only there."""
+
+    def offer(ctx: click.Context, parameter: click.Parameter, incomplete: str) -> list[Any]:
+        from scarid_cli.cli import completing
+
+        items: list[Any] = getattr(completing, what)(ctx, parameter, incomplete)
+        return items
+
+    return offer
+
+
 class Unrecorded(click.Option):
     """An option that changes nothing in the table: the history leaves it out."""
 
 
 class OutputFile(Unrecorded):
     """An option that names a file, or a folder, to write."""
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[Any]:
+        """Files."""
+        from scarid_cli.cli import completing
+
+        return completing.file(ctx, self, incomplete)
 
 
 class InputFile(click.ParamType[str]):
@@ -56,6 +74,15 @@ class InputFile(click.ParamType[str]):
         if path.endswith(self.endings) and path not in self.words:
             require_readable(path, folders=self.folders)
         return str(value)
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[Any]:
+        """Files, and the words and robots that may stand for one."""
+        from scarid_cli.cli import completing
+
+        words = [*self.words[1:], *(completing.robots() if ".toml" in self.endings else ())]
+        return completing.file(ctx, param, incomplete) + completing.matching(words, incomplete)
 
     def file(self, value: str) -> str:
         """The file of a value, without its role."""
@@ -200,7 +227,10 @@ def input_file(
 def settings_of(algorithm: str) -> Callable[[F], F]:
     """The settings of an algorithm that is the same for all joints."""
     text = f"A setting of the {algorithm}; repeatable."
-    return click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help=text)
+    return click.option(
+        "--set", "settings", multiple=True, metavar="NAME=VALUE", help=text,
+        shell_complete=offered("settings"),
+    )  # fmt: skip
 
 
 table_format: Callable[[F], F] = click.option(

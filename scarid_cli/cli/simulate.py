@@ -22,6 +22,7 @@ GAINS = options.Numbers(options.Range(-1e12, 1e12))
     "imperfections",
     multiple=True,
     metavar="NAME=VALUE[,VALUE...]",
+    shell_complete=options.offered("imperfections"),
     help="An imperfection of the robot, its sensors or its log, one value for all joints or one "
     "per joint; repeatable. They are listed below.  [default: those of the description]",
 )

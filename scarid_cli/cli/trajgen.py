@@ -107,6 +107,7 @@ from scarid_cli.cli.options import NUMBERS
     "--for",
     "wanted",
     metavar="NAME,...",
+    shell_complete=options.offered("parameters"),
     help="Optimise the errors of these parameters alone, the others being nuisance parameters.  "
     "Needs --optimise.",
 )

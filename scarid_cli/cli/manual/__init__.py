@@ -1,0 +1,1 @@
+"""The manual: pages of all commands, made of their declarations, as man pages and as Markdown."""
