@@ -29,7 +29,8 @@ class Controller:
     turns and phase of its eccentricity. body, motors, joints,
     couplings, world: the a priori model, as mechanics.py has them. memory (3, joints): last
     readings, velocity estimates and integrals; changed in place. setup (6): period [s], smoothing
-    of the velocity estimate per tick (0: none), kind of control (0: PD or PID, 1: with gravity, 2:
+    of the velocity estimate per tick (0: none; below 0, `memory` has the velocities of a soft
+    sensor), kind of control (0: PD or PID, 1: with gravity, 2:
     computed torque); the rest is that of arm.run.
     """
 
@@ -64,8 +65,9 @@ class Controller:
         """
         n, h, smooth = self.n, float(self.setup[0]), float(self.setup[1])
         for i in range(n):
-            w = (float(reading[i]) - float(self.memory[0, i])) / h
-            self.memory[1, i] = smooth * float(self.memory[1, i]) + (1.0 - smooth) * w
+            if smooth >= 0.0:
+                w = (float(reading[i]) - float(self.memory[0, i])) / h
+                self.memory[1, i] = smooth * float(self.memory[1, i]) + (1.0 - smooth) * w
             self.memory[0, i] = reading[i]
             e = float(reference[k, i]) - float(reading[i])
             rate = float(reference[k, n + i]) - float(self.memory[1, i])

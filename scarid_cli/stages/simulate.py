@@ -10,11 +10,18 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.imperfections.registry import Imperfections
 from scarid_cli.algorithms.imperfections.rows import StandstillAfter, StandstillBefore
-from scarid_cli.algorithms.plants.loop import ClosedLoop, DivergedError, IndefiniteError, LoopState
+from scarid_cli.algorithms.plants.loop import (
+    ClosedLoop,
+    DivergedError,
+    IndefiniteError,
+    LoopLog,
+    LoopState,
+)
 from scarid_cli.algorithms.sensors import building
 from scarid_cli.algorithms.sensors.recorder import Recorder, Rows
 from scarid_cli.algorithms.sensors.standstill import with_standstill
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
+from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, doubles, matrix, motion_fields, number, numbers
@@ -29,13 +36,15 @@ def simulate(
     *,
     truth: bool,
     given: Imperfections | None = None,
+    watch: Followed | None = None,
 ) -> Table:
     """The log, at the log rate [Hz], of a robot that follows a trajectory in closed loop.
 
     The robot starts at rest at the first position of the trajectory. The log has measured signals,
     with the imperfections that are given, and the reference. `truth` adds the true signals; the
     friction torques and the motion of the motors where imperfections of the robot change them; and
-    the time of the truth where that is not the time of the row.
+    the time of the truth where that is not the time of the row. `watch` takes how well the loop
+    follows.
     """
     given = given or Imperfections(len(loop.robot.joints))
     ratio = _whole(loop.control_rate * table.period, "the trajectory's rate")
@@ -48,8 +57,57 @@ def simulate(
     before, after = (
         round(given.one(kind) * loop.control_rate) for kind in (StandstillBefore, StandstillAfter)
     )
-    rows = _rows(with_standstill(references, before, after), loop, recorder)
+    rows = _rows(with_standstill(references, before, after), loop, recorder, watch or Followed())
     return Table(table.name, schema, meta, _batches(rows, schema, len(loop.robot.joints)))
+
+
+class Followed:
+    """How well a loop follows its reference, and how much its torques change from tick to tick."""
+
+    def __init__(self) -> None:
+        self._ticks = 0
+        self._errors: Array | None = None
+        self._changes: Array | None = None
+        self._last: Array | None = None
+        self._sums: Array | None = None
+
+    def take(self, reference: Array, log: LoopLog) -> None:
+        """The reference (joints, ticks) and the log of some ticks."""
+        before = log.command[:, :1] if self._last is None else self._last
+        command = np.column_stack((before, log.command))
+        sums = np.sum((reference - log.q_true) ** 2, axis=1), np.sum(np.diff(command) ** 2, axis=1)
+        self._errors = sums[0] if self._errors is None else self._errors + sums[0]
+        self._changes = sums[1] if self._changes is None else self._changes + sums[1]
+        self._last = command[:, -1:]
+        moments = np.array([reference.sum(axis=1), np.sum(reference**2, axis=1)])
+        self._sums = moments if self._sums is None else self._sums + moments
+        self._ticks += reference.shape[1]
+
+    @property
+    def errors(self) -> Array:
+        """The rms tracking error of each joint [rad or m]."""
+        assert self._errors is not None
+        return np.asarray(np.sqrt(self._errors / self._ticks))
+
+    @property
+    def lost(self) -> bool:
+        """Whether the robot follows worse than it would by resting at the mean of the reference."""
+        assert self._sums is not None
+        mean, square = self._sums / self._ticks
+        return bool(np.sum(self.errors**2) > np.sum(square - mean**2) > 0.0)
+
+    @property
+    def changes(self) -> Array:
+        """The rms change of the commanded torque of each joint from tick to tick [N m or N]."""
+        assert self._changes is not None
+        return np.asarray(np.sqrt(self._changes / self._ticks))
+
+
+def _remedy(loop: ClosedLoop) -> str:
+    """What to do about a loop that is unstable."""
+    if loop.sensors:
+        return "its soft sensor is too slow for the gains: lower these, or give a faster one"
+    return "lower the gains or raise the control rate"
 
 
 def _whole(ratio: float, what: str) -> int:
@@ -94,7 +152,10 @@ def _batches(rows: Iterator[Timed], schema: pa.Schema, joints: int) -> Iterator[
 
 
 def _rows(
-    references: Iterator[tuple[float, Motion]], loop: ClosedLoop, recorder: Recorder
+    references: Iterator[tuple[float, Motion]],
+    loop: ClosedLoop,
+    recorder: Recorder,
+    watch: Followed,
 ) -> Iterator[Timed]:
     state: LoopState | None = None
     recording = recorder.init(loop.seed)
@@ -107,16 +168,18 @@ def _rows(
         except DivergedError as error:
             when = start + error.tick / loop.control_rate
             raise BadData(
-                f"the closed loop became unstable at t = {when:.4g} s; lower the gains or raise "
-                "the control rate"
+                f"the closed loop became unstable at t = {when:.4g} s; {_remedy(loop)}"
             ) from None
         except IndefiniteError:
             raise UsageFault(
                 f"robot {loop.robot.name} cannot be simulated: its inertia matrix is not positive "
                 "definite; give its links and motors inertias (`scarid robot check` shows them)"
             ) from None
+        watch.take(reference[0], log)
         recording, rows = recorder.step(recording, log, reference)
         yield start, rows
+    if loop.sensors and watch.lost:
+        raise BadData(f"the closed loop does not follow its reference; {_remedy(loop)}")
     yield start, recorder.finish(recording)
 
 

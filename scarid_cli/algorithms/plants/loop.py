@@ -7,16 +7,19 @@ begins to slide.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from scarid_cli.algorithms.plants.controllers import KINDS, Law
 from scarid_cli.algorithms.plants.imperfect import at_rest, carrying, imperfect
 from scarid_cli.algorithms.plants.imperfections import PlantImperfections
-from scarid_cli.algorithms.plants.model import Model, model
+from scarid_cli.algorithms.plants.model import DRIVE, Model, model
+from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.sensors.motion import Encoder
 from scarid_cli.algorithms.sensors.noise import GaussMarkov, NoiseState, Source
@@ -34,6 +37,7 @@ class LoopState:
     `motion` (2, positions): positions and velocities of the joints, then of motors behind flexible
     transmissions. `lag` (joints): torques behind the lag of the drives. `memory` (3, joints): last
     readings, velocity estimates and integrals of the controller. `tick`: number of the next tick.
+    `sensing` has the state of the soft sensor of each joint, once it has taken a reading.
     """
 
     motion: Array
@@ -43,6 +47,7 @@ class LoopState:
     position_noise: np.random.Generator
     torque_noise: np.random.Generator
     coloured: NoiseState | None = None
+    sensing: Sequence[Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -88,7 +93,9 @@ class ClosedLoop:
     Rates [Hz], resolution [rad or m], and noise as standard deviations [rad or m, N m or N].
     `eccentricity` has the amplitude [rad or m], turns and phase [rad] of the encoders (see
     `Encoder`), and `coloured` is noise of the positions beside the white one. `apriori` is the
-    robot of the controller's model, by default the simulated one without its imperfections.
+    robot of the controller's model, by default the simulated one without its imperfections. The
+    `sensors` of the joints, causal differentiators, give the controller its velocities (paper eq.
+    29), in place of the smoothed difference of the readings.
     """
 
     robot: Robot
@@ -103,6 +110,7 @@ class ClosedLoop:
     apriori: Robot | None = None
     eccentricity: tuple[Array, Array, Array] | None = None
     coloured: GaussMarkov | None = None
+    sensors: Sequence[Process] | None = None
 
     def __post_init__(self) -> None:
         if not self.control_rate > 0.0 or self.substeps < 1:
@@ -167,7 +175,8 @@ class ClosedLoop:
         pieces = (slice(0, max(begin, 0)), slice(max(begin, 0), ticks))
         for piece, plant in zip(pieces, (self.plant, self._loaded), strict=True):
             if reference[piece].size:
-                state = self._run(state, plant, reference[piece], noise[piece], log[piece])
+                run = self._sensed if self.sensors else self._run
+                state = run(state, plant, reference[piece], noise[piece], log[piece])
         signals = log.reshape(ticks, 9, joints).transpose(1, 2, 0)
         q, command, *truth = signals
         parts = (q, command + torque_noise.T, *truth, command, noise.T, torque_noise.T)
@@ -182,6 +191,32 @@ class ClosedLoop:
     def _loaded(self) -> Model:
         payload = self.imperfections.payload
         return carrying(self.plant, payload) if payload else self.plant
+
+    def _sensed(
+        self, state: LoopState, plant: Model, reference: Array, noise: Array, log: Array
+    ) -> LoopState:
+        """The same tick by tick, with the velocities that the soft sensors make of the readings."""
+        n = len(self.robot.joints)
+        place = plant.joints[:, DRIVE].astype(int) if self.on_motor else np.arange(n)
+        for k in range(len(reference)):
+            tick = slice(k, k + 1)
+            seen = self.encoder.reading(state.motion[0, place][:, None], noise[tick].T)
+            sensing, velocities = self._sense(state, seen)
+            memory = state.memory.copy()
+            memory[1] = velocities
+            state = replace(state, memory=memory, sensing=sensing)
+            state = self._run(state, plant, reference[tick], noise[tick], log[tick])
+        return state
+
+    def _sense(self, state: LoopState, seen: Array) -> tuple[list[Any], list[float]]:
+        """The states of the soft sensors and their velocities after the readings (joints, 1)."""
+        assert self.sensors
+        period = 1.0 / self.control_rate
+        before = state.sensing or [
+            sensor.init(float(x[0]), period) for sensor, x in zip(self.sensors, seen, strict=True)
+        ]
+        done = [s.step(b, x) for s, b, x in zip(self.sensors, before, seen, strict=True)]
+        return [after for after, _ in done], [float(found[0][0]) for _, found in done]
 
     def _run(
         self, state: LoopState, plant: Model, reference: Array, noise: Array, log: Array
@@ -212,6 +247,8 @@ class ClosedLoop:
 
     @property
     def _smoothing(self) -> float:
+        if self.sensors:
+            return -1.0
         cutoff = self.law.velocity_cutoff
         return float(np.exp(-2.0 * np.pi * cutoff / self.control_rate)) if cutoff > 0.0 else 0.0
 

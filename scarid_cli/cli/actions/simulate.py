@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
+from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.sensors import building
+from scarid_cli.cli.configured import configured
 from scarid_cli.cli.imperfections import imperfections as chosen
 from scarid_cli.cli.job import Job, per_joint
+from scarid_cli.errors import UsageFault
 from scarid_cli.stages import simulate as stage
 
 
@@ -22,6 +28,7 @@ def run(
     kp: tuple[float, ...] | None,
     kd: tuple[float, ...] | None,
     ki: tuple[float, ...] | None,
+    soft_sensor: str | None,
     control_rate: float,
     log_rate: float,
     substeps: int,
@@ -44,6 +51,43 @@ def run(
         seed=seed,
         control_rate=control_rate,
         substeps=substeps,
+        sensors=_sensors(soft_sensor, joints) if soft_sensor else None,
         **building.in_the_loop(given, arm.joints, control_rate),
     )
-    job.write(stage.simulate(job.recorded(table), loop, log_rate, truth=truth, given=given))
+    watch = stage.Followed()
+    log = stage.simulate(job.recorded(table), loop, log_rate, truth=truth, given=given, watch=watch)
+    job.write(log)
+    if soft_sensor:
+        job.say(_told(soft_sensor, watch, arm))
+
+
+def _sensors(text: str, joints: int) -> list[Any]:
+    """The soft sensor of each joint, which must need no later rows."""
+    name, *words = text.split(",")
+    if name not in DIFFERENTIATORS.names:
+        choice = ", ".join(DIFFERENTIATORS.names)
+        raise UsageFault(f"--soft-sensor: no method {name!r}; there are {choice}")
+    preset = next((x.removeprefix("preset=") for x in words if x.startswith("preset=")), None)
+    given = tuple(x for x in words if not x.startswith("preset="))
+    methods = configured(joints, method=name, given=given, preset=preset, settings=None)
+    if not methods[0].is_fitted or methods[0].lag(1e-3) > 0:
+        raise UsageFault(
+            f"--soft-sensor: {name} needs later rows, which a controller does not have; give a "
+            "causal method, such as kalman or p2smd"
+        )
+    return methods
+
+
+def _told(sensor: str, watch: stage.Followed, arm: Robot) -> str:
+    """How well the loop follows, and how rough its torques are."""
+    units = [(x.unit, x.torque_unit) for x in arm.joints]
+    parts = [
+        f"joint {i} {error:.2g} {unit} and {change:.2g} {torque}"
+        for i, (error, change, (unit, torque)) in enumerate(
+            zip(watch.errors, watch.changes, units, strict=True), start=1
+        )
+    ]
+    return (
+        f"with {sensor} in the loop, tracking errors and changes of the torque from tick to tick "
+        f"are (rms): {', '.join(parts)}"
+    )
