@@ -10,6 +10,7 @@ from scarid_cli.algorithms.sensors import building
 from scarid_cli.cli.imperfections import imperfections as chosen
 from scarid_cli.cli.job import Job, per_joint
 from scarid_cli.stages import simulate as stage
+from scarid_cli.stages.realtime import Lateness, in_parts, paced
 
 
 def run(
@@ -28,6 +29,7 @@ def run(
     imperfections: tuple[str, ...],
     seed: int,
     truth: bool,
+    realtime: bool,
     **shorthands: tuple[float, ...] | None,
 ) -> None:
     """Write what the simulated sensors measure."""
@@ -46,4 +48,17 @@ def run(
         substeps=substeps,
         **building.in_the_loop(given, arm.joints, control_rate),
     )
-    job.write(stage.simulate(job.recorded(table), loop, log_rate, truth=truth, given=given))
+    reference = job.recorded(table)
+    if not realtime:
+        job.write(stage.simulate(reference, loop, log_rate, truth=truth, given=given))
+        return
+    reference, lateness = in_parts(reference), Lateness()
+    log = stage.simulate(reference, loop, log_rate, truth=truth, given=given)
+    job.write(paced(log, lateness))
+    if lateness.last > 1.0 / log_rate:
+        job.say(
+            f"warning: too slow for real time: the last row came {lateness.last:.3g} s late, the "
+            f"worst one {lateness.worst:.3g} s; lower --control-rate, --substeps or --log-rate"
+        )
+    elif lateness.worst > 1.0 / log_rate:
+        job.say(f"in real time; the worst row came {1e3 * lateness.worst:.3g} ms late")
