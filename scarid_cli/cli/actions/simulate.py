@@ -10,7 +10,7 @@ from scarid_cli.algorithms.sensors import building
 from scarid_cli.cli.imperfections import imperfections as chosen
 from scarid_cli.cli.job import Job, per_joint
 from scarid_cli.stages import simulate as stage
-from scarid_cli.stages.realtime import Lateness, in_parts, paced
+from scarid_cli.stages.realtime import PART, Lateness, in_parts, paced
 
 
 def run(
@@ -55,7 +55,7 @@ def run(
     reference, lateness = in_parts(reference), Lateness()
     log = stage.simulate(reference, loop, log_rate, truth=truth, given=given)
     job.write(paced(log, lateness))
-    if lateness.last > 1.0 / log_rate:
+    if lateness.last > max(PART, 1.0 / log_rate):
         job.say(
             f"warning: too slow for real time: the last row came {lateness.last:.3g} s late, the "
             f"worst one {lateness.worst:.3g} s; lower --control-rate, --substeps or --log-rate"
