@@ -194,6 +194,7 @@ def simulate(
     substeps: Values | None = None,
     log_rate: Values | None = None,
     truth: bool | None = None,
+    realtime: bool | None = None,
     no_history: bool | None = None,
 ) -> Log:
     """Simulate a robot that follows a trajectory in closed loop, and log its sensors.
@@ -203,6 +204,7 @@ def simulate(
       scarid simulate --with torque-delay=0.002 --with lost-rows=0.001 reference.csv
       scarid simulate --kp 6.5,155 --kd 5,25 reference.csv   # the gains printed in the paper
       scarid trajgen --robot arm.urdf --ddq-max 5 | scarid simulate --control pd-gravity
+      scarid trajgen --seed 1 --duration 2 | scarid simulate --realtime | scarid differentiate
 
     The robot has the a priori parameters of its description and starts at rest at the first
     position of the trajectory. With e = q_ref - q, the controllers are (paper eq. 29, its sign
@@ -235,6 +237,7 @@ def simulate(
         substeps: Runge-Kutta steps per period of the controller.
         log_rate: Rows of the log per second [Hz].
         truth: Add the true q, dq, ddq and tau as columns q1_true, ...
+        realtime: Write each row when its time has come, as the robot would.
         no_history: Write no history into the metadata.
     """
 

@@ -30,6 +30,7 @@ COMMANDS = {
     "methods": "List the methods that commands offer, or describe one.",
     "robot": "Check a robot description.",
     "convert": "Convert between table formats, or turn a recorded log into a table.",
+    "listen": "Take rows that a robot sends to a port.",
     "tee": "Write a table to a file, and pass it on.",
     "info": "Describe a table: kind, columns, units, sampling, history.",
     "completion": "Print the completion script of a shell.",

@@ -134,7 +134,7 @@ def _require_input(context: click.Context) -> None:
     files = [p for p in context.command.params if isinstance(p.type, InputFile) and _is_read(p)]
     values = [context.params[parameter.name or ""] for parameter in files]
     listed = [value if isinstance(value, tuple) else (value,) for value in values]
-    if "format" in context.params and not files:
+    if "place" in context.params:
         return  # tee, which has no other input
     if any("-" in several or not several for several in listed):
         return

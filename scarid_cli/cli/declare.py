@@ -14,7 +14,7 @@ from scarid_cli.cli.headings import Command
 from scarid_cli.cli.options import SHARED
 
 # Commands that spend no time in kernels, and are as quick without a C compiler.
-WITHOUT_KERNELS = ("compare", "convert", "info", "plot", "report", "tee")
+WITHOUT_KERNELS = ("compare", "convert", "info", "listen", "plot", "report", "tee")
 READABLE = ("identify", "validate", "tune")  # whose tables a person reads on a terminal
 
 

@@ -94,6 +94,12 @@ GAINS = options.Numbers(options.Range(-1e12, 1e12))
 @click.option(
     "--truth", is_flag=True, help="Add the true q, dq, ddq and tau as columns q1_true, ..."
 )
+@click.option(
+    "--realtime",
+    cls=options.Unrecorded,
+    is_flag=True,
+    help="Write each row when its time has come, as the robot would.",
+)
 @options.table_output
 @options.common
 def command() -> None:
@@ -106,6 +112,7 @@ def command() -> None:
       scarid simulate --kp 6.5,155 --kd 5,25 reference.csv   # the gains printed in the paper
       scarid trajgen --seed 1 | scarid simulate --soft-sensor p2smd,gamma0=250,gamma1=200
       scarid trajgen --robot arm.urdf --ddq-max 5 | scarid simulate --control pd-gravity
+      scarid trajgen --seed 1 --duration 2 | scarid simulate --realtime | scarid differentiate
 
     The robot has the a priori parameters of its description and starts at rest at the first
     position of the trajectory. With e = q_ref - q, the controllers are (paper eq. 29, its sign

@@ -16,7 +16,7 @@ import os
 import select
 import signal
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from types import FrameType
 
 GRACE = 1.0  # s: for what is on its way, where the writer does not end by itself
@@ -71,20 +71,34 @@ class Stop:
 
     def readable(self, fd: int) -> bool:
         """Wait until there is something to read, or the end of it; False once the input is over."""
-        if self._wakes is None:
-            self._wakes = os.pipe()
-            for end in self._wakes:
-                os.set_blocking(end, False)
+        waker = self._waker()
         poll = select.poll()
         poll.register(fd, select.POLLIN)
-        poll.register(self._wakes[0], select.POLLIN)
+        poll.register(waker, select.POLLIN)
         while not self.over:
             found = dict(poll.poll(1e3 * TICK if self.number else None))
             if fd in found:
                 return True
             if found:
-                os.read(self._wakes[0], 64)
+                os.read(waker, 64)
         return False
+
+    def wait(self, seconds: float | None, fds: Sequence[int] = ()) -> list[int]:
+        """Those of the descriptors that can be read, after so long [s] at most; None: for ever.
+
+        A signal ends the wait: what can be read then has been on its way.
+        """
+        waker = self._waker()
+        limit = 0.0 if self.number else seconds
+        return [fd for fd in select.select([*fds, waker], [], [], limit)[0] if fd != waker]
+
+    def _waker(self) -> int:
+        """The descriptor that a signal makes readable."""
+        if self._wakes is None:
+            self._wakes = os.pipe()
+            for end in self._wakes:
+                os.set_blocking(end, False)
+        return self._wakes[0]
 
     @property
     def over(self) -> bool:

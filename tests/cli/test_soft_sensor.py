@@ -8,7 +8,7 @@ import pytest
 from conftest import Result
 
 Run = Callable[..., Result]
-TRAJECTORY = "scarid trajgen -q --seed 1 --duration 4"
+TRAJECTORY = "scarid trajgen -q --seed 1"
 
 
 def test_how_well_the_loop_follows_is_told(shell: Run) -> None:
@@ -32,7 +32,9 @@ def test_how_well_the_loop_follows_is_told(shell: Run) -> None:
 def test_what_cannot_close_the_loop_is_refused(
     shell: Run, sensor: str, status: int, words: str
 ) -> None:
-    done = shell(f"{TRAJECTORY} | scarid simulate -q --soft-sensor {sensor} -o log.parquet")
+    done = shell(
+        f"{TRAJECTORY} | scarid simulate -q --control computed-torque --soft-sensor {sensor} -o log.parquet"
+    )
     assert done.status == status
     assert words in done.err
     assert done.err.count("\n") == 1

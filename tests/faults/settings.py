@@ -21,10 +21,11 @@ INPUTS = {
     "gains": ("par.parquet", "--parameters", "par.parquet", "--mass", "1"),
     "report": ("par.parquet",),
     "trajgen": (),
+    "listen": ("--port", "5998", "--idle", "0.01"),
 }
 COMMANDS = ("trajgen", "simulate", "resample", "check", "filter", "tune", "differentiate",
             "identify", "validate", "compare", "payload", "gains", "export", "report", "plot", "convert",
-            "info")  # fmt: skip
+            "listen", "info")  # fmt: skip
 ENVIRONMENTS = (
     {"SCARID_FORMAT": "x"}, {"SCARID_FORMAT": ""}, {"SCARID_ROBOT": "x"}, {"SCARID_ROBOT": ""},
     {"SCARID_MAX_BATCH": "x"}, {"SCARID_MAX_BATCH": "0"}, {"SCARID_MAX_BATCH": "1"},

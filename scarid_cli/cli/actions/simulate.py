@@ -16,6 +16,7 @@ from scarid_cli.cli.imperfections import imperfections as chosen
 from scarid_cli.cli.job import Job, per_joint
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import simulate as stage
+from scarid_cli.stages.realtime import PART, Lateness, in_parts, paced
 
 
 def run(
@@ -35,6 +36,7 @@ def run(
     imperfections: tuple[str, ...],
     seed: int,
     truth: bool,
+    realtime: bool,
     **shorthands: tuple[float, ...] | None,
 ) -> None:
     """Write what the simulated sensors measure."""
@@ -54,11 +56,26 @@ def run(
         sensors=_sensors(soft_sensor, joints) if soft_sensor else None,
         **building.in_the_loop(given, arm.joints, control_rate),
     )
-    watch = stage.Followed()
-    log = stage.simulate(job.recorded(table), loop, log_rate, truth=truth, given=given, watch=watch)
-    job.write(log)
+    reference, watch, lateness = job.recorded(table), stage.Followed(), Lateness()
+    if realtime:
+        reference = in_parts(reference)
+    log = stage.simulate(reference, loop, log_rate, truth=truth, given=given, watch=watch)
+    job.write(paced(log, lateness) if realtime else log)
     if soft_sensor:
         job.say(_told(soft_sensor, watch, arm))
+    if realtime:
+        _tell_of_lateness(job, lateness, 1.0 / log_rate)
+
+
+def _tell_of_lateness(job: Job, lateness: Lateness, interval: float) -> None:
+    """Report rows that came late, by more than the interval [s] between them."""
+    if lateness.last > max(PART, interval):
+        job.say(
+            f"warning: too slow for real time: the last row came {lateness.last:.3g} s late, the "
+            f"worst one {lateness.worst:.3g} s; lower --control-rate, --substeps or --log-rate"
+        )
+    elif lateness.worst > interval:
+        job.say(f"in real time; the worst row came {1e3 * lateness.worst:.3g} ms late")
 
 
 def _sensors(text: str, joints: int) -> list[Any]:

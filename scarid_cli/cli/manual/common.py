@@ -21,7 +21,8 @@ def _has(name: str) -> Condition:
 
 
 def _reads(command: click.Command) -> bool:
-    return any(isinstance(parameter.type, InputFile) for parameter in command.params)
+    files = any(isinstance(parameter.type, InputFile) for parameter in command.params)
+    return files or _has("port")(command)
 
 
 def _takes_robot(command: click.Command) -> bool:
