@@ -190,6 +190,7 @@ def simulate(
     kp: Values | None = None,
     kd: Values | None = None,
     ki: Values | None = None,
+    soft_sensor: Values | None = None,
     control_rate: Values | None = None,
     substeps: Values | None = None,
     log_rate: Values | None = None,
@@ -203,6 +204,7 @@ def simulate(
       scarid simulate --encoder-bits 13 --truth reference.parquet > log.csv
       scarid simulate --with torque-delay=0.002 --with lost-rows=0.001 reference.csv
       scarid simulate --kp 6.5,155 --kd 5,25 reference.csv   # the gains printed in the paper
+      scarid trajgen --seed 1 | scarid simulate --soft-sensor p2smd,gamma0=250,gamma1=200
       scarid trajgen --robot arm.urdf --ddq-max 5 | scarid simulate --control pd-gravity
       scarid trajgen --seed 1 --duration 2 | scarid simulate --realtime | scarid differentiate
 
@@ -215,7 +217,8 @@ def simulate(
       pd-gravity       the torque of pid, plus gravity g(q)
       computed-torque  tau = M(q) (ddq_ref + Kp e + Kd de/dt + Ki integral(e)) + h(q, dq) + friction
 
-    where dq is the differentiated and smoothed reading of the encoder, and gravity, M, h (gravity,
+    where dq is the differentiated and smoothed reading of the encoder, or that of --soft-sensor;
+    gravity, M, h (gravity,
     centrifugal and Coriolis torques) and the friction at dq_ref are those of the description. Gains
     that the description does not give are found from --bandwidth: two equal poles for the typical
     inertia of each joint. Coulomb friction holds joints at rest. The motion is integrated by the
@@ -233,6 +236,7 @@ def simulate(
         kp: Proportional gains. [default: see --bandwidth]
         kd: Derivative gains. [default: see --bandwidth]
         ki: Integral gains. [default: the robot's; else from --bandwidth for pid, and 0]
+        soft_sensor: Close the loop with the velocities of a causal method of `differentiate`, row by row, as in paper eq. 29. How well the loop follows is reported. `preset=NAME` names a preset. [default: the smoothed difference of the readings]
         control_rate: Control rate [Hz].
         substeps: Runge-Kutta steps per period of the controller.
         log_rate: Rows of the log per second [Hz].
