@@ -33,7 +33,8 @@ def test_what_cannot_close_the_loop_is_refused(
     shell: Run, sensor: str, status: int, words: str
 ) -> None:
     done = shell(
-        f"{TRAJECTORY} | scarid simulate -q --control computed-torque --soft-sensor {sensor} -o log.parquet"
+        f"{TRAJECTORY} | scarid simulate -q --control computed-torque --soft-sensor {sensor}"
+        " -o log.parquet"
     )
     assert done.status == status
     assert words in done.err

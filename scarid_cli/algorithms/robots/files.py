@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import re
 import stat
+from collections.abc import Callable
+from functools import cache, wraps
 from pathlib import Path
+from typing import Any, TypeVar
 
 from scarid_cli.errors import OutputFailure, UsageFault
 
+T = TypeVar("T")
 LARGEST = 16_000_000  # bytes: the largest public URDFs have half a megabyte
 DEEPEST = 32  # parts of a dotted TOML key: a table for each takes time and memory that grow faster
 PART = r"""["'A-Za-z_][\w"'-]*"""
@@ -37,3 +42,28 @@ def require_shallow(text: str) -> None:
     if found := KEY.search(text):
         line = text.count("\n", 0, found.start()) + 1
         raise ValueError(f"line {line}: a key of more than {DEEPEST} parts")
+
+
+def of_file(function: Callable[..., T]) -> Callable[..., T]:
+    """Keep what the function makes of a file (its first argument) and of its other arguments.
+
+    A file that has changed, or another one of that name after a change of folder, is read anew.
+    """
+
+    @cache
+    def kept(_stamp: tuple[object, ...], *arguments: Any) -> T:
+        return function(*arguments)
+
+    @wraps(function)
+    def found(path: str, *arguments: Any) -> T:
+        return kept(_stamp(path), path, *arguments)
+
+    return found
+
+
+def _stamp(path: str) -> tuple[object, ...]:
+    try:
+        status = os.stat(path)  # noqa: PTH116 (asked for at each use)
+    except OSError:
+        return (os.path.abspath(path),)  # noqa: PTH100 (likewise)
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from math import inf
 from typing import Any
 from xml.etree import ElementTree
@@ -18,6 +18,7 @@ import numpy as np
 from scarid_cli.algorithms.robots import newton_euler
 from scarid_cli.algorithms.robots.axes import LOST, Chain, named, serial
 from scarid_cli.algorithms.robots.capsules import Capsule, capsules_of
+from scarid_cli.algorithms.robots.files import of_file
 from scarid_cli.algorithms.robots.following import Following
 from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.robots.pose import Points, Pose
@@ -33,7 +34,7 @@ Posture = tuple[tuple[str, float], ...]  # joints that are no axes, and their po
 GRAVITY = (0.0, 0.0, -9.81)  # m/s2
 
 
-@cache
+@of_file
 def _chain(path: str, wanted: tuple[str, ...]) -> Chain:
     """The axes: the joints of some names, or else those of the serial arm."""
     tree = read(path, wanted)
@@ -53,7 +54,7 @@ def _chain(path: str, wanted: tuple[str, ...]) -> Chain:
     return chain
 
 
-@cache
+@of_file
 def _model(path: str, gravity: tuple[float, ...], wanted: tuple[str, ...], posture: Posture) -> Any:
     """Pinocchio's model of the axes and of the joints that follow them.
 

@@ -7,12 +7,11 @@ import os
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 from xml.etree import ElementTree
 
 from scarid_cli.algorithms.robots import values
-from scarid_cli.algorithms.robots.files import text_of
+from scarid_cli.algorithms.robots.files import of_file, text_of
 from scarid_cli.algorithms.robots.sound import require_tree, without_impossible
 from scarid_cli.errors import UsageFault
 
@@ -40,7 +39,7 @@ class Tree:
     doubts: tuple[str, ...] = ()
 
 
-@cache
+@of_file
 def read(path: str, wanted: tuple[str, ...] = ()) -> Tree:
     """The URDF in a file; joints other than the `wanted` ones may be of any type."""
     try:
