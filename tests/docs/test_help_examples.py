@@ -21,7 +21,6 @@ from pyarrow import parquet
 from scipy.io import savemat
 
 from scarid_cli.__main__ import main
-from scarid_cli.algorithms.robots import rigid, tree
 from scarid_cli.cli import COMMANDS, scarid
 from scarid_cli.errors import WARNED
 
@@ -87,8 +86,6 @@ def expanded(words: list[str]) -> list[str]:
 
 def called(words: list[str], stdin: int, stdout: int) -> int:
     """The status of scarid in this process, with these descriptors as its input and output."""
-    for known in (tree.read, rigid._chain, rigid._model):
-        known.cache_clear()  # of files with the same names in other folders
     kept = os.dup(0), os.dup(1)
     os.dup2(stdin, 0)
     os.dup2(stdout, 1)

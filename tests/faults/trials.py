@@ -70,7 +70,6 @@ def ended(trial: Trial) -> Ended:
 
 def _child(trial: Trial, error: int) -> None:
     from scarid_cli.__main__ import main
-    from scarid_cli.algorithms.robots import rigid, tree
 
     status = 1
     try:
@@ -83,8 +82,6 @@ def _child(trial: Trial, error: int) -> None:
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.alarm(SECONDS)
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        for known in (tree.read, rigid._chain, rigid._model):
-            known.cache_clear()  # of files with the same names in other folders
         trial.before()
         warnings.simplefilter("ignore")  # as the installed command does
         status = main(list(trial.words))

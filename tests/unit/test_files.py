@@ -30,6 +30,10 @@ def test_it_is_read_once_until_the_file_changes(
     assert text("file", 3) == "bbb"
     Path("file").write_text("other")
     assert text("file", 2) == "otherother"
+    Path("file").unlink()
+    assert text("file", 2) == "otherother"  # the robot is in use
+    with pytest.raises(FileNotFoundError):
+        text("none", 2)
 
 
 def test_a_urdf_that_was_edited_is_another_robot(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from scarid_cli.errors import OutputFailure, UsageFault
 
 T = TypeVar("T")
 LARGEST = 16_000_000  # bytes: the largest public URDFs have half a megabyte
+LAST: dict[str, tuple[object, ...]] = {}  # what was last seen at each path: _stamp
 DEEPEST = 32  # parts of a dotted TOML key: a table for each takes time and memory that grow faster
 PART = r"""["'A-Za-z_][\w"'-]*"""
 KEY = re.compile(rf"{PART}(?:\s*\.\s*{PART}){{{DEEPEST},}}")
@@ -48,6 +49,7 @@ def of_file(function: Callable[..., T]) -> Callable[..., T]:
     """Keep what the function makes of a file (its first argument) and of its other arguments.
 
     A file that has changed, or another one of that name after a change of folder, is read anew.
+    One that has gone since is what it was: the robot is in use.
     """
 
     @cache
@@ -62,8 +64,10 @@ def of_file(function: Callable[..., T]) -> Callable[..., T]:
 
 
 def _stamp(path: str) -> tuple[object, ...]:
+    place = os.path.abspath(path)  # noqa: PTH100 (asked for at each use)
     try:
-        status = os.stat(path)  # noqa: PTH116 (asked for at each use)
+        status = os.stat(path)  # noqa: PTH116 (likewise)
     except OSError:
-        return (os.path.abspath(path),)  # noqa: PTH100 (likewise)
-    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+        return LAST.get(place, (place,))
+    LAST[place] = status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+    return LAST[place]
