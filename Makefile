@@ -43,7 +43,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -139,6 +139,9 @@ bench-mixtures: $(VENV)/tested
 bench-known-load: $(VENV)/tested
 	cd benchmarks && ../$(BIN)/python known_load.py
 	cd benchmarks && ../$(BIN)/python known_load.py --free
+
+bench-loop: $(VENV)/tested
+	cd benchmarks && ../$(BIN)/python in_the_loop.py
 
 bench-coarse: $(VENV)/tested
 	cd benchmarks && ../$(BIN)/python coarse.py

@@ -18,7 +18,17 @@ import scarid
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.stages.simulate import SIGNALS
 
-SENSORS = ("ed-fir", "2smd", "astd", "p2smd", "kalman")
+TABLE1 = ",preset=table1"  # of the paper
+SENSORS = (
+    "ed-fir",
+    "2smd",
+    f"2smd{TABLE1}",
+    "astd",
+    f"astd{TABLE1}",
+    "p2smd",
+    f"p2smd{TABLE1}",
+    "kalman",
+)
 ROBOT = load("scara2")
 
 
@@ -34,7 +44,8 @@ def torque_error(found: scarid.Judged, log: scarid.Log) -> float:
 
 def row(sensor: str, seeds: int) -> list[float]:
     """Tracking errors [mrad], changes of the torques [N m], errors online and offline [%]."""
-    found = []
+    method, _, preset = sensor.partition(",preset=")
+    found: list[list[float]] = []
     for seed in range(1, seeds + 1):
         reference = scarid.trajgen(seed=seed, robot="scara2")
         try:
@@ -46,7 +57,9 @@ def row(sensor: str, seeds: int) -> list[float]:
             continue
         said = log.messages[-1].split("(rms): ")[1].replace(",", "").split()
         numbers = [float(x) for x in said if x[0].isdigit()]  # joint, error, change; twice
-        online = scarid.identify(scarid.differentiate(log, method=sensor), robot="scara2")
+        online = scarid.identify(
+            scarid.differentiate(log, method=method, preset=preset or None), robot="scara2"
+        )
         offline = scarid.identify(log, robot="scara2")
         errors = [torque_error(one, log) for one in (online, offline)]
         found.append([1e3 * numbers[1], 1e3 * numbers[4], numbers[2], numbers[5], *errors])
