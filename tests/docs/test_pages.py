@@ -49,7 +49,7 @@ def test_the_documentation_names_every_choice(kind: str, name: str) -> None:
 
 
 def test_the_page_on_the_simulator_has_a_row_for_every_imperfection_with_its_unit() -> None:
-    page = (ROOT / "docs" / "simulator.md").read_text("utf-8")
+    page = (ROOT / "docs" / "simulator.md").read_text("utf-8").split("\n## Imperfections\n")[1]
     rows = re.findall(r"^\| `([a-z-]+)` \| ([^|]*?) ?\|", page, flags=re.MULTILINE)
     assert sorted(rows) == sorted((name, kind.unit()) for name, kind in IMPERFECTIONS.items())
 
