@@ -42,15 +42,19 @@ class Known:
     """What a parameter table says about the log that it was identified from.
 
     `evidence` is that log's, None if the table does not have it; `errors` (parameters) are the
-    standard errors of the estimates, nan where there are none. `torques` (joints) are half the
-    95 % intervals of the predicted torques, relative to the torques, 0 where they are not known,
-    and `sizes` (joints) the root mean squares of the torques, nan where they are not known.
+    standard errors of the estimates, nan where there are none, and `covariance` (parameters,
+    parameters) has what they have in common, None if it is not known. `torques` (joints) are half
+    the 95 % intervals of the predicted torques, relative to the torques, 0 where they are not
+    known, and `sizes` (joints) the root mean squares of the torques, nan where they are not known,
+    as `residuals` (joints), those of the estimates relative to the torques.
     """
 
     evidence: LogEvidence | None
     errors: Array
     torques: Array | float = 0.0
     sizes: Array | float = np.nan
+    residuals: Array | float = np.nan
+    covariance: Array | None = None
 
     def ratios(self, now: LogEvidence, powers: Array) -> Array | None:
         """The residuals of a log, divided by those at identification (joints), if these are known.
@@ -64,11 +68,24 @@ class Known:
             ratios = np.nan_to_num(now.deviations / self.evidence.deviations, posinf=1.0)
             return np.asarray(ratios * np.fmin(self.sizes / np.sqrt(powers), 1.0))
 
-    @property
-    def fitted(self) -> Array | float:
-        """The residuals at identification, relative to the torques (joints); nan if not known."""
+    def fitted(self, powers: Array) -> Array:
+        """The residuals at identification, relative to the torques (joints); nan if not known.
+
+        Relative to those then, or to those now, of mean squares `powers`, whichever is larger.
+        """
         with np.errstate(divide="ignore", invalid="ignore"):
-            return self.evidence.deviations / self.sizes if self.evidence else np.nan
+            return np.asarray(self.residuals * np.fmax(self.sizes / np.sqrt(powers), 1.0))
+
+    def allowed(self, sums: Products) -> Array:
+        """Half the 95 % intervals of the torques of a log, relative to these (joints).
+
+        They are those that the errors of the parameters give on its motion.
+        """
+        if self.covariance is None or self.evidence is None:
+            return np.zeros(len(sums.powers))
+        count = sums.values.shape[2] - 1 - len(self.covariance)
+        wide = np.pad(self.covariance, (0, count))
+        return quantile(0.975, self.evidence.blocks - 1.0) * sums.torque_shares(wide)
 
     @property
     def remark(self) -> str:
@@ -113,13 +130,26 @@ def known(table: Table, robot: Robot, errors: Array) -> Known:
         np.zeros((stored["blocks"], len(kept))),
         np.pad(biases, ((0, 0), (0, len(kept) - len(names)))),
     )
-    return Known(found, errors, _torques(table, joints, found.blocks), _sizes(table, joints))
+    return Known(
+        found,
+        errors,
+        _torques(table, joints, found.blocks),
+        _of_joints(table, joints, "torque"),
+        0.01 * _of_joints(table, joints, "relative_error"),
+        _covariance(table, len(names)),
+    )
 
 
-def _sizes(table: Table, joints: int) -> Array | float:
-    """The root mean square of the torque of each joint (joints), nan where it is not known."""
-    sizes = np.array([x.get("torque") for x in table.meta.extra.get("joints", [])], np.float64)
-    return sizes if len(sizes) == joints else np.nan
+def _covariance(table: Table, parameters: int) -> Array | None:
+    """That of the estimates (parameters, parameters), if the table has it for all of them."""
+    found = np.array(table.meta.extra.get("covariance", []), np.float64)
+    return found if found.shape == (parameters, parameters) else None
+
+
+def _of_joints(table: Table, joints: int, fact: str) -> Array:
+    """A fact of each joint (joints), nan where it is not known."""
+    found = np.array([x.get(fact) for x in table.meta.extra.get("joints", [])], np.float64)
+    return found if len(found) == joints else np.full(joints, np.nan)
 
 
 def _torques(table: Table, joints: int, blocks: int) -> Array:
@@ -152,7 +182,8 @@ def verdict(
     values = dict(zip(robot.names, theta.tolist(), strict=True))
     found = change(first, sums, possible)
     slight = _slight(found, sums, first, now, before)
-    judged = of_change(found, values, ratios, residuals, before.fitted, slight)
+    expected = before.fitted(sums.powers), before.allowed(sums)
+    judged = of_change(found, values, ratios, residuals, expected, slight)
     as_before = judged.grade == UNCHANGED and ratios is not None
     return judged if as_before else _with_times(judged, rows, theta, times)
 

@@ -11,7 +11,9 @@ from math import isfinite
 from typing import Any
 
 from scarid_cli import __version__
+from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.io.table import Table
+from scarid_cli.stages.parameters import EVIDENCE
 
 Row = dict[str, Any]
 Document = dict[str, Any]
@@ -36,6 +38,7 @@ def identification(table: Table, estimator: str) -> Document:
                 {
                     "joint": number,
                     **{name: joint.get(key) for name, key in OF_A_JOINT.items()},
+                    **{name: _half(joint.get(key), extra) for name, key in INTERVALS.items()},
                 }
                 for number, joint in enumerate(extra.get("joints", ()), start=1)
             ],
@@ -47,9 +50,15 @@ def identification(table: Table, estimator: str) -> Document:
 OF_A_JOINT = {
     "r2": "r2",
     "relative_error": "relative_error",
-    "torque_half_interval": "torque_error",
-    "inertia_half_interval": "inertia_error",
 }
+# Those with standard errors in the metadata.
+INTERVALS = {"torque_half_interval": "torque_error", "inertia_half_interval": "inertia_error"}
+
+
+def _half(error: float | None, extra: dict[str, Any]) -> float | None:
+    """Half the 95 % interval, of a standard error in the metadata."""
+    blocks = (extra.get(EVIDENCE) or {}).get("blocks")
+    return None if error is None or not blocks else quantile(0.975, blocks - 1.0) * error
 
 
 def validation(table: Table) -> Document:

@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from scarid_cli.algorithms.changes.columns import TILTS, Columns
-from scarid_cli.algorithms.regression.normal_equations import roots, solved
+from scarid_cli.algorithms.regression.normal_equations import inverse, roots, solved
 from scarid_cli.algorithms.regression.rows import Rows, curvature, delay_column
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
@@ -115,9 +115,9 @@ class Products:
             squares = np.einsum("i,jik,k->j", along, whole, along)
             variances = np.maximum(squares / self.counts, least)
         scores = np.einsum("jbik,k->jbi", self.values[:, :, :-1, [*first, columns]], along)
-        grams = np.tensordot(1.0 / variances, alone[:, :, :-1, :-1], 1)
-        scores[:, :, first] = _without_leverage(scores[:, :, first], grams)
-        weights = 1.0 / (variances * _inflations(scores[:, :, first], whole, variances))
+        grams = alone[:, :, :-1, :-1] / variances[:, None, None, None]
+        weights = 1.0 / (variances * _inflations(scores[:, :, first], grams, variances))
+        scores[:, :, first] = _without_leverage(scores[:, :, first], grams.sum(axis=0))
         total = np.tensordot(weights, self.values.sum(axis=1), 1)
         return LogEvidence(
             information=total[:-1, :-1],
@@ -143,30 +143,35 @@ class Products:
 def _without_leverage(scores: Array, grams: Array) -> Array:
     """The scores of each joint and block, as large as if the fit had not made them small.
 
-    Each is divided by one minus the leverage of its block ("CR3"; Bell and McCaffrey 2002), which
-    counts as at most MOST_LEVERAGE. `grams` (blocks, columns, columns) are W'W of each block.
+    Each is divided by the root of one minus the leverage of its block ("CR2", unbiased for white
+    noise; Bell and McCaffrey 2002), which counts as at most MOST_LEVERAGE. `grams` (blocks, columns, columns) are W'W of each block.
     """
     to, back = roots(grams.sum(axis=0))
     larger = np.empty_like(scores)
     for b, gram in enumerate(grams):
         leverage, along = np.linalg.eigh(to.T @ gram @ to)
-        factors = 1.0 / (1.0 - leverage.clip(0.0, MOST_LEVERAGE)) - 1.0
+        factors = 1.0 / np.sqrt(1.0 - leverage.clip(0.0, MOST_LEVERAGE)) - 1.0
         extra = scores[:, b] @ to @ along
         larger[:, b] = scores[:, b] + (extra * factors) @ along.T @ back.T
     return larger
 
 
-def _inflations(scores: Array, whole: Array, variances: Array) -> Array:
+def _inflations(scores: Array, grams: Array, variances: Array) -> Array:
     """By how much autocorrelation increases the variance of the scores of each joint (joints).
 
-    It is the mean over the columns, and at least 1.
+    The squares of the scores (joints, blocks, columns) of blocks are compared with those that white
+    noise leaves behind the fit of all joints: with G of a block and joint among the `grams`, and N
+    the sum of all, G - G N^-1 G. So a short log, whose every block the fit follows, is not taken
+    for a noisy one. The mean is over the columns, which count by their information; at least 1.
     """
-    joints, blocks, _ = scores.shape
-    squares = (scores**2).sum(axis=1) * blocks / max(blocks - 1, 1)
-    white = variances[:, None] * np.diagonal(whole, axis1=1, axis2=2)[:, :-1]
-    there = white > 1e-12 * white.max(axis=1, keepdims=True)
-    ratios = [np.mean(squares[j][there[j]] / white[j][there[j]]) for j in range(joints)]
-    return np.maximum(ratios, 1.0)
+    sizes = np.einsum("jbkk->jk", grams)
+    spent = np.einsum("jbik,kl,jbli->ji", grams, inverse(grams.sum(axis=(0, 1))), grams)
+    there = sizes > 1e-12 * sizes.max(axis=1, keepdims=True)
+    parts = np.divide(1.0, sizes, out=np.zeros_like(sizes), where=there)
+    squares = (scores**2).sum(axis=1) / variances[:, None] ** 2
+    white = np.sum((sizes - spent) * parts, axis=1)
+    found = np.sum(squares * parts, axis=1) / np.maximum(white, TINY)
+    return np.asarray(np.maximum(found, 1.0))
 
 
 def _further(rows: Rows, theta: Array, model: Model | None) -> Array:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,7 +26,6 @@ from scarid_cli.interval import plus_minus
 SHOWN = 4  # amounts that a message names at most
 CLEAR = 3.0  # errors: a smaller amount is not named
 NOISIER = 2.0  # times the residual at identification
-LOST = 0.45  # of a torque that varies about 0: an error with which R2 is 0.8
 
 UNCHANGED, CHANGED, UNEXPLAINED = "unchanged", "changed", "unexplained"
 LARGER = "larger than at the identification"
@@ -69,16 +67,17 @@ def of_change(
     values: dict[str, float],
     ratios: Array | None,
     residuals: Array,
-    fitted: Array | float = np.nan,
+    expected: tuple[Array, Array],
     slight: float | None = None,
 ) -> Verdict:
     """The verdict of the tests.
 
-    `values` are the parameters at identification; `ratios` (joints) the deviations of the residual,
-    divided by those at identification, if these are known, `residuals` (joints) its rms, relative
-    to that of the torques, and `fitted` (joints) the same at identification, nan if not known. A
-    change of the torques by this part is `slight`, because it is within the intervals of the
-    identification.
+    `values` are the parameters at identification; `ratios` (joints) the deviations of the residual
+    behind all that may have changed, divided by those at identification, if these are known, and
+    `residuals` (joints) the rms of the residual, relative to that of the torques. `expected` are
+    (joints) those at identification, and what the intervals of the parameters add to them on this
+    motion. A change of the torques by this part is `slight`, because it is within the intervals of
+    the identification.
     """
     noisy = [] if ratios is None else np.flatnonzero(ratios > NOISIER).tolist()
     noise = "; ".join(f"joint {j + 1} {ratios[j]:.2g} times" for j in noisy if ratios is not None)
@@ -87,15 +86,9 @@ def of_change(
         tests = f"{change.tests} tests find no change (smallest p-value {change.p_value:.2g})"
         if ratios is None:
             return Verdict(UNCHANGED, f"{tests}; residual {percents_of_joints(residuals)}", facts)
-        lost = np.flatnonzero(residuals > np.maximum(NOISIER * fitted, LOST)).tolist()
-        if lost and not noise:
-            why = "but the parameters are known too little to say why"
-            reason = f"{_lost(lost, residuals)}, {why}: {tests}"
-            return Verdict(UNEXPLAINED, reason, facts)
         if not noise:
-            return Verdict(
-                UNCHANGED, f"the residuals are those of the identification; {tests}", facts
-            )
+            as_stated, reason = _as_stated(residuals, *expected)
+            return Verdict(UNCHANGED if as_stated else UNEXPLAINED, f"{reason}; {tests}", facts)
         reason = f"the residuals are {LARGER} ({noise}), but {tests}: {DISTURBED}"
         return Verdict(UNEXPLAINED, reason, facts)
     found = " and ".join(map(_sentence_of(values), change.explanations))
@@ -114,12 +107,24 @@ def of_change(
     return Verdict(UNEXPLAINED, reason + (best if found else ""), facts)
 
 
-def _lost(joints: Sequence[int], residuals: Array) -> str:
-    """That the parameters do not predict the torques of these joints (from 0)."""
-    sizes = percents(residuals[list(joints)])
-    return (
-        f"the torque of {joints_named(j + 1 for j in joints)} is predicted with an error of {sizes}"
-    )
+def _as_stated(residuals: Array, fitted: Array, allowed: Array) -> tuple[bool, str]:
+    """Whether the residuals are as large as the identification lets expect, and how large.
+
+    All are relative to the torques (joints): the residuals now and at the identification, and half
+    the intervals of the torques that the parameters give on this motion.
+    """
+    far = np.flatnonzero(residuals > NOISIER * np.hypot(fitted, allowed)).tolist()
+    more = np.flatnonzero(residuals > NOISIER * fitted).tolist()
+    if far:
+        return False, (
+            f"the residual of {joints_named(j + 1 for j in far)} is {percents(residuals[far])} of "
+            f"the torque, but {percents(fitted[far])} at the identification, to which the "
+            f"intervals of the parameters add {percents(allowed[far])}"
+        )
+    reason = f"residual {percents_of_joints(residuals)} ({percents(fitted)} at the identification)"
+    if more:
+        reason += f", to which the intervals of the parameters add {percents_of_joints(allowed)}"
+    return True, reason
 
 
 def _facts(change: Change, ratios: Array | None) -> dict[str, Any]:
