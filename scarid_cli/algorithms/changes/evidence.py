@@ -144,7 +144,8 @@ def _without_leverage(scores: Array, grams: Array) -> Array:
     """The scores of each joint and block, as large as if the fit had not made them small.
 
     Each is divided by the root of one minus the leverage of its block ("CR2", unbiased for white
-    noise; Bell and McCaffrey 2002), which counts as at most MOST_LEVERAGE. `grams` (blocks, columns, columns) are W'W of each block.
+    noise; Bell and McCaffrey 2002), which counts as at most MOST_LEVERAGE. `grams` (blocks,
+    columns, columns) are W'W of each block.
     """
     to, back = roots(grams.sum(axis=0))
     larger = np.empty_like(scores)
