@@ -217,12 +217,12 @@ def simulate(
       pd-gravity       the torque of pid, plus gravity g(q)
       computed-torque  tau = M(q) (ddq_ref + Kp e + Kd de/dt + Ki integral(e)) + h(q, dq) + friction
 
-    where dq is the differentiated and smoothed reading of the encoder, or that of --soft-sensor;
-    gravity, M, h (gravity,
-    centrifugal and Coriolis torques) and the friction at dq_ref are those of the description. Gains
-    that the description does not give are found from --bandwidth: two equal poles for the typical
-    inertia of each joint. Coulomb friction holds joints at rest. The motion is integrated by the
-    Runge-Kutta method of fourth order, whose steps end where a joint stops or begins to slide.
+    where dq is the differentiated and smoothed reading of the encoder, or that of --soft-sensor.
+    Gravity, M, h (gravity, centrifugal and Coriolis torques) and the friction at dq_ref are those
+    of the description. Gains that the description does not give are found from --bandwidth: two
+    equal poles for the typical inertia of each joint. Coulomb friction holds joints at rest. The
+    motion is integrated by the Runge-Kutta method of fourth order, whose steps end where a joint
+    stops or begins to slide.
 
     Options:
         robot: The robot: scara2, emps, planar2-gravity, or a .toml or .urdf file. [default: the robot named in the table's metadata, else $SCARID_ROBOT, else scara2]

@@ -24,13 +24,13 @@ def numbers(text: str, option: str) -> list[float]:
 
 
 def settings(
-    texts: Iterable[str], known: list[str], owner: str
+    texts: Iterable[str], known: list[str], owner: str, option: str = "--set"
 ) -> Iterator[tuple[str, list[float]]]:
     """From every `--set NAME=VALUE[,VALUE...]`: the name and the values of a known setting."""
     for text in texts:
-        name, value = pair(text, "--set")
-        require_known(known, name, owner, f"--set {text}: ")
-        yield name, numbers(value, f"--set {text}")
+        name, value = pair(text, option)
+        require_known(known, name, owner, f"{option} {text}: ")
+        yield name, numbers(value, f"{option} {text}")
 
 
 def single_settings(texts: Iterable[str], known: list[str], owner: str) -> dict[str, float]:

@@ -124,10 +124,10 @@ def command() -> None:
       pd-gravity       the torque of pid, plus gravity g(q)
       computed-torque  tau = M(q) (ddq_ref + Kp e + Kd de/dt + Ki integral(e)) + h(q, dq) + friction
 
-    where dq is the differentiated and smoothed reading of the encoder, or that of --soft-sensor;
-    gravity, M, h (gravity,
-    centrifugal and Coriolis torques) and the friction at dq_ref are those of the description. Gains
-    that the description does not give are found from --bandwidth: two equal poles for the typical
-    inertia of each joint. Coulomb friction holds joints at rest. The motion is integrated by the
-    Runge-Kutta method of fourth order, whose steps end where a joint stops or begins to slide.
+    where dq is the differentiated and smoothed reading of the encoder, or that of --soft-sensor.
+    Gravity, M, h (gravity, centrifugal and Coriolis torques) and the friction at dq_ref are those
+    of the description. Gains that the description does not give are found from --bandwidth: two
+    equal poles for the typical inertia of each joint. Coulomb friction holds joints at rest. The
+    motion is integrated by the Runge-Kutta method of fourth order, whose steps end where a joint
+    stops or begins to slide.
     """

@@ -26,12 +26,11 @@ class Controller:
     """A controller with its a priori model.
 
     gains (joints, 8): Kp, Kd, Ki, torque limit; resolution of the encoder, and the amplitude,
-    turns and phase of its eccentricity. body, motors, joints,
-    couplings, world: the a priori model, as mechanics.py has them. memory (3, joints): last
-    readings, velocity estimates and integrals; changed in place. setup (6): period [s], smoothing
-    of the velocity estimate per tick (0: none; below 0, `memory` has the velocities of a soft
-    sensor), kind of control (0: PD or PID, 1: with gravity, 2:
-    computed torque); the rest is that of arm.run.
+    turns and phase of its eccentricity. body, motors, joints, couplings, world: the a priori
+    model, as mechanics.py has them. memory (3, joints): last readings, velocity estimates and
+    integrals; changed in place. setup (6): period [s], smoothing of the velocity estimate per tick
+    (0: none; below 0: `memory` has the velocities of a soft sensor), kind of control (0: PD or
+    PID, 1: with gravity, 2: computed torque); the rest is that of arm.run.
     """
 
     def __init__(self, gains, body, motors, joints, couplings, world, memory, setup):

@@ -154,9 +154,9 @@ def _of_joints(table: Table, joints: int, fact: str) -> Array:
 
 def _torques(table: Table, joints: int, blocks: int) -> Array:
     """Half the 95 % intervals of the predicted torques, relative to the torques (joints)."""
-    stated = [x.get("torque_error") for x in table.meta.extra.get("joints", [])]
-    known = len(stated) == joints and None not in stated
-    return quantile(0.975, blocks - 1.0) * np.array(stated if known else [0.0] * joints)
+    stated = _of_joints(table, joints, "torque_error")
+    known = np.isfinite(stated).all()
+    return quantile(0.975, blocks - 1.0) * (stated if known else np.zeros(joints))
 
 
 def verdict(

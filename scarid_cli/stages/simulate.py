@@ -44,7 +44,7 @@ def simulate(
     with the imperfections that are given, and the reference. `truth` adds the true signals; the
     friction torques and the motion of the motors where imperfections of the robot change them; and
     the time of the truth where that is not the time of the row. `watch` takes how well the loop
-    follows.
+    follows. With soft sensors in it, a loop that does not is refused at its end.
     """
     given = given or Imperfections(len(loop.robot.joints))
     ratio = _whole(loop.control_rate * table.period, "the trajectory's rate")
@@ -57,50 +57,44 @@ def simulate(
     before, after = (
         round(given.one(kind) * loop.control_rate) for kind in (StandstillBefore, StandstillAfter)
     )
-    rows = _rows(with_standstill(references, before, after), loop, recorder, watch or Followed())
+    if loop.sensors and watch is None:
+        watch = Followed(len(loop.robot.joints))
+    rows = _rows(with_standstill(references, before, after), loop, recorder, watch)
     return Table(table.name, schema, meta, _batches(rows, schema, len(loop.robot.joints)))
 
 
 class Followed:
     """How well a loop follows its reference, and how much its torques change from tick to tick."""
 
-    def __init__(self) -> None:
+    def __init__(self, joints: int) -> None:
         self._ticks = 0
-        self._errors: Array | None = None
-        self._changes: Array | None = None
-        self._last: Array | None = None
-        self._sums: Array | None = None
+        self._last: Array | None = None  # the last command (joints, 1)
+        self._sums = np.zeros((4, joints))
 
     def take(self, reference: Array, log: LoopLog) -> None:
         """The reference (joints, ticks) and the log of some ticks."""
         before = log.command[:, :1] if self._last is None else self._last
-        command = np.column_stack((before, log.command))
-        sums = np.sum((reference - log.q_true) ** 2, axis=1), np.sum(np.diff(command) ** 2, axis=1)
-        self._errors = sums[0] if self._errors is None else self._errors + sums[0]
-        self._changes = sums[1] if self._changes is None else self._changes + sums[1]
-        self._last = command[:, -1:]
-        moments = np.array([reference.sum(axis=1), np.sum(reference**2, axis=1)])
-        self._sums = moments if self._sums is None else self._sums + moments
+        self._last = log.command[:, -1:]
+        changes = np.diff(log.command, prepend=before)
+        parts = ((reference - log.q_true) ** 2, changes**2, reference, reference**2)
+        self._sums += [part.sum(axis=1) for part in parts]
         self._ticks += reference.shape[1]
 
     @property
     def errors(self) -> Array:
         """The rms tracking error of each joint [rad or m]."""
-        assert self._errors is not None
-        return np.asarray(np.sqrt(self._errors / self._ticks))
-
-    @property
-    def lost(self) -> bool:
-        """Whether the robot follows worse than it would by resting at the mean of the reference."""
-        assert self._sums is not None
-        mean, square = self._sums / self._ticks
-        return bool(np.sum(self.errors**2) > np.sum(square - mean**2) > 0.0)
+        return np.asarray(np.sqrt(self._sums[0] / self._ticks))
 
     @property
     def changes(self) -> Array:
         """The rms change of the commanded torque of each joint from tick to tick [N m or N]."""
-        assert self._changes is not None
-        return np.asarray(np.sqrt(self._changes / self._ticks))
+        return np.asarray(np.sqrt(self._sums[1] / self._ticks))
+
+    @property
+    def lost(self) -> bool:
+        """Whether the robot follows worse than it would by resting at the mean of the reference."""
+        mean, square = self._sums[2:] / self._ticks
+        return bool(np.sum(self.errors**2) > np.sum(square - mean**2) > 0.0)
 
 
 def _remedy(loop: ClosedLoop) -> str:
@@ -155,7 +149,7 @@ def _rows(
     references: Iterator[tuple[float, Motion]],
     loop: ClosedLoop,
     recorder: Recorder,
-    watch: Followed,
+    watch: Followed | None,
 ) -> Iterator[Timed]:
     state: LoopState | None = None
     recording = recorder.init(loop.seed)
@@ -175,10 +169,11 @@ def _rows(
                 f"robot {loop.robot.name} cannot be simulated: its inertia matrix is not positive "
                 "definite; give its links and motors inertias (`scarid robot check` shows them)"
             ) from None
-        watch.take(reference[0], log)
+        if watch:
+            watch.take(reference[0], log)
         recording, rows = recorder.step(recording, log, reference)
         yield start, rows
-    if loop.sensors and watch.lost:
+    if loop.sensors and watch and watch.lost:
         raise BadData(f"the closed loop does not follow its reference; {_remedy(loop)}")
     yield start, recorder.finish(recording)
 

@@ -58,6 +58,10 @@ def test_the_document_of_identify_has_the_values_of_the_table(made: Path, scarid
     for row in found["parameters"]:
         assert row["half_interval"] == pytest.approx(0.5 * (row["high"] - row["low"]))
     assert [joint["joint"] for joint in found["joints"]] == [1, 2]
+    for key, words in (("torque", "model torque within"), ("inertia", "inertia within")):
+        parts = (100.0 * joint[f"{key}_half_interval"] for joint in found["joints"])
+        told = ", ".join(f"joint {i} {part:.2g} %" for i, part in enumerate(parts, start=1))
+        assert f"{words} {told}" in found["reasons"][0]
     alone = scarid("identify", "--json", "before.csv")
     assert document(alone.out) == found
 

@@ -305,6 +305,19 @@ def test_validate_takes_a_log_with_the_bandwidth_of_the_identification(shell: Ru
     assert line.split(" | ")[0] == of_identify
 
 
+def test_a_change_is_found_beside_a_short_log(shell: Run) -> None:
+    """The sample has five seconds, whose every block the fit follows."""
+    shell("scarid identify $SAMPLES/scara2.csv -o p.parquet")
+    found = shell(
+        "scarid trajgen -q --seed 5 | scarid simulate -q --seed 5"
+        " --with torque-constant-error=0.1,0 -o log.parquet &&"
+        " scarid validate --parameters p.parquet log.parquet"
+    )
+    assert found.status == 0, found.err
+    (gain,) = re.findall(r"changed: motor constant of joint 1 \(torques \+(\S+) \+-", found.err)
+    assert float(gain) == pytest.approx(10.0, abs=1.0)
+
+
 @pytest.mark.parametrize("parameters", ["p.parquet", "p.csv"])
 def test_validate_names_the_time_at_which_the_robot_was_pushed(
     parameters: str, shell: Run, tmp_path: Path

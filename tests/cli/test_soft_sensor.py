@@ -24,8 +24,9 @@ def test_how_well_the_loop_follows_is_told(shell: Run) -> None:
     [
         ("rts", 2, "rts needs later rows, which a controller does not have; give a causal"),
         ("nope", 2, "no method 'nope'; there are 2smd, "),
-        ("p2smd,gamma=3", 2, "gamma"),
-        ("p2smd,preset=no", 2, "no preset 'no'"),
+        ("p2smd,gamma=3", 2, "--soft-sensor gamma=3: p2smd has no setting 'gamma'"),
+        ("p2smd,preset=no", 2, "--soft-sensor: p2smd has no preset 'no'"),
+        (",p2smd", 2, "--soft-sensor: no method ''"),
         ("2smd", 65, "the closed loop does not follow its reference; its soft sensor is too slow"),
     ],
 )

@@ -81,6 +81,7 @@ def test_a_log_is_compared_with_all_tables_together(scarid: Run, logs: list[Path
     first, second, other = (folder / "p.parquet" for folder in logs)
     _, same, _ = validated(scarid, logs[0], first, second)
     assert same["verdict"] == "unchanged"
+    assert "nan" not in same["reason"]
     _, changed, _ = validated(scarid, logs[2], first, second)
     assert changed["verdict"] == "changed"
     assert "joint 2" in changed["reason"]

@@ -110,9 +110,13 @@ def of_change(
 def _as_stated(residuals: Array, fitted: Array, allowed: Array) -> tuple[bool, str]:
     """Whether the residuals are as large as the identification lets expect, and how large.
 
-    All are relative to the torques (joints): the residuals now and at the identification, and half
-    the intervals of the torques that the parameters give on this motion.
+    All are relative to the torques (joints): the residuals now and at the identification, nan where
+    they are not known, and half the intervals of the torques that the parameters give on this
+    motion.
     """
+    now = f"residual {percents_of_joints(residuals)}"
+    if np.isnan(fitted).any():
+        return True, now
     far = np.flatnonzero(residuals > NOISIER * np.hypot(fitted, allowed)).tolist()
     more = np.flatnonzero(residuals > NOISIER * fitted).tolist()
     if far:
@@ -121,7 +125,7 @@ def _as_stated(residuals: Array, fitted: Array, allowed: Array) -> tuple[bool, s
             f"the torque, but {percents(fitted[far])} at the identification, to which the "
             f"intervals of the parameters add {percents(allowed[far])}"
         )
-    reason = f"residual {percents_of_joints(residuals)} ({percents(fitted)} at the identification)"
+    reason = f"{now} ({percents(fitted)} at the identification)"
     if more:
         reason += f", to which the intervals of the parameters add {percents_of_joints(allowed)}"
     return True, reason

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.algorithms.robots.description import Robot
@@ -53,15 +52,16 @@ def run(
         seed=seed,
         control_rate=control_rate,
         substeps=substeps,
-        sensors=_sensors(soft_sensor, joints) if soft_sensor else None,
+        sensors=None if soft_sensor is None else _sensors(soft_sensor, joints),
         **building.in_the_loop(given, arm.joints, control_rate),
     )
-    reference, watch, lateness = job.recorded(table), stage.Followed(), Lateness()
+    watch = stage.Followed(joints) if loop.sensors else None
+    reference, lateness = job.recorded(table), Lateness()
     if realtime:
         reference = in_parts(reference)
     log = stage.simulate(reference, loop, log_rate, truth=truth, given=given, watch=watch)
     job.write(paced(log, lateness) if realtime else log)
-    if soft_sensor:
+    if watch and soft_sensor:
         job.say(_told(soft_sensor, watch, arm))
     if realtime:
         _tell_of_lateness(job, lateness, 1.0 / log_rate)
@@ -81,12 +81,11 @@ def _tell_of_lateness(job: Job, lateness: Lateness, interval: float) -> None:
 def _sensors(text: str, joints: int) -> list[Any]:
     """The soft sensor of each joint, which must need no later rows."""
     name, *words = text.split(",")
-    if name not in DIFFERENTIATORS.names:
-        choice = ", ".join(DIFFERENTIATORS.names)
-        raise UsageFault(f"--soft-sensor: no method {name!r}; there are {choice}")
     preset = next((x.removeprefix("preset=") for x in words if x.startswith("preset=")), None)
     given = tuple(x for x in words if not x.startswith("preset="))
-    methods = configured(joints, method=name, given=given, preset=preset, settings=None)
+    methods = configured(
+        joints, method=name, given=given, preset=preset, settings=None, option="--soft-sensor"
+    )
     if not methods[0].is_fitted or methods[0].lag(1e-3) > 0:
         raise UsageFault(
             f"--soft-sensor: {name} needs later rows, which a controller does not have; give a "
