@@ -555,6 +555,9 @@ def validate(
     smooth_sign: Values | None = None,
     require: Literal['unchanged'] | None = None,
     predictions: Values | None = None,
+    residual: Values | None = None,
+    false_alarms: Values | None = None,
+    observer: Values | None = None,
     no_history: bool | None = None,
 ) -> Judged:
     """Measure how well identified parameters predict the torques of a log.
@@ -562,6 +565,7 @@ def validate(
       scarid validate --parameters parameters.parquet log.csv
       scarid validate --parameters p.parquet --predictions torques.parquet motion.parquet
       scarid validate --parameters may.parquet --parameters june.parquet july.csv
+      scarid validate --parameters p.parquet --residual - -o metrics.csv motion.parquet
 
     The velocities and accelerations of a measurement (a log that has none) are estimated with the
     bandwidth of the identification, as far as the parameters state it, and the pipe that gives the
@@ -583,6 +587,11 @@ def validate(
     counts as `unchanged`. Parameters in a CSV file lack what
     the tests of delay and offsets need: write them as Parquet or Arrow.
 
+    The band of --residual has two parts, whose squares add up: half the 95 % interval of the
+    predicted torque at that row, and the level that the largest residuals of the identification's
+    log, half a second each, pass as rarely as --false-alarms says. Rows that are left out, as near
+    a reversal, are not judged. In a pipe, rows are written as they arrive.
+
     Options:
         parameters: The parameter table that `scarid identify` wrote, or `apriori` for the a priori values (CAD) of the robot's description; repeatable: several are pooled.
         robot: The robot: scara2, emps, planar2-gravity, or a .toml or .urdf file. [default: the robot named in the table's metadata, else $SCARID_ROBOT, else scara2]
@@ -598,6 +607,9 @@ def validate(
         smooth_sign: Model Coulomb friction by tanh(dq / V) instead of sign(dq) [rad/s or m/s].
         require: Exit with status 3 if the verdict is another one, or if there is none; the table is written all the same.
         predictions: Write the measured and the predicted torques.
+        residual: Write the residual torque of each row, the band that it stays in, and the joint that is beyond it: a contact.
+        false_alarms: How often in an hour of motion --residual may call a contact by chance.
+        observer: Let --residual take the residual of a momentum observer of this bandwidth, which needs no accelerations. [default: that of the torques]
         no_history: Write no history into the metadata.
     """
 

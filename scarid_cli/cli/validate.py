@@ -34,6 +34,26 @@ from scarid_cli.cli.headings import DATA, OUTPUT, heading
 )
 @options.as_json
 @options.side_output("--predictions", help="Write the measured and the predicted torques.")
+@options.side_output(
+    "--residual",
+    help="Write the residual torque of each row, the band that it stays in, and the joint that is "
+    "beyond it: a contact.",
+)
+@click.option(
+    "--false-alarms",
+    type=options.NUMBER,
+    metavar="RATE",
+    default=1.0,
+    show_default=True,
+    help="How often in an hour of motion --residual may call a contact by chance.",
+)
+@click.option(
+    "--observer",
+    type=options.NUMBER,
+    metavar="HZ",
+    help="Let --residual take the residual of a momentum observer of this bandwidth, which needs "
+    "no accelerations.  [default: that of the torques]",
+)
 @options.table_output
 @options.common
 def command() -> None:
@@ -43,6 +63,7 @@ def command() -> None:
       scarid validate --parameters parameters.parquet log.csv
       scarid validate --parameters p.parquet --predictions torques.parquet motion.parquet
       scarid validate --parameters may.parquet --parameters june.parquet july.csv
+      scarid validate --parameters p.parquet --residual - -o metrics.csv motion.parquet
 
     The velocities and accelerations of a measurement (a log that has none) are estimated with the
     bandwidth of the identification, as far as the parameters state it, and the pipe that gives the
@@ -63,4 +84,9 @@ def command() -> None:
     the torques within the intervals that the identification states, and within 10 %, is named, but
     counts as `unchanged`. Parameters in a CSV file lack what
     the tests of delay and offsets need: write them as Parquet or Arrow.
+
+    The band of --residual has two parts, whose squares add up: half the 95 % interval of the
+    predicted torque at that row, and the level that the largest residuals of the identification's
+    log, half a second each, pass as rarely as --false-alarms says. Rows that are left out, as near
+    a reversal, are not judged. In a pipe, rows are written as they arrive.
     """

@@ -113,6 +113,7 @@ KINDS = (
     "trials",
     "published",
     "prediction",
+    "residual",
     "motion",
     "measurement",
     "trajectory",

@@ -56,6 +56,7 @@ USES = {
     "payload": ("`payload`", "you"),
     "gains": ("`gains`", "`identify --gains`"),
     "prediction": ("`validate --predictions`", "`report`"),
+    "residual": ("`validate --residual`", "`plot`"),
     "published": ("you", "`report --published`"),
     "fleet": ("`make batch`", "`report --fleet`"),
     "estimates": ("`make batch`", "`report --fleet`"),

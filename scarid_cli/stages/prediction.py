@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 
 import numpy as np
@@ -20,6 +20,7 @@ from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.rows import treated
 
 Part = tuple[pa.RecordBatch | None, Rows]
+Predicted = tuple[pa.RecordBatch | None, Rows, list[Array]]
 
 
 def predicted(
@@ -27,15 +28,22 @@ def predicted(
     models: Sequence[Identified],
     treatment: Treatment,
     left_out: LeftOut | None = None,
-) -> Iterator[tuple[pa.RecordBatch | None, Rows, list[Array]]]:
+) -> Iterator[Predicted]:
     """Each part of a motion, with the torques (joints, samples) that each model predicts.
 
     All models have the same robot and the same delay, by which the predicted torques lead.
     `left_out` counts the rows that are left out.
     """
-    delay, low_pass = models[0].delay, models[0].low_pass
     parts = treated(table, models[0].robot, treatment, left_out=left_out)
-    needed = reach(delay, table.period, low_pass=low_pass)
+    return of_parts(parts, models, table.period)
+
+
+def of_parts(
+    parts: Iterable[Part], models: Sequence[Identified], period: float
+) -> Iterator[Predicted]:
+    """The same of parts whose samples are `period` [s] apart."""
+    delay, low_pass = models[0].delay, models[0].low_pass
+    needed = reach(delay, period, low_pass=low_pass)
     for (batch, rows), around, own in _with_context(parts, needed):
         torques = [model.torques(around) for model in models]
         if delay:
@@ -43,7 +51,7 @@ def predicted(
         yield batch, rows, [np.ascontiguousarray(tau[:, own]) for tau in torques]
 
 
-def _with_context(parts: Iterator[Part], needed: int) -> Iterator[tuple[Part, Rows, slice]]:
+def _with_context(parts: Iterable[Part], needed: int) -> Iterator[tuple[Part, Rows, slice]]:
     """Each part, its rows with up to `needed` samples before and after, and the slice of its own.
 
     A part is returned once so many samples after it have been read.

@@ -20,7 +20,9 @@ from scarid_cli.io.table import Table, number, numbers, segment_field, table_of,
 from scarid_cli.stages import Sink
 from scarid_cli.stages.changes import Known, verdict
 from scarid_cli.stages.parameters import Identified
-from scarid_cli.stages.prediction import added, predicted
+from scarid_cli.stages.prediction import added, of_parts
+from scarid_cli.stages.residual import Residuals
+from scarid_cli.stages.rows import treated
 from scarid_cli.stages.times import Times
 
 
@@ -30,13 +32,15 @@ def validate(
     *,
     treatment: Treatment | None = None,
     predictions: Sink | None = None,
+    residuals: Residuals | None = None,
     before: Known | None = None,
     failed: Callable[[], Sequence[str]] = tuple,
 ) -> Table:
     """The metrics of the torques that identified parameters predict for a motion, a row per joint.
 
     The predicted torques lead the motion by the delay that was fitted with the parameters.
-    `predictions` receives the measured and predicted torques of every sample (Fig. 7-8). With
+    `predictions` receives the measured and predicted torques of every sample (Fig. 7-8), and
+    `residuals` their differences, or those of a momentum observer. With
     `before`, what is known of the log of the identification, the metadata say whether the robot
     has changed since then. What `failed` among the checks of the log, told at its end, is then the
     likelier cause.
@@ -51,7 +55,10 @@ def validate(
     treatment, left_out = treatment or Treatment(), LeftOut()
     times = Times(table, 0)
     watched = times.watched(table)
-    for batch, rows, (torques,) in predicted(watched, [model], treatment, left_out):
+    parts = treated(watched, robot, treatment, left_out=left_out)
+    if residuals:
+        parts = residuals.watched(parts, model, table)
+    for batch, rows, (torques,) in of_parts(parts, [model], table.period):
         sums = added(sums, rows, torques)
         if before:
             subsample = subsample.add(rows)
@@ -63,12 +70,14 @@ def validate(
         extra["delay"] = model.delay
     qualities = [Quality.of(joint) for joint in sums]
     if before:
-        residuals = np.array([quality.relative_error / 100.0 for quality in qualities])
+        relative = np.array([quality.relative_error / 100.0 for quality in qualities])
         rows = left_out.settled(subsample.rows())
-        judged = verdict(rows, model, before, residuals, times)
+        judged = verdict(rows, model, before, relative, times)
         if causes := failed():
             judged = replace(judged, grade=UNEXPLAINED, reason="; ".join(causes))
         extra["change"] = judged.extra
+    if residuals:
+        extra |= residuals.extra
     return _metrics(table, robot, qualities, extra)
 
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.arrays import Array, Marks, Numbers, varies
+from scarid_cli.algorithms.statistics.peaks import peaks_of
+from scarid_cli.arrays import Array, Marks, varies
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,8 @@ class JointResidual:
     `r2` is that of paper eq. 36. `deviation` (the root-mean-square residual) and `torque` (the
     root-mean-square torque) are in N m or N; `relative_error` is 100 |rho| / |tau| [%]. The
     `autocorrelation` from one sample to the next and the excess `kurtosis` are 0 for white normal
-    noise.
+    noise. `peak` and `peak_scale` [N m or N] are the mode and the scale of its largest values in
+    half a second (peaks.py).
     """
 
     rows: int
@@ -28,6 +30,8 @@ class JointResidual:
     autocorrelation: float
     kurtosis: float
     torque: float
+    peak: float = float("nan")
+    peak_scale: float = float("nan")
 
 
 def residuals(
@@ -39,7 +43,7 @@ def residuals(
     """
     left = rows.y - rows.W @ estimates
     joints = [
-        _joint(rows.y[:, j], left[:, j], rows.scales[:, j] > 0.0, rows.at)
+        _joint(rows.y[:, j], left[:, j], rows.scales[:, j] > 0.0, rows)
         for j in range(rows.y.shape[1])
     ]
     if record is None:
@@ -66,8 +70,8 @@ def _over_all_rows(joint: JointResidual, products: Array, estimates: Array) -> J
     )
 
 
-def _joint(y: Array, residual: Array, counts: Marks, at: Numbers) -> JointResidual:
-    y, r, at = y[counts], residual[counts], at[counts]
+def _joint(y: Array, residual: Array, counts: Marks, rows: Rows) -> JointResidual:
+    y, r, at = y[counts], residual[counts], rows.at[counts]
     nan = float("nan")
     if len(y) < 2:
         return JointResidual(len(y), nan, nan, nan, nan, nan, nan)
@@ -75,6 +79,7 @@ def _joint(y: Array, residual: Array, counts: Marks, at: Numbers) -> JointResidu
     squares = float(r @ r)
     next_to = np.diff(at) == 1
     spread = float(np.std(r))
+    peaks = peaks_of(r, at, rows.h)
     with np.errstate(divide="ignore", invalid="ignore"):
         return JointResidual(
             rows=len(y),
@@ -84,4 +89,6 @@ def _joint(y: Array, residual: Array, counts: Marks, at: Numbers) -> JointResidu
             autocorrelation=float(np.sum((r[1:] * r[:-1])[next_to]) / squares) if squares else 0.0,
             kurtosis=float(np.mean(((r - r.mean()) / spread) ** 4) - 3.0) if spread else 0.0,
             torque=float(np.sqrt(np.mean(y * y))),
+            peak=peaks.mode,
+            peak_scale=peaks.scale,
         )

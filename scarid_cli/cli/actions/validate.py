@@ -10,6 +10,7 @@ from typing import Any
 import pyarrow as pa
 
 from scarid_cli.algorithms.checks.finding import FAILED
+from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
@@ -34,6 +35,7 @@ from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.parameters import Identified, apriori, identified
 from scarid_cli.stages.pooling import Entry, pooled_identifications
 from scarid_cli.stages.reach import Reach
+from scarid_cli.stages.residual import Residuals, band_of, in_words
 
 APRIORI = "apriori"  # a word for the values of the description
 
@@ -45,15 +47,19 @@ def run(
     parameters: tuple[str, ...],
     robot: str | None,
     predictions: str | None,
+    residual: str | None,
+    false_alarms: float,
+    observer: float | None,
     require: str | None,
     as_json: bool,
     **given: Any,
 ) -> int:
     """Write the quality of the predicted torques; returns the exit status."""
     treatment = treatment_of(given)
-    if treatment.holds and predictions:
-        raise UsageFault("--predictions needs every row and cannot be combined with --decimate")
-    side = job.side_table(predictions)
+    _require_rows(treatment, predictions=predictions, residual=residual)
+    if observer and not residual:
+        raise UsageFault("--observer belongs to --residual FILE, which was not given")
+    side, beside = job.side_table(predictions), job.side_table(residual)
     tables = [job.read(file, "parameters") for file in parameters if file != APRIORI]
     stated = robot or (stated_robot(tables[0]) if tables else None)
     logs, arm = read_logs(job, files, stated, partial(read, job), skip=given["skip"])
@@ -71,11 +77,17 @@ def run(
     table, treatment = prepared.motion, prepared.chosen.treatment
     model, before = pooled_identifications([_stored(table, arm) for table in tables])
     reach = Reach(len(arm.joints))
+    residuals = (
+        Residuals(band_of(tables, before, model.robot, false_alarms), model.robot, beside, observer)
+        if beside
+        else None
+    )
     result = stage.validate(
         job.recorded(reach.watched(table)),
         model,
         treatment=treatment,
         predictions=side,
+        residuals=residuals,
         before=before if before.testable else None,
         failed=lambda: _failed(reach, arm, table),
     )
@@ -89,7 +101,16 @@ def run(
         for text in _failed(reach, arm, table):
             job.say(f"warning: {text}")
     _tell(job, model, before, result.meta.extra)
+    if residuals:
+        job.say(in_words(residuals, false_alarms, result.meta.extra.get("change")))
     return _status(job, require, result.meta.extra)
+
+
+def _require_rows(treatment: Treatment, **outputs: str | None) -> None:
+    """Refuse outputs of every row where rows are decimated."""
+    for name, output in outputs.items():
+        if output and treatment.holds:
+            raise UsageFault(f"--{name} needs every row and cannot be combined with --decimate")
 
 
 def _gains(tables: Sequence[Table]) -> list[float]:

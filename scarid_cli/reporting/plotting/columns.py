@@ -14,7 +14,7 @@ from scarid_cli.errors import bad_data
 from scarid_cli.io.table import SEGMENT, Table
 from scarid_cli.printable import printable
 
-SIGNAL = re.compile(r"(d{0,2}q|tau)([1-9]\d*)(?:_(ref|true|meas|cmd|pred))?\Z")
+SIGNAL = re.compile(r"(d{0,2}q|tau)([1-9]\d*)(?:_(ref|true|meas|cmd|pred|residual|band))?\Z")
 ORDER = ("q", "dq", "ddq", "tau")
 # What a kind of table is for; the other columns are drawn by --columns.
 SHOWN = {"measurement": ("q", "tau"), "motion": ("dq", "ddq"), "prediction": ("tau",)}
