@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from arms import URDFS, described
 
 import scarid
 
@@ -83,7 +84,7 @@ def found(table: pa.Table) -> tuple[float, list[float]]:
     return float(np.mean([len(x) > 0 for x in after])), [float(x[0]) for x in after if len(x)]
 
 
-def row(robot: str, condition: str, seeds: range, *observer: float) -> str:
+def row(name: str, robot: str, condition: str, seeds: range, *observer: float) -> str:
     count, shares, times = 0, {size: [] for size in SIZES}, []
     for seed in seeds:
         known = scarid.identify(log(robot, 1000 + seed, 20.0, *CONDITIONS[condition]), robot=robot)
@@ -98,22 +99,25 @@ def row(robot: str, condition: str, seeds: range, *observer: float) -> str:
     told = " | ".join(f"{np.mean(share):.0%}" for share in shares.values())
     late = f"{1e3 * np.median(times):.0f} ms" if times else "-"
     how = f"observer {observer[0]:g} Hz" if observer else "torques"
-    return f"| {robot} | {condition} | {how} | {count / hours:.0f} | {told} | {late} |"
+    return f"| {name} | {condition} | {how} | {count / hours:.0f} | {told} | {late} |"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=10)
-    parser.add_argument("--robots", default="scara2,planar2-gravity,samples/arm.toml")
+    parser.add_argument("--robots", default="scara2,planar2-gravity,ur10")
     parser.add_argument("--conditions", default=",".join(CONDITIONS))
     given = parser.parse_args()
     heads = " | ".join(f"{size:g} times" for size in SIZES)
     print(f"| robot | condition | residual | alarms in an hour, {RATE:g} asked | {heads} | after |")
     print("|---|---|---|---|---|---|---|---|")
-    for robot in given.robots.split(","):
-        for condition in given.conditions.split(","):
-            print(row(robot, condition, range(given.seeds)), flush=True)
-        print(row(robot, "clean", range(given.seeds), 10.0), flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for name in given.robots.split(","):
+            urdf = URDFS / f"{name}.urdf"
+            robot = str(described(urdf, Path(folder))) if urdf.exists() else name
+            for condition in given.conditions.split(","):
+                print(row(name, robot, condition, range(given.seeds)), flush=True)
+            print(row(name, robot, "clean", range(given.seeds), 10.0), flush=True)
 
 
 if __name__ == "__main__":

@@ -554,6 +554,7 @@ def validate(
     bandwidth: Values | None = None,
     smooth_sign: Values | None = None,
     require: Literal['unchanged'] | None = None,
+    rollout: Values | None = None,
     predictions: Values | None = None,
     residual: Values | None = None,
     false_alarms: Values | None = None,
@@ -606,6 +607,7 @@ def validate(
         bandwidth: Bandwidth of the motion. [default: that in the metadata, which differentiate --match writes and CSV cannot hold]
         smooth_sign: Model Coulomb friction by tanh(dq / V) instead of sign(dq) [rad/s or m/s].
         require: Exit with status 3 if the verdict is another one, or if there is none; the table is written all the same.
+        rollout: Also simulate: from measured states, the model moves by the measured torques for so long, and its positions are compared with the measured ones.
         predictions: Write the measured and the predicted torques.
         residual: Write the residual torque of each row, the band that it stays in, and the joint that is beyond it: a contact.
         false_alarms: How often in an hour of motion --residual may call a contact by chance.

@@ -32,6 +32,13 @@ from scarid_cli.cli.headings import DATA, OUTPUT, heading
     help="Exit with status 3 if the verdict is another one, or if there is none; the table is "
     "written all the same.",
 )
+@click.option(
+    "--rollout",
+    type=options.NUMBER,
+    metavar="SECONDS",
+    help="Also simulate: from measured states, the model moves by the measured torques for so "
+    "long, and its positions are compared with the measured ones.",
+)
 @options.as_json
 @options.side_output("--predictions", help="Write the measured and the predicted torques.")
 @options.side_output(

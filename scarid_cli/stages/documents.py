@@ -75,6 +75,8 @@ def validation(table: Table) -> Document:
             "explanations": change.get("explanations", []),
             "wiring": change.get("wiring", []),
             "joints": _rows(table),
+            "contacts": table.meta.extra.get("contact"),
+            "rollout": table.meta.extra.get("rollout"),
         }
     )
 

@@ -112,6 +112,7 @@ class Residuals:
     band: Band
     robot: Robot
     sink: Sink
+    rate: float  # of false alarms [1/h]
     observer: float | None = None  # Hz
     contacts: list[Contact] = field(default_factory=list)
     count: int = 0
@@ -185,6 +186,10 @@ class Residuals:
         listed = [vars(contact) for contact in self.contacts]
         return {"contacts": self.count, "contact": listed}
 
+    def told(self, change: dict[str, Any] | None) -> list[str]:
+        """The contacts in a line, or that there is none."""
+        return [_in_words(self, change)]
+
 
 def _kept(parts: Iterator[Part], passed: deque[Part]) -> Iterator[Part]:
     """The parts, each of which is kept for the next one who wants it."""
@@ -193,13 +198,9 @@ def _kept(parts: Iterator[Part], passed: deque[Part]) -> Iterator[Part]:
         yield part
 
 
-def in_words(found: Residuals, rate: float, change: dict[str, Any] | None) -> str:
-    """The contacts in a line, or that there is none, for the `rate` [1/h] of false alarms.
-
-    `change` is what the verdict says of the robot.
-    """
+def _in_words(found: Residuals, change: dict[str, Any] | None) -> str:
     levels = _levels_in_words(found.band.levels, found.robot)
-    chance = f"by chance alone {rate:g} in an hour of motion"
+    chance = f"by chance alone {found.rate:g} in an hour of motion"
     if not found.count:
         near = found.nearest
         most = f"; the largest is {near.ratio:.2g} of it (joint {near.joint}" if near else ""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import pyarrow as pa
@@ -20,10 +20,23 @@ from scarid_cli.io.table import Table, number, numbers, segment_field, table_of,
 from scarid_cli.stages import Sink
 from scarid_cli.stages.changes import Known, verdict
 from scarid_cli.stages.parameters import Identified
-from scarid_cli.stages.prediction import added, of_parts
-from scarid_cli.stages.residual import Residuals
+from scarid_cli.stages.prediction import Part, added, of_parts
 from scarid_cli.stages.rows import treated
 from scarid_cli.stages.times import Times
+
+
+class Beside(Protocol):
+    """What judges the rows of a motion beside the metrics, as they pass."""
+
+    def watched(self, parts: Iterator[Part], model: Identified, table: Table) -> Iterator[Part]:
+        """The parts of the rows, which are seen on their way."""
+
+    @property
+    def extra(self) -> dict[str, Any]:
+        """What it found, for the metadata of the metrics."""
+
+    def told(self, change: dict[str, Any] | None, /) -> list[str]:
+        """What it found in lines; `change` is what the verdict says of the robot."""
 
 
 def validate(
@@ -32,7 +45,7 @@ def validate(
     *,
     treatment: Treatment | None = None,
     predictions: Sink | None = None,
-    residuals: Residuals | None = None,
+    beside: Sequence[Beside] = (),
     before: Known | None = None,
     failed: Callable[[], Sequence[str]] = tuple,
 ) -> Table:
@@ -40,7 +53,7 @@ def validate(
 
     The predicted torques lead the motion by the delay that was fitted with the parameters.
     `predictions` receives the measured and predicted torques of every sample (Fig. 7-8), and
-    `residuals` their differences, or those of a momentum observer. With
+    all `beside` see the rows on their way. With
     `before`, what is known of the log of the identification, the metadata say whether the robot
     has changed since then. What `failed` among the checks of the log, told at its end, is then the
     likelier cause.
@@ -56,8 +69,8 @@ def validate(
     times = Times(table, 0)
     watched = times.watched(table)
     parts = treated(watched, robot, treatment, left_out=left_out)
-    if residuals:
-        parts = residuals.watched(parts, model, table)
+    for other in beside:
+        parts = other.watched(parts, model, table)
     for batch, rows, (torques,) in of_parts(parts, [model], table.period):
         sums = added(sums, rows, torques)
         if before:
@@ -76,8 +89,8 @@ def validate(
         if causes := failed():
             judged = replace(judged, grade=UNEXPLAINED, reason="; ".join(causes))
         extra["change"] = judged.extra
-    if residuals:
-        extra |= residuals.extra
+    for other in beside:
+        extra |= other.extra
     return _metrics(table, robot, qualities, extra)
 
 

@@ -35,7 +35,9 @@ from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.parameters import Identified, apriori, identified
 from scarid_cli.stages.pooling import Entry, pooled_identifications
 from scarid_cli.stages.reach import Reach
-from scarid_cli.stages.residual import Residuals, band_of, in_words
+from scarid_cli.stages.residual import Residuals, band_of
+from scarid_cli.stages.rollout import Rollouts
+from scarid_cli.stages.validate import Beside
 
 APRIORI = "apriori"  # a word for the values of the description
 
@@ -50,6 +52,7 @@ def run(
     residual: str | None,
     false_alarms: float,
     observer: float | None,
+    rollout: float | None,
     require: str | None,
     as_json: bool,
     **given: Any,
@@ -59,7 +62,7 @@ def run(
     _require_rows(treatment, predictions=predictions, residual=residual)
     if observer and not residual:
         raise UsageFault("--observer belongs to --residual FILE, which was not given")
-    side, beside = job.side_table(predictions), job.side_table(residual)
+    side, contacts = job.side_table(predictions), job.side_table(residual)
     tables = [job.read(file, "parameters") for file in parameters if file != APRIORI]
     stated = robot or (stated_robot(tables[0]) if tables else None)
     logs, arm = read_logs(job, files, stated, partial(read, job), skip=given["skip"])
@@ -77,17 +80,16 @@ def run(
     table, treatment = prepared.motion, prepared.chosen.treatment
     model, before = pooled_identifications([_stored(table, arm) for table in tables])
     reach = Reach(len(arm.joints))
-    residuals = (
-        Residuals(band_of(tables, before, model.robot, false_alarms), model.robot, beside, observer)
-        if beside
-        else None
-    )
+    beside: list[Beside] = [Rollouts(rollout)] if rollout else []
+    if contacts:
+        band = band_of(tables, before, model.robot, false_alarms)
+        beside.append(Residuals(band, model.robot, contacts, false_alarms, observer))
     result = stage.validate(
         job.recorded(reach.watched(table)),
         model,
         treatment=treatment,
         predictions=side,
-        residuals=residuals,
+        beside=beside,
         before=before if before.testable else None,
         failed=lambda: _failed(reach, arm, table),
     )
@@ -101,8 +103,8 @@ def run(
         for text in _failed(reach, arm, table):
             job.say(f"warning: {text}")
     _tell(job, model, before, result.meta.extra)
-    if residuals:
-        job.say(in_words(residuals, false_alarms, result.meta.extra.get("change")))
+    for text in _told(beside, result.meta.extra):
+        job.say(text)
     return _status(job, require, result.meta.extra)
 
 
@@ -111,6 +113,10 @@ def _require_rows(treatment: Treatment, **outputs: str | None) -> None:
     for name, output in outputs.items():
         if output and treatment.holds:
             raise UsageFault(f"--{name} needs every row and cannot be combined with --decimate")
+
+
+def _told(beside: Sequence[Beside], extra: dict[str, Any]) -> list[str]:
+    return [text for other in beside for text in other.told(extra.get("change"))]
 
 
 def _gains(tables: Sequence[Table]) -> list[float]:
