@@ -18,7 +18,7 @@ from scarid_cli.algorithms.plants.loop import IndefiniteError
 from scarid_cli.algorithms.plants.rollout import OpenLoop
 from scarid_cli.algorithms.regression.rows import Rows, joined, runs
 from scarid_cli.algorithms.regression.shifting import in_step, reach
-from scarid_cli.algorithms.statistics.sentences import of_joints
+from scarid_cli.algorithms.statistics.sentences import percents_of_joints
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
@@ -124,10 +124,7 @@ class Rollouts:
                 model, _, steady = self.misses[:, k] / self.misses[STILL, k]
             lines.append(
                 f"rollout: after {part * self.seconds:g} s the positions are off by "
-                f"{_percents(model)} of the movement (at constant velocity {_percents(steady)})"
+                f"{percents_of_joints(model)} of the movement (at constant velocity "
+                f"{percents_of_joints(steady)})"
             )
         return lines
-
-
-def _percents(parts: Array) -> str:
-    return of_joints([f"{100.0 * part:.2g}" for part in parts], " %")
