@@ -469,6 +469,7 @@ def identify(
     smooth_sign: Values | None = None,
     align: bool | None = None,
     essential: bool | None = None,
+    friction: Literal['described', 'auto'] | None = None,
     consistent: bool | None = None,
     from_: TableLike | None = None,
     gains: TableLike | None = None,
@@ -527,6 +528,7 @@ def identify(
         smooth_sign: Model Coulomb friction by tanh(dq / V) instead of sign(dq) [rad/s or m/s].
         align: Also fit the time by which the torques lead the motion. Holds the whole log in memory. [default: --align for a measurement only]
         essential: Keep only essential parameters: drop one after another, the least certain first, while its relative standard deviation is more than 30 times the smallest one and the fit gets no worse than noise explains.
+        friction: With auto, also fit friction that the robot has no term for, as far as it lowers the error of parts of the log that are left out of the fit: asymmetric, falling or curved with the speed, growing with the load, rippling with the position.
         consistent: Estimates that rigid bodies can have: those nearest to the free ones, in units of their errors, with positive masses and inertias, and with friction and motor inertias that are not negative. Intervals keep to that as well. Needs a URDF, and cvxpy (extra `urdf`).
         from_: Continue the estimation that --save wrote.
         gains: Divide the torques by the gains that `scarid gains` wrote.

@@ -56,6 +56,15 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
     "worse than noise explains.",
 )
 @click.option(
+    "--friction",
+    type=click.Choice(("described", "auto")),
+    default="described",
+    show_default=True,
+    help="With auto, also fit friction that the robot has no term for, as far as it lowers the "
+    "error of parts of the log that are left out of the fit: asymmetric, falling or curved with "
+    "the speed, growing with the load, rippling with the position.",
+)
+@click.option(
     "--consistent",
     is_flag=True,
     help="Estimates that rigid bodies can have: those nearest to the free ones, in units of their "

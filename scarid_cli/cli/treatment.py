@@ -34,6 +34,7 @@ def treatment_of(given: dict[str, Any]) -> Treatment:
         align=bool(given.get("align")),
         essential=given.get("essential", False),
         consistent=given.get("consistent", False),
+        choose_friction=given.get("friction") == "auto",
         gain_errors=_part(given.get("torque_gain_error") or "0", "--torque-gain-error"),
     )
 

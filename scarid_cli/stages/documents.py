@@ -33,6 +33,7 @@ def identification(table: Table, estimator: str) -> Document:
             "condition_number": extra.get("condition_number"),
             "bandwidth": extra.get("bandwidth"),
             "delay": _delay(extra),
+            "friction": extra.get("friction"),
             "parameters": [_parameter(row) for row in rows],
             "joints": [
                 {

@@ -18,10 +18,11 @@ class Treatment:
     `skip` rows at the start and at the end of the table are left out. W and the torques are
     decimated by each factor of `decimate` in turn. Rows of a joint that is slower than `slow`
     (joints) [rad/s or m/s] are left out, and those near a reversal or standstill as `counting`
-    says; it is None if all rows count. Four more options concern the fit: `align` also fits the
+    says; it is None if all rows count. Five more options concern the fit: `align` also fits the
     time by which the torques lead the motion, `essential` drops parameters that are not essential,
-    `consistent` asks for estimates that rigid bodies can have, and `gain_errors` are the relative
-    standard errors of the torque constants.
+    `choose_friction` adds what friction is worth fitting, `consistent` asks for estimates that
+    rigid bodies can have, and `gain_errors` are the relative standard errors of the torque
+    constants.
     """
 
     skip: tuple[int, int] = (0, 0)
@@ -31,6 +32,7 @@ class Treatment:
     align: bool = False
     essential: bool = False
     consistent: bool = False
+    choose_friction: bool = False
     gain_errors: GainErrors = 0.0
 
     @property

@@ -87,16 +87,30 @@ def consequences(
 
 def _held_out(record: Blocks, fitted: Blocks, weights: Array, estimates: Array) -> Array:
     """Residuals of parts that were left out, relative to those of the fit (joints)."""
-    parts, total = fitted.grouped(PARTS), fitted.total
-    inside, outside = _squares(record.total, estimates), np.zeros(len(weights))
-    for part, left_out in zip(record.grouped(PARTS), parts, strict=False):
-        rest = np.tensordot(weights**2, total - left_out, 1)
-        gram = rest[:-2, :-2]
-        if not regular(gram):
-            return np.full(len(weights), np.inf)
-        outside += _squares(part, np.asarray(np.linalg.solve(gram, rest[:-2, -2])))
+    inside = _squares(record.total, estimates)
+    outside = held_out_squares(record, weights, fitted).sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.sqrt(np.where(outside > 0.0, outside / inside, 1.0)))
+
+
+def held_out_squares(
+    record: Blocks, weights: Array, fitted: Blocks | None = None, parts: int = PARTS
+) -> Array:
+    """The residual sums of squares (parts, joints) of parts that were left out of the fit.
+
+    Rows of the joints are multiplied by `weights` (joints); inf where the rest does not determine
+    the estimates.
+    """
+    fitted = fitted or record
+    total, found = fitted.total, []
+    for part, left_out in zip(record.grouped(parts), fitted.grouped(parts), strict=False):
+        rest = np.tensordot(weights**2, total - left_out, 1)
+        gram = rest[:-2, :-2]
+        if regular(gram):
+            found.append(_squares(part, np.asarray(np.linalg.solve(gram, rest[:-2, -2]))))
+        else:
+            found.append(np.full(len(weights), np.inf))
+    return np.array(found)
 
 
 def _squares(products: Array, estimates: Array) -> Array:

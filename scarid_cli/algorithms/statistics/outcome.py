@@ -27,6 +27,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
 )
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
+from scarid_cli.algorithms.statistics.choosing import friction
 from scarid_cli.algorithms.statistics.consequences import few
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.effects import Effect, clear
@@ -205,7 +206,8 @@ def outcome(
     The treatment says whether the delay of the torques is fitted too, and parameters are dropped.
     """
     given = _Given(estimator, initial, end, robot, align=treatment.align)
-    whole, diagnostics = _explained(given, treatment.gain_errors)
+    explain = _with_friction if treatment.choose_friction and treatment.align else _explained
+    whole, diagnostics = explain(given, treatment.gain_errors)
     problem, products, effects = whole, whole.products(diagnostics), diagnostics.effects
     covariance, reduction = diagnostics.matrix, None
     thin = end.subsample.thin if treatment.align else 1
@@ -284,11 +286,36 @@ def _explained(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnos
     return plain, diagnostics
 
 
+def _with_friction(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnostics]:
+    """The problem with the friction that is worth fitting; its diagnostics."""
+    plain, diagnostics = _explained(given, gain_errors)
+    if not plain.model:
+        return plain, diagnostics
+    theta = plain.found.fit.estimates[: plain.own]
+    fitted = plain.additions, plain.offsets
+    added, worths = friction(plain.rows, plain.model, theta, diagnostics.cycles, *fitted)
+    problem = plain
+    if added:
+        first = _problem(given)
+        first = replace(first, rows=first.compared)  # without offsets, which may be among those
+        shapes = _beside(given, first, plain.model, (*plain.additions, *added))
+        problem = _problem(given, shapes)
+        suspected = frozenset(effect.name for effect in clear(diagnostics.effects))
+        diagnostics = problem.diagnostics(gain_errors, suspected)
+    extra = {**problem.found.extra, "friction": [worth.extra for worth in worths]}
+    return replace(problem, found=replace(problem.found, extra=extra)), diagnostics
+
+
 def _shapes(given: _Given, plain: Problem, model: Model, explanation: Explanation) -> Shapes:
     """The shapes of what explains the torques, with the estimates beside it."""
-    rows = thinned(plain.rows)
     constant = {*offset_joints(given.robot).values(), *plain.offsets}
-    additions = of_explanation(explanation, rows, constant)
+    additions = of_explanation(explanation, thinned(plain.rows), constant)
+    return _beside(given, plain, model, additions)
+
+
+def _beside(given: _Given, plain: Problem, model: Model, additions: tuple[Addition, ...]) -> Shapes:
+    """The shapes of additions, with the estimates beside them."""
+    rows = thinned(plain.rows)
     first = Shapes(additions, model, plain.found.fit.estimates[: plain.own])
     wide = first.beside(rows)
     start = np.append(given.initial, np.zeros(wide.W.shape[2] - plain.own))

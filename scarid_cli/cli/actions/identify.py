@@ -15,6 +15,14 @@ from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.alternatives import (
+    ASYMMETRY,
+    CURVATURE,
+    LOAD,
+    OFFSET,
+    SLOW,
+    STRIBECK,
+)
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
@@ -43,6 +51,14 @@ from scarid_cli.stages.free import Anchor, freed
 from scarid_cli.stages.parameters import identified
 from scarid_cli.stages.possible import require_bodies
 
+FRICTION = {  # as people call the shapes
+    OFFSET: "offset or asymmetric Coulomb friction",
+    ASYMMETRY: "asymmetric viscous friction",
+    SLOW: "fall from slow speeds on",
+    STRIBECK: "fall from medium speeds on",
+    CURVATURE: "curve over the speed",
+    LOAD: "growth with the load",
+}
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
 
 
@@ -71,6 +87,11 @@ def run(
     prepared = blind.prepared(logs, arm, choices, progress=searching(job))
     chosen = prepared.chosen
     tell_of(job, prepared, logs, _options(chosen))
+    if treatment.choose_friction and not chosen.treatment.align:
+        raise UsageFault(
+            "--friction auto needs the delay of the torques: give --align, and an estimator that "
+            "has it"
+        )
     start = _initial(job, given["initial"], arm)
     solver = chosen.method(**settings)
     untold = list[int]()
@@ -162,6 +183,8 @@ def _save(place: Document, checkpoint: Checkpoint, fixed: dict[str, Any]) -> Non
 def _tell(job: Job, table: Table, robot: str, chosen: Chosen, extra: dict[str, Any]) -> None:
     """Say which rows were left out, what was found, and the verdict on it."""
     report(job, table, chosen.treatment.counting, extra.get("left_out", {}))
+    if told := chosen_friction(extra):
+        job.say(told)
     facts, verdict = summary_lines(robot, chosen.name, extra)
     job.say(facts)
     job.say(verdict, extra["verdict"])
@@ -309,6 +332,22 @@ def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[st
     if "durbin_wu_hausman" in extra:
         line += f", Durbin-Wu-Hausman p {extra['durbin_wu_hausman']['p_value']:.2g}"
     return line, f"{extra['verdict']}: {'; '.join(extra['reasons'])}"
+
+
+def chosen_friction(extra: dict[str, Any]) -> str:
+    """What friction was worth fitting beside that of the robot, and what was not; or nothing."""
+    if (found := extra.get("friction")) is None:
+        return ""
+    parts = [
+        f"{FRICTION.get(x['name'], x['name'])} of joint {x['joint']} ({x['lower']:.2g} +- "
+        f"{x['half_interval']:.2g} %)"
+        for x in found
+    ]
+    kept = [part for part, x in zip(parts, found, strict=True) if x["kept"]]
+    rest = [part for part, x in zip(parts, found, strict=True) if not x["kept"]]
+    told = ", ".join(kept) or "none beside that of the robot"
+    line = f"friction, by how much it lowers the error of parts that were left out: {told}"
+    return f"{line}; not worth it: {', '.join(rest)}" if rest else line
 
 
 def _led(extra: dict[str, Any]) -> str:
