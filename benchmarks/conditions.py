@@ -7,6 +7,7 @@ nothing in it was chosen with them.
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
@@ -14,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from altered import Change, altered, clipped, drifted, hurried, loose, pulled, saturated
 from arms import URDFS, described
+from mechanics import BUILT, CHANGES, LOADED
 
 from scarid_cli.algorithms.choices.registry import EXCITATIONS
 from scarid_cli.algorithms.plants.controllers import law
@@ -54,6 +56,8 @@ class Condition:
     speed: float = 1.0  # of the limits; those of the acceleration are multiplied by its square
     stroke: float = np.inf  # rad or m, to both sides of the home position
     altered: Change | None = None
+    built: Callable[[Robot], Robot] | None = None  # the simulated robot, where it is another one
+    own: Callable[[Robot], Given] | None = None  # imperfections that depend on the robot
     gain_error: float = 0.0  # of the torque constants, that is stated to the blind procedure
 
 
@@ -176,6 +180,9 @@ UNSEEN = [
     replace(MIXED, name="one joint at a time, all together", excitation="sequential"),
     Condition("Fourier series", excitation="fourier"),
     replace(MIXED, name="Fourier series, all together", excitation="fourier"),
+    *[Condition(name, altered=change) for name, change in CHANGES.items()],
+    *[Condition(name, built=build) for name, build in BUILT.items()],
+    *[Condition(name, own=given) for name, given in LOADED.items()],
 ]
 
 
@@ -212,13 +219,14 @@ def log(robot: Robot, condition: Condition, seed: int, *, truth: bool = False) -
         name: tuple(factor * size for size in sizes[unit])
         for name, (unit, factor) in condition.relative.items()
     }
+    own = condition.own(robot) if condition.own else {}
     words = (
         f"{name}={','.join(f'{x}' for x in value)}"
-        for name, value in {**condition.given, **relative}.items()
+        for name, value in {**condition.given, **relative, **own}.items()
     )
     known = imperfections(tuple(words), {}, robot.imperfections, joints)
     loop = ClosedLoop(
-        robot=robot,
+        robot=condition.built(robot) if condition.built else robot,
         law=law(robot, None, None, kp=None, kd=None, ki=None),
         seed=seed,
         control_rate=CONTROL,
