@@ -14,10 +14,10 @@ from unit.regressions import estimated
 from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.regression.rows import rows_of
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.statistics.alternatives import UNEVEN, Model
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.effects import Effect
-from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, ZEROS
+from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, LATE, ZEROS
 from scarid_cli.algorithms.statistics.positions import (
     Sensitivities,
     eccentric_columns,
@@ -136,7 +136,17 @@ def elastic(true: Array) -> Array:
     return with_derivatives(true[0] + 0.001 * torques(true).T)
 
 
-@pytest.mark.parametrize(("seen", "name"), [(eccentric, ENCODERS), (elastic, ELASTICITY)])
+def late(true: Array) -> Array:
+    """The position of the second joint is that of 8 ms ago."""
+    q = true[0].copy()
+    t = H * np.arange(q.shape[1])
+    q[1] = np.interp(t - 0.008, t, q[1])
+    return with_derivatives(q)
+
+
+@pytest.mark.parametrize(
+    ("seen", "name"), [(eccentric, ENCODERS), (elastic, ELASTICITY), (late, LATE)]
+)
 def test_intervals_allow_for_positions_that_are_off(
     seen: Callable[[Array], Array], name: str
 ) -> None:
@@ -145,3 +155,33 @@ def test_intervals_allow_for_positions_that_are_off(
     assert named(found, name).significant()
     assert np.any(off > 3.0 * found.scatter)
     assert np.all(off < 3.0 * found.errors)
+
+
+def test_how_late_a_position_is_is_found() -> None:
+    """8 ms, with the torques of the links and with friction."""
+    true = motion()
+    found, _ = diagnosed(late(true), true)
+    effect = named(found, LATE)
+    assert effect.amounts[1] == pytest.approx(0.008, abs=3.0 * effect.noise[1])
+    assert effect.noise[1] < 0.0005
+    for other in (0, 2, 3):  # the position of joint 1, and both torques
+        assert (
+            np.isnan(effect.amounts[other]) or abs(effect.amounts[other]) < 5 * effect.noise[other]
+        )
+
+
+def test_friction_that_varies_over_a_turn_is_found_with_its_size() -> None:
+    """Coulomb friction of joint 2 plus 0.15 N m times the cosine of its position."""
+    true = motion()
+    tau = ARM.torques(ARM.regressor(*true), ARM.apriori)
+    tau += 0.02 * np.random.default_rng(0).standard_normal(tau.shape)
+    tau[1] += 0.15 * np.cos(true[0, 1]) * np.sign(true[1, 1])
+    rows = rows_of(ARM, np.stack((*true, tau)), np.arange(tau.shape[1]), H)
+    found = diagnose(rows, estimated(ls.Estimator(), rows), len(ARM.parameters), model=MODEL)
+    effect = named(found, UNEVEN)
+    sine, cosine = effect.amounts[1], effect.amounts[3]
+    assert cosine == pytest.approx(0.15, abs=3.0 * effect.noise[3])
+    assert abs(sine) < 4.0 * effect.noise[1]
+    assert effect.joints(0.001, 2) == [1]
+    (note,) = notes_of(ARM.names, found, ARM)
+    assert note.startswith("Coulomb friction of joint 2 varies over a turn")

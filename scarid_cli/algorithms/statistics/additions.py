@@ -17,14 +17,13 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.alternatives import (
-    COSINE,
     DRIFT,
     LOAD,
     OFFSET,
     RIPPLE,
     SHAPES,
-    SINE,
     SPRING,
+    WAVES,
     Model,
     Signals,
 )
@@ -70,12 +69,12 @@ def of_explanation(
     waves = {
         (wave, j, float(cycles))
         for name, j in found
-        if name == RIPPLE
-        for cycles in explanation.cycles[:, j]
-        if cycles > 0.0
-        for wave in (SINE, COSINE)
+        if name in WAVES
+        for cycles in (explanation.cycles[:, j] if name == RIPPLE else [0.0])
+        if cycles > 0.0 or name != RIPPLE
+        for wave in WAVES[name]
     }
-    plain = {(name, j, 0.0) for name, j in found | slack if name != RIPPLE}
+    plain = {(name, j, 0.0) for name, j in found | slack if name not in WAVES}
     return tuple(
         Addition(name, j, float(usual[j]), cycles=cycles)
         for name, j, cycles in sorted(plain | waves)

@@ -2,9 +2,9 @@
 
 A bias matters as far as it moves the estimates. Therefore the estimation is repeated with
 alternatives to what it takes for granted. Those of this module concern the torques: that friction
-has no offset, asymmetry, Stribeck effect or dependence on the load, that nothing else
-pulls on the joints, that gravity acts as described, and that the logged torques are proportional to
-the real ones. Those of parallel.py concern the positions and their derivatives.
+has no offset, asymmetry or Stribeck effect and does not depend on the load or the position, that
+nothing else pulls on the joints, that gravity acts as described, and that the logged torques are
+proportional to the real ones. Those of parallel.py concern the positions and their derivatives.
 """
 
 from __future__ import annotations
@@ -24,11 +24,30 @@ from scarid_cli.arrays import Array, Marks
 OFFSET, ASYMMETRY, LOAD, SPRING = "offset", "asymmetry", "load", "spring"
 SATURATION, DRIFT, TILT, GAIN = "saturation", "drift", "tilt", "gain"
 RIPPLE, SINE, COSINE = "ripple", "ripple as a sine", "ripple as a cosine"
+UNEVEN, UNEVEN_SINE, UNEVEN_COSINE = (
+    "uneven friction",
+    "uneven friction as a sine",
+    "uneven friction as a cosine",
+)
+# Alternatives that are a sine and a cosine of each joint, whose phase is not known.
+WAVES = {RIPPLE: (SINE, COSINE), UNEVEN: (UNEVEN_SINE, UNEVEN_COSINE)}
 SLOW, STRIBECK, CURVATURE = "slow friction", "Stribeck", "curvature"
 # Of the root-mean-square velocity: where the friction of slow motion has decayed. Together the
 # three are a curve of friction over the speed.
 DECAYED = {SLOW: 0.1, STRIBECK: 0.3, CURVATURE: 1.0}
-TORQUES = (OFFSET, ASYMMETRY, *DECAYED, LOAD, SPRING, SATURATION, DRIFT, TILT, GAIN, RIPPLE)
+TORQUES = (
+    OFFSET,
+    ASYMMETRY,
+    *DECAYED,
+    LOAD,
+    SPRING,
+    SATURATION,
+    DRIFT,
+    TILT,
+    GAIN,
+    RIPPLE,
+    UNEVEN,
+)
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
 BESIDE_FRICTION = (
     "offset",
@@ -172,6 +191,9 @@ SHAPES: dict[str, Callable[[Signals], Array]] = {
     LOAD: lambda x: np.sign(x.v) * np.abs(x.transmitted),
     SINE: lambda x: x.ripple(np.sin),
     COSINE: lambda x: x.ripple(np.cos),
+    # Coulomb friction that varies over a turn, as of gears that are not round.
+    UNEVEN_SINE: lambda x: np.sign(x.v) * np.sin(x.q),
+    UNEVEN_COSINE: lambda x: np.sign(x.v) * np.cos(x.q),
 }
 
 
@@ -184,7 +206,8 @@ def torque_columns(
     """
     signals = Signals.of(rows, model, estimates)
     shapes = {name: shape for name, shape in SHAPES.items() if model or name != LOAD}
-    waves = [shapes.pop(name) for name in (SINE, COSINE)]
+    waves = [shapes.pop(name) for name in WAVES[RIPPLE]]
+    uneven = [diagonal(shapes.pop(name)(signals)) for name in WAVES[UNEVEN]]
     columns = {name: diagonal(shape(signals)) for name, shape in shapes.items()}
     columns[GAIN] *= compared(rows, estimates)
     columns[SPRING] = np.concatenate((columns[OFFSET], columns[SPRING]), axis=2)
@@ -192,6 +215,7 @@ def torque_columns(
     if ripples:
         parts = [diagonal(wave(ripple)) for ripple in ripples for wave in waves]
         columns[RIPPLE] = np.concatenate(parts, axis=2)
+    columns[UNEVEN] = np.concatenate(uneven, axis=2)
     tilt = model.tilted(rows.motion[0], estimates[: len(model.kept)]) if model else None
     if tilt is not None:
         columns[TILT] = tilt

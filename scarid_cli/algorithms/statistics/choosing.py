@@ -22,12 +22,13 @@ from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
-    COSINE,
     DECAYED,
     LOAD,
     OFFSET,
     RIPPLE,
     SINE,
+    UNEVEN,
+    WAVES,
     Model,
 )
 from scarid_cli.algorithms.statistics.blocks import Blocks
@@ -113,9 +114,13 @@ def _candidates(
         for name in (name for name in SHAPES if (name, j) not in there):
             yield Candidate(name, j, (Addition(name, j, speed),), (first,))
             first += 1
+        pair = tuple(Addition(wave, j, speed) for wave in WAVES[UNEVEN])
+        if (pair[0].name, j) not in there:
+            yield Candidate(UNEVEN, j, pair, (first, first + 1))
+            first += 2
         ripples = [] if (SINE, j) in there else cycles[:, j][cycles[:, j] > 0.0].tolist()
         for own in ripples:
-            pair = tuple(Addition(wave, j, speed, cycles=own) for wave in (SINE, COSINE))
+            pair = tuple(Addition(wave, j, speed, cycles=own) for wave in WAVES[RIPPLE])
             yield Candidate(RIPPLE, j, pair, (first, first + 1))
             first += 2
 

@@ -23,6 +23,7 @@ from scarid_cli.algorithms.statistics.positions import (
 from scarid_cli.arrays import Array, Numbers
 
 SIGNALS, ZEROS, ENCODERS, ELASTICITY = "signals", "zeros", "encoders", "elasticity"
+LATE = "late"
 STEP = 0.025  # s between the rows that are kept: the window passes hardly anything above 10 Hz
 EDGE = 4  # samples at both ends of a run where the differences are not central
 
@@ -47,8 +48,9 @@ def smoothed(rows: Rows, model: Model | None, estimates: Array, own: int) -> Smo
     The further columns of the signals are, for each joint, the first derivative of the torque of
     inertia, the second one of the torque that it transmits and, unless a delay is fitted, the first
     one of the other torques; those of the encoders and of elastic transmissions are in
-    positions.py. Without a model the columns of W are only smoothed, and there are no further
-    columns. None if every run between gaps is shorter than the window.
+    positions.py. Positions and torques of single joints that are late have a column each, whose
+    size is the delay [s]. Without a model the columns of W are only smoothed, and there are no
+    further columns. None if every run between gaps is shorter than the window.
     """
     window = Window.of(rows.h)
     found: list[tuple[dict[str, Array], Numbers]] = []
@@ -124,6 +126,7 @@ def _columns(
     else:
         signals.append(diagonal(delay_column(moved, rest)))
     motion = np.stack((q, dq, ddq))
+    links = model.link_torques(motion, theta)
     torque = np.stack((transmitted.T, speed.T, curvature.T))
     sensitivities = Sensitivities.of(model, theta, motion)
     return {
@@ -131,9 +134,26 @@ def _columns(
         SIGNALS: window.passed(np.concatenate(signals, axis=2)),
         ZEROS: window.passed(zero_columns(sensitivities)),
         ENCODERS: window.passed(eccentric_columns(model, sensitivities, motion)),
+        LATE: window.passed(_late(moved, whole, links, sensitivities, motion)),
         ELASTICITY: window.passed(elastic_columns(sensitivities, torque)),
         "y": y,
     }
+
+
+def _late(
+    rows: Rows, whole: Array, links: Array, sensitivities: Sensitivities, motion: Array
+) -> Array:
+    """The columns (samples, joints, 2 joints) of late positions, then of late torques, of a joint.
+
+    A position that is late by T is that of the joint before T dq. What is no torque of a link is
+    friction or inertia of the motor, and depends on the motion of its own joint.
+    """
+    _, dq, ddq = motion
+    jerk = np.gradient(ddq, rows.h, axis=1)
+    own = delay_column(rows, whole - links)
+    errors = np.stack((dq, ddq, jerk)).swapaxes(0, 1)
+    moved = np.stack([sensitivities.column(k, x) for k, x in enumerate(errors)], axis=2)
+    return np.concatenate((moved + diagonal(own), -diagonal(delay_column(rows, whole))), axis=2)
 
 
 def differences(q: Array, h: float) -> tuple[Array, Array]:

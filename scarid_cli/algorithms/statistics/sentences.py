@@ -11,7 +11,6 @@ from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.statistics.additions import Addition
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
-    COSINE,
     CURVATURE,
     DECAYED,
     DRIFT,
@@ -20,22 +19,25 @@ from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
     RIPPLE,
     SATURATION,
-    SINE,
     SLOW,
     SPRING,
     STRIBECK,
     TILT,
+    UNEVEN,
+    WAVES,
     tilted,
 )
 from scarid_cli.algorithms.statistics.curves import laws
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import REVERSALS, Effect, level_among
-from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, ZEROS
+from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, LATE, ZEROS
 from scarid_cli.arrays import Array, Marks
 from scarid_cli.interval import plus_minus
 
 # The alternatives whose shapes have names of their own.
-KINDS = {**dict.fromkeys(DECAYED, CURVATURE), SINE: RIPPLE, COSINE: RIPPLE}
+KINDS = dict.fromkeys(DECAYED, CURVATURE) | {
+    wave: name for name, waves in WAVES.items() for wave in waves
+}
 EACH = 3  # joints, of which each figure has its own label at most
 NAMED = 2  # estimates whose change is written out
 DECREASES = (
@@ -56,12 +58,15 @@ ADVICE = {
     DRIFT: "the torque of {joints} drifts during the log",
     RIPPLE: "the torque of {joints} ripples with the position ({periods}), as of cogging motors or "
     "of gears, for which there is no term",
+    UNEVEN: "Coulomb friction of {joints} varies over a turn, as of gears that are not round, for "
+    "which there is no term",
     TILT: "gravity acts in another direction than described, as on a tilted base (state gravity = "
     "{gravity} in the TOML file of the robot)",
     ZEROS: "where the log has a position of 0, {zeros} (state it as `zero` in the TOML file of the "
     "robot)",
     ENCODERS: "the position of {joints} has an error that depends on the angle, as of an eccentric "
     "encoder",
+    LATE: "the signals of {joints} are not of the same instant as those of the others",
     ELASTICITY: "the transmission of {joints} is elastic (a gear or a belt between encoder and "
     "link)",
     REVERSALS: "friction near reversals differs from the model (--drop-slow leaves more of the "
@@ -154,7 +159,7 @@ def _fitted(kind: str, added: Sequence[Addition], robot: Robot) -> str:
     """What was fitted of this kind."""
     if kind == CURVATURE:
         return "a curve over the speed was fitted as well"
-    if kind == RIPPLE:
+    if kind in WAVES:
         return f"fitted as well, with {_amplitudes(added, robot)}"
     return f"fitted as well: {_sizes(added, robot)}"
 

@@ -22,6 +22,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
     SLOW,
     STRIBECK,
+    UNEVEN,
 )
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
@@ -58,6 +59,7 @@ FRICTION = {  # as people call the shapes
     STRIBECK: "fall from medium speeds on",
     CURVATURE: "curve over the speed",
     LOAD: "growth with the load",
+    UNEVEN: "Coulomb friction that varies over a turn",
 }
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
 
