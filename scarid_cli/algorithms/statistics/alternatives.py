@@ -23,6 +23,7 @@ from scarid_cli.arrays import Array, Marks
 
 OFFSET, ASYMMETRY, LOAD, SPRING = "offset", "asymmetry", "load", "spring"
 SATURATION, DRIFT, TILT, GAIN = "saturation", "drift", "tilt", "gain"
+GEOMETRY = "geometry"
 RIPPLE, SINE, COSINE = "ripple", "ripple as a sine", "ripple as a cosine"
 UNEVEN, UNEVEN_SINE, UNEVEN_COSINE = (
     "uneven friction",
@@ -47,6 +48,7 @@ TORQUES = (
     GAIN,
     RIPPLE,
     UNEVEN,
+    GEOMETRY,
 )
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
 BESIDE_FRICTION = (

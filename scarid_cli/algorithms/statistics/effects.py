@@ -11,6 +11,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
+    GEOMETRY,
     OFFSET,
     RIPPLE,
     SLOW,
@@ -22,6 +23,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     torque_columns,
 )
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
+from scarid_cli.algorithms.statistics.geometry import distance_columns
 from scarid_cli.algorithms.statistics.halves import Halves, halves
 from scarid_cli.algorithms.statistics.jackknife import block_numbers, quantile
 from scarid_cli.algorithms.statistics.parallel import ZEROS, smoothed
@@ -196,10 +198,12 @@ class Trial:
     @cached_property
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
         """The products with what torques may have beyond the model, and the places of those."""
-        return self.products(
-            self.rows.scales,
-            torque_columns(self.rows, self.model, self.estimates, self.ripples.cycles),
-        )
+        further = torque_columns(self.rows, self.model, self.estimates, self.ripples.cycles)
+        if self.model:
+            theta = self.estimates[: self.own]
+            columns = distance_columns(self.model, theta, self.rows.motion[:3])
+            further |= {} if columns is None else {GEOMETRY: columns}
+        return self.products(self.rows.scales, further)
 
     @cached_property
     def ripples(self) -> Ripples:

@@ -15,6 +15,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     DECAYED,
     DRIFT,
     GAIN,
+    GEOMETRY,
     LOAD,
     OFFSET,
     RIPPLE,
@@ -66,6 +67,7 @@ ADVICE = {
     "robot)",
     ENCODERS: "the position of {joints} has an error that depends on the angle, as of an eccentric "
     "encoder",
+    GEOMETRY: "the geometry is not as described: {distances}",
     LATE: "the signals of {joints} are not of the same instant as those of the others",
     ELASTICITY: "the transmission of {joints} is elastic (a gear or a belt between encoder and "
     "link)",
@@ -259,6 +261,8 @@ def _amounts(effect: Effect, robot: Robot, level: float, cycles: Array) -> dict[
     texts = {"joints": joints_named(j + 1 for j in found) if found else ""}
     if effect.name == RIPPLE:
         texts["periods"] = _periods([(j, x) for j in found for x in cycles[:, j] if x], robot)
+    if effect.name == GEOMETRY:
+        texts["distances"] = listed([_distance(effect, j) for j in found])
     if effect.name == ZEROS:
         texts["zeros"] = listed([f"joint {j + 1} is at {_zero(effect, robot, j)}" for j in found])
     return texts
@@ -268,6 +272,13 @@ def _zero(effect: Effect, robot: Robot, joint: int) -> str:
     """`-0.102 +- 0.0018 rad`."""
     error = plus_minus(effect.noise[joint])
     return f"{effect.amounts[joint]:.3g} {error} {robot.joints[joint].unit}"
+
+
+def _distance(effect: Effect, joint: int) -> str:
+    """`the distance from axis 1 to axis 2 is 1 +- 0.1 % larger`."""
+    amount, error = 100.0 * effect.amounts[joint], 100.0 * effect.noise[joint]
+    size = f"{abs(amount):.2g} {plus_minus(error)} % {'larger' if amount > 0.0 else 'smaller'}"
+    return f"the distance from axis {joint} to axis {joint + 1} is {size}"
 
 
 def _vector(values: Array) -> str:
