@@ -57,9 +57,7 @@ def test_a_longer_link_is_named_with_its_size() -> None:
     assert effect.amounts[1] == pytest.approx(0.05, abs=3.0 * effect.noise[1])
     assert effect.significant()
     (note,) = notes_of(ARM.names, found, ARM)
-    assert note.startswith(
-        "the geometry is not as described: the distance from axis 1 to axis 2 is"
-    )
+    assert "the geometry is not as described: the distance from axis 1 to axis 2 is " in note
     assert "% larger" in note
     off = np.abs(fit.fit.estimates - ARM.apriori)
     assert np.any(off > 3.0 * found.scatter)
