@@ -468,10 +468,10 @@ def identify(
     bandwidth: Values | None = None,
     smooth_sign: Values | None = None,
     align: bool | None = None,
+    from_: TableLike | None = None,
     essential: bool | None = None,
     friction: Literal['described', 'auto'] | None = None,
     consistent: bool | None = None,
-    from_: TableLike | None = None,
     gains: TableLike | None = None,
     free_gains: Values | None = None,
     torque_gain_error: Values | None = None,
@@ -527,10 +527,10 @@ def identify(
         bandwidth: Bandwidth of the motion. [default: that in the metadata, which differentiate --match writes and CSV cannot hold]
         smooth_sign: Model Coulomb friction by tanh(dq / V) instead of sign(dq) [rad/s or m/s].
         align: Also fit the time by which the torques lead the motion. Holds the whole log in memory. [default: --align for a measurement only]
+        from_: Continue the estimation that --save wrote.
         essential: Keep only essential parameters: drop one after another, the least certain first, while its relative standard deviation is more than 30 times the smallest one and the fit gets no worse than noise explains.
         friction: With auto, also fit friction that the robot has no term for, as far as it lowers the error of parts of the log that are left out of the fit: asymmetric, falling or curved with the speed, growing with the load, rippling with the position.
         consistent: Estimates that rigid bodies can have: those nearest to the free ones, in units of their errors, with positive masses and inertias, and with friction and motor inertias that are not negative. Intervals keep to that as well. Needs a URDF, and cvxpy (extra `urdf`).
-        from_: Continue the estimation that --save wrote.
         gains: Divide the torques by the gains that `scarid gains` wrote.
         free_gains: Estimate the gain of each joint's torque as well, and divide the torques by them. ANCHOR fixes the factor that all have in common: the number of a joint, whose gain is 1; `masses`, those of the URDF; or `constants`, within --torque-gain-error.
         torque_gain_error: Standard error of the torque constants, such as 1% or 0.01. No log shows the factor that all have in common. It is added to the errors of the parameters; with --free-gains, it is what is known of each gain before the log. [default: 0]

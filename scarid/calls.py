@@ -23,7 +23,7 @@ from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
 
 # What only a shell needs.
-LEFT_OUT = ("listen", "tee", "methods", "robot", "help", "completion", "plot")
+LEFT_OUT = ("listen", "watch", "tee", "methods", "robot", "help", "completion", "plot")
 READ = "read"  # the name of `convert`, which reads any log
 COMMANDS = (READ, *(name for name in ALL if name not in LEFT_OUT))
 # What the function itself decides.

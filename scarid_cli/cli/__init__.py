@@ -19,6 +19,7 @@ COMMANDS = {
     "tune": "Find the settings of differentiators from a log.",
     "differentiate": "Estimate velocities and accelerations from positions (the soft sensor).",
     "identify": "Estimate a robot's dynamic parameters from a log.",
+    "watch": "Watch the estimates of a robot that moves, at the end of a live pipe.",
     "validate": "Measure how well identified parameters predict torques.",
     "compare": "Tell which parameters of two identifications differ, and how they drift.",
     "payload": "Find what hangs on the flange: mass, centre and inertia.",

@@ -10,6 +10,7 @@ import click
 F = TypeVar("F", bound=Callable[..., Any])
 
 DATA, METHOD, ERRORS, OUTPUT = "The data", "The method", "The errors", "The output"
+MODEL = "The model"
 KEY = "heading"
 WIDEST = 30  # characters: the help of a longer option begins on the next line
 

@@ -8,7 +8,7 @@ from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.cli import options, selecting
 from scarid_cli.cli.declare import declare
 from scarid_cli.cli.described import describing
-from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
+from scarid_cli.cli.headings import DATA, ERRORS, METHOD, MODEL, OUTPUT, heading
 
 
 @declare("identify", describing(ESTIMATORS, "Estimators"))
@@ -48,6 +48,10 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
     help="Also fit the time by which the torques lead the motion. Holds the whole log in memory.  "
     "[default: --align for a measurement only]",
 )
+@options.input_file(
+    "--from", "resumed", metavar="STATE", help="Continue the estimation that --save wrote."
+)
+@heading(MODEL)
 @click.option(
     "--essential",
     is_flag=True,
@@ -70,9 +74,6 @@ from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT, heading
     help="Estimates that rigid bodies can have: those nearest to the free ones, in units of their "
     "errors, with positive masses and inertias, and with friction and motor inertias that are not "
     "negative. Intervals keep to that as well. Needs a URDF, and cvxpy (extra `urdf`).",
-)
-@options.input_file(
-    "--from", "resumed", metavar="STATE", help="Continue the estimation that --save wrote."
 )
 @heading(ERRORS)
 @options.input_file("--gains", help="Divide the torques by the gains that `scarid gains` wrote.")

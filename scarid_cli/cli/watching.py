@@ -8,22 +8,23 @@ from collections.abc import Callable, Sequence
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.arrays import Array
 from scarid_cli.cli.job import Job
+from scarid_cli.stages.identify import SoFar
 
 EVERY = 0.5  # s
 WIDEST = 60  # characters
 
 
-def watcher(job: Job, names: Sequence[str]) -> Callable[[Callable[[], Array]], None]:
-    """A function that is offered the estimates after each batch, and shows them now and then."""
+def watcher(job: Job, names: Sequence[str]) -> Callable[[SoFar], None]:
+    """A function that is offered what is known after each batch, and shows it now and then."""
     last = time.monotonic()
 
-    def watch(estimates: Callable[[], Array]) -> None:
+    def watch(so_far: SoFar) -> None:
         nonlocal last
         if job.quiet or time.monotonic() - last < EVERY:
             return
         last = time.monotonic()
         try:
-            job.watched = text(names, estimates())
+            job.watched = text(names, so_far.estimates())
         except NotIdentifiableError:
             job.watched = "not yet identifiable"
 

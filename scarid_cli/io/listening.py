@@ -162,6 +162,10 @@ class Port(ByteSource):
         else:
             source.close()
 
+    def told(self) -> str:
+        """What is said at the end."""
+        return self.rows.told()
+
     @property
     def regular(self) -> bool:
         """A port is no file."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -51,14 +51,14 @@ def identify(
     checkpoint: Checkpoint | None = None,
     keep: Callable[[Checkpoint], None] | None = None,
     findings: list[Finding] | None = None,
-    watch: Callable[[Callable[[], Array]], None] | None = None,
+    watch: Callable[[SoFar], None] | None = None,
 ) -> Table:
     """The table of parameters, estimated from all rows of a motion.
 
     `initial` are the initial parameters, or zeros. `trace` receives the estimates after every
     sample (Fig. 6). `checkpoint` is the checkpoint of an earlier estimation that is continued, and
     `keep` receives that of this one. `findings` receives what is not in order with the log; what
-    makes the result wrong enters the verdict as well. `watch` is offered the estimates so far after
+    makes the result wrong enters the verdict as well. `watch` is offered what is known so far after
     each batch of rows, unless they are all held.
     """
     findings = [] if findings is None else findings
@@ -70,18 +70,54 @@ def identify(
         checkpoint = Checkpoint.at_start(estimator.init(initial), table.period, held)
     times, reach = Times(table, checkpoint.seen), Reach(len(robot.joints))
     watched = times.watched(reach.watched(table))
-    checkpoint = _after_all_rows(watched, robot, estimator, treatment, checkpoint, trace, watch)
+    judged = partial(_judged, table, robot, estimator, initial, treatment, variance, times, reach)
+    checkpoint = _after_all_rows(
+        watched, robot, estimator, treatment, checkpoint, trace, watch, judged
+    )
+    result, further = judged(checkpoint, findings)
+    if keep:
+        keep(checkpoint)
+    findings += further
+    return result
+
+
+@dataclass(frozen=True)
+class SoFar:
+    """What is known after some rows of a motion: `batch` are the last ones.
+
+    `estimates` computes the estimates, and `table` the table of parameters with its verdict, which
+    takes as long as at the end of the log; both raise an error where the rows do not suffice.
+    """
+
+    batch: pa.RecordBatch | None
+    estimates: Callable[[], Array]
+    table: Callable[[], Table]
+
+
+def _judged(
+    table: Table,
+    robot: Robot,
+    estimator: BaseEstimator,
+    initial: Array,
+    treatment: Treatment,
+    variance: str,
+    times: Times,
+    reach: Reach,
+    checkpoint: Checkpoint,
+    findings: Sequence[Finding],
+) -> tuple[Table, list[Finding]]:
+    """The table of parameters at a checkpoint, and what is not in order beside the findings."""
     _check_enough(table, robot, checkpoint.subsample.counted)
     try:
         found = outcome(estimator, initial, checkpoint, treatment, robot)
     except NotIdentifiableError as error:
         raise _not_identifiable(table, robot, error) from None
-    if keep:
-        keep(checkpoint)
-    findings += reach.findings(robot, table.period)
-    in_units = all(finding.status != FAILED for finding in findings)
+    further = reach.findings(robot, table.period)
+    every = [*findings, *further]
+    in_units = all(finding.status != FAILED for finding in every)
     if in_units and not estimator.FOLLOWS:
-        findings += of_model(regressed(checkpoint.subsample.rows(), robot), robot)
+        further += of_model(regressed(checkpoint.subsample.rows(), robot), robot)
+        every = [*findings, *further]
     bodies = None
     if treatment.consistent:
         found, bodies = _constrained(found, robot, checkpoint.subsample.rows())
@@ -93,7 +129,7 @@ def identify(
         variance=variance,
         matched=_matched(table),
         unexplained=times.unexplained(found.diagnostics.bursts),
-        failed=[finding.text for finding in findings if finding.status == FAILED],
+        failed=[finding.text for finding in every if finding.status == FAILED],
         bodies=bodies,
     )
     extra = dict(result.meta.extra)
@@ -101,7 +137,10 @@ def identify(
     extra |= {fact: value for fact in kept if (value := table.meta.extra.get(fact))}
     if treatment.counting:
         extra["left_out"] = checkpoint.left_out.counts
-    return replace(result, meta=replace(result.meta, extra=extra))
+    return replace(result, meta=replace(result.meta, extra=extra)), further
+
+
+Watch = Callable[[SoFar], None]
 
 
 def _held(table: Table, robot: Robot, estimator: BaseEstimator, treatment: Treatment) -> Subsample:
@@ -133,7 +172,8 @@ def _after_all_rows(
     treatment: Treatment,
     checkpoint: Checkpoint,
     trace: Sink | None,
-    watch: Callable[[Callable[[], Array]], None] | None,
+    watch: Watch | None,
+    judged: Callable[[Checkpoint, Sequence[Finding]], tuple[Table, list[Finding]]],
 ) -> Checkpoint:
     """The checkpoint after the last row; the trace receives the estimates after every row."""
     schema = _trace_schema(robot, table)
@@ -150,7 +190,8 @@ def _after_all_rows(
         checkpoint, estimates = _stepped(estimator, checkpoint, rows, trace=trace is not None)
         _require_memory(table, checkpoint, allowed)
         if watch and not estimator.HOLDS:
-            watch(partial(_estimates, estimator, checkpoint))
+            so_far = partial(_table, judged, checkpoint)
+            watch(SoFar(batch, partial(_estimates, estimator, checkpoint), so_far))
         if trace and batch is not None:
             new = dict(zip(robot.names, estimates.T, strict=True))
             trace.write(with_columns(batch, schema, new))
@@ -174,6 +215,14 @@ def _require_memory(table: Table, checkpoint: Checkpoint, allowed: int) -> None:
 def _estimates(estimator: BaseEstimator, checkpoint: Checkpoint) -> Array:
     """The estimates from the rows so far."""
     return estimator.fit(checkpoint.state).fit.estimates
+
+
+def _table(
+    judged: Callable[[Checkpoint, Sequence[Finding]], tuple[Table, list[Finding]]],
+    checkpoint: Checkpoint,
+) -> Table:
+    """The table of parameters from the rows so far."""
+    return judged(checkpoint, ())[0]
 
 
 def _matched(table: Table) -> bool:

@@ -11,7 +11,7 @@ from conftest import Result
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, EXCITATIONS
 from scarid_cli.cli import COMMANDS
 from scarid_cli.cli import scarid as group
-from scarid_cli.cli.headings import DATA, ERRORS, METHOD, OUTPUT
+from scarid_cli.cli.headings import DATA, ERRORS, METHOD, MODEL, OUTPUT
 
 Run = Callable[..., Result]
 MANY = 16  # options of one command, which a person does not look through without headings
@@ -71,7 +71,7 @@ def test_many_options_stand_under_headings(name: str) -> None:
 
 def test_the_options_of_identify_are_in_the_order_of_its_work(scarid: Run) -> None:
     found = headings(scarid("identify", "--help").out)
-    assert found[:4] == [DATA, METHOD, ERRORS, OUTPUT]
+    assert found[:5] == [DATA, METHOD, MODEL, ERRORS, OUTPUT]
 
 
 @pytest.mark.parametrize("name", COMMANDS)

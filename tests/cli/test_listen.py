@@ -151,3 +151,65 @@ def test_gaps_are_counted_over_many_rows_whose_clock_jitters() -> None:
     losses.judge()
     assert losses.lost == lost
     assert (losses.out_of_order, losses.repeated, losses.restarts) == (0, 0, 0)
+
+
+def following(path: Path, *words: str) -> subprocess.Popen[bytes]:
+    """A running `scarid listen --follow`, which has said that it waits."""
+    run = subprocess.Popen(
+        [SCARID, "listen", "--follow", str(path), *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    assert run.stderr
+    assert b"waits at" in run.stderr.readline()
+    return run
+
+
+def test_a_growing_file_gives_its_whole_lines_as_they_come(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes(HEADER + b"0,1,2\n")
+    with following(path) as run:
+        assert run.stdout
+        assert run.stdout.readline() == HEADER
+        assert run.stdout.readline() == b"0,1,2\n"
+        with path.open("ab", buffering=0) as file:
+            file.write(b"0.01,1,2\n0.02,1.2")
+            assert run.stdout.readline() == b"0.01,1,2\n"
+            file.write(b"5,2\n0.03,1,")
+            assert run.stdout.readline() == b"0.02,1.25,2\n"
+        run.send_signal(signal.SIGINT)
+        assert run.stdout.read() == b""
+        assert run.stderr
+        told = run.stderr.read().decode()
+        assert run.wait() == 0
+    assert "3 rows; none lost, repeated or out of order; 1 cut short or broken, left out" in told
+
+
+@pytest.mark.parametrize("how", ["cut", "replaced"])
+def test_a_file_that_begins_anew_is_read_anew(tmp_path: Path, how: str) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes(HEADER + b"5,1,2\n5.01,1,2\n")
+    with following(path, "--idle", "0.5") as run:
+        assert run.stdout
+        for _ in range(3):
+            run.stdout.readline()
+        if how == "replaced":
+            other = tmp_path / "other"
+            other.write_bytes(HEADER + b"0,3,4\n")
+            other.rename(path)
+        else:
+            path.write_bytes(HEADER + b"0,3,4\n")
+        assert run.stdout.readline() == b"0,3,4\n"
+        assert run.stderr
+        told = run.stderr.read().decode()
+        assert run.wait() == 0
+    assert "the time began again 1 time; read anew once" in told
+
+
+@pytest.mark.parametrize("words", [(), ("--port", "5999", "--follow", "log.csv")])
+def test_a_port_or_a_file_is_listened_to(words: tuple[str, ...], tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_bytes(HEADER)
+    run = subprocess.run([SCARID, "listen", *words], capture_output=True, cwd=tmp_path, check=False)
+    assert run.returncode == 2
+    assert b"give --port N or --follow FILE, and not both" in run.stderr

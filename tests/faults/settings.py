@@ -24,8 +24,8 @@ INPUTS = {
     "listen": ("--port", "5998", "--idle", "0.01"),
 }
 COMMANDS = ("trajgen", "simulate", "resample", "check", "filter", "tune", "differentiate",
-            "identify", "validate", "compare", "payload", "gains", "export", "report", "plot", "convert",
-            "listen", "info")  # fmt: skip
+            "identify", "watch", "validate", "compare", "payload", "gains", "export", "report",
+            "plot", "convert", "listen", "info")  # fmt: skip
 ENVIRONMENTS = (
     {"SCARID_FORMAT": "x"}, {"SCARID_FORMAT": ""}, {"SCARID_ROBOT": "x"}, {"SCARID_ROBOT": ""},
     {"SCARID_MAX_BATCH": "x"}, {"SCARID_MAX_BATCH": "0"}, {"SCARID_MAX_BATCH": "1"},

@@ -116,6 +116,7 @@ class Shapes:
         signals = Signals.of(rows, self.model, self.theta)
         columns = np.zeros((*rows.y.shape, len(self.additions)))
         joints = np.ones(rows.y.shape[1])
+        signals = replace(signals, turns=joints > 0.0)  # those of the log that shows them
         for k, addition in enumerate(self.additions):
             usual, cycles = addition.usual * joints, addition.cycles * joints
             own = replace(signals, usual=usual, cycles=cycles)

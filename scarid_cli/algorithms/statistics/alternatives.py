@@ -50,6 +50,7 @@ TORQUES = (
     UNEVEN,
     GEOMETRY,
 )
+TURN = 0.5 * np.pi  # rad: over less, what varies over a turn cannot be told from what does not
 WINDOW = 0.2  # s: length of the Hann window that smooths all signals
 BESIDE_FRICTION = (
     "offset",
@@ -142,7 +143,8 @@ class Signals:
     """What torques beyond the model depend on, each (samples, joints).
 
     `q`, `v` and `time` [s] from the start; `predicted` are the torques of the model, `transmitted`
-    those of it that pass through the gears, 0 without a model. `usual` (joints) are the speeds
+    those of it that pass through the gears, 0 without a model. `turns` (joints) is whether a joint
+    turns by a good part of a turn. `usual` (joints) are the speeds
     by which velocities are scaled, `cycles` (joints) the periods of ripple per rad or m, and
     `passed` what the low-pass behind the rows leaves of a frequency [Hz].
     """
@@ -152,6 +154,7 @@ class Signals:
     time: Array
     predicted: Array
     transmitted: Array
+    turns: Marks
     usual: Array
     cycles: Array
     passed: Callable[[Array], Array]
@@ -167,7 +170,8 @@ class Signals:
         usual = np.sqrt(np.mean(v**2, axis=0)) + 1e-300
         own = np.flatnonzero(model.transmits) if model else np.empty(0, dtype=np.int64)
         torques = predicted(rows, estimates), rows.W[:, :, own] @ estimates[own]
-        return cls(q, v, time, *torques, usual, np.zeros(v.shape[1]), partial(gain, rows))
+        turns = turning(rows, model)
+        return cls(q, v, time, *torques, turns, usual, np.zeros(v.shape[1]), partial(gain, rows))
 
     def friction(self, decayed: float) -> Array:
         """Friction that has decayed at this part of the usual speed."""
@@ -177,6 +181,13 @@ class Signals:
         """What is left of a sine or cosine; 0 where there is no ripple."""
         left = self.passed(self.cycles * self.v) * wave(2.0 * np.pi * self.cycles * self.q)
         return np.asarray(left * (self.cycles > 0.0))
+
+
+def turning(rows: Rows, model: Model | None) -> Marks:
+    """Whether each joint turns by more than TURN (joints)."""
+    far = np.ptp(rows.motion[0], axis=1) > TURN
+    units = [joint.unit for joint in model.robot.joints] if model else ["rad"] * len(far)
+    return np.asarray(far & (np.array(units) == "rad"))
 
 
 SHAPES: dict[str, Callable[[Signals], Array]] = {
@@ -194,8 +205,8 @@ SHAPES: dict[str, Callable[[Signals], Array]] = {
     SINE: lambda x: x.ripple(np.sin),
     COSINE: lambda x: x.ripple(np.cos),
     # Coulomb friction that varies over a turn, as of gears that are not round.
-    UNEVEN_SINE: lambda x: np.sign(x.v) * np.sin(x.q),
-    UNEVEN_COSINE: lambda x: np.sign(x.v) * np.cos(x.q),
+    UNEVEN_SINE: lambda x: np.sign(x.v) * np.sin(x.q) * x.turns,
+    UNEVEN_COSINE: lambda x: np.sign(x.v) * np.cos(x.q) * x.turns,
 }
 
 

@@ -30,6 +30,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     UNEVEN,
     WAVES,
     Model,
+    turning,
 )
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.consequences import held_out_squares
@@ -88,6 +89,7 @@ def friction(
     """
     rows = thinned(rows)
     there = {(x.name, x.joint) for x in fitted}
+    there |= {(WAVES[UNEVEN][0], j) for j in np.flatnonzero(~turning(rows, model)).tolist()}
     further = list(_candidates(rows, cycles, rows.W.shape[2], there))
     additions = [addition for each in further for addition in each.additions]
     wide = Shapes(additions, model, theta).beside(rows)

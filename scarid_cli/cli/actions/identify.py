@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -27,6 +28,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
+from scarid_cli.cli.board import Board
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import read, searching, tell_of
@@ -49,6 +51,7 @@ from scarid_cli.stages.blind import FOR_MOTION, Choices, Chosen, Prepared
 from scarid_cli.stages.corrected import corrected, correction, gains_of, told_gains
 from scarid_cli.stages.documents import identification
 from scarid_cli.stages.free import Anchor, freed
+from scarid_cli.stages.identify import SoFar
 from scarid_cli.stages.parameters import identified
 from scarid_cli.stages.possible import require_bodies
 
@@ -75,6 +78,22 @@ def run(
     **given: Any,
 ) -> int:
     """Write the parameters, and report the verdict; returns the exit status."""
+    own = {"variance": variance, "require": require, "as_json": as_json}
+    return shown(job, None, files=files, robot=robot, **own, **given)
+
+
+def shown(
+    job: Job,
+    board: Board | None,
+    *,
+    files: tuple[str, ...],
+    robot: str | None,
+    variance: str,
+    require: str | None,
+    as_json: bool,
+    **given: Any,
+) -> int:
+    """The same, with a board that shows what is known after each batch of rows."""
     choices = _choices(given)
     side, place = job.side_table(given["trace"]), job.side_text(given["save"])
     reading = partial(_read, job, choices.of_motion().method)
@@ -88,6 +107,11 @@ def run(
         logs, choices = _corrected(job, given["gains"], logs, arm, choices)
     prepared = blind.prepared(logs, arm, choices, progress=searching(job))
     chosen = prepared.chosen
+    if board and (prepared.smoothed or chosen.treatment.holds):
+        raise UsageFault(
+            "watch shows estimates row by row, and the input is a measurement: let `scarid "
+            "differentiate` estimate its velocities and accelerations before"
+        )
     tell_of(job, prepared, logs, _options(chosen))
     if treatment.choose_friction and not chosen.treatment.align:
         raise UsageFault(
@@ -114,7 +138,7 @@ def run(
         checkpoint=_restored(given["resumed"], fixed, solver, arm),
         keep=places.append,
         findings=findings,
-        watch=watcher(job, arm.names) if is_terminal(2) else None,
+        watch=_watch(job, arm, board),
     )
     document = partial(identification, estimator=chosen.name) if as_json else None
     job.write_or_print(result, document)
@@ -126,6 +150,13 @@ def run(
     _tell_of_gains(job, result, untold)
     _tell(job, prepared.motion, arm.name, chosen, result.meta.extra)
     return _status(job, require, result.meta.extra)
+
+
+def _watch(job: Job, arm: Robot, board: Board | None) -> Callable[[SoFar], None] | None:
+    """What shows the estimates so far, if somebody watches."""
+    if board:
+        return board.watched(arm)
+    return watcher(job, arm.names) if is_terminal(2) else None
 
 
 def _choices(given: dict[str, Any]) -> Choices:
