@@ -25,9 +25,9 @@ from scarid_cli.algorithms.statistics.consequences import (
     consequences,
     gain_sensitivities,
 )
+from scarid_cli.algorithms.statistics.cuts import Cut
 from scarid_cli.algorithms.statistics.effects import Effect, Trial, of_low_pass
 from scarid_cli.algorithms.statistics.explanations import Explanation, explanations
-from scarid_cli.algorithms.statistics.halves import Halves
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
     inflation,
@@ -53,8 +53,8 @@ class Diagnostics:
     effective number of blocks, and `quantiles` (own) are half the widths of 95 % intervals, in
     errors. `gains` (joints, own) is how far the estimates move per relative
     change of the torque constant of a joint. `bursts` are the intervals that the model does not
-    explain, counted from sample 0 of a record that is known as a whole. `halves` are the estimates
-    of its halves, None if these do not determine them. `offsets` [N m or N] are those of the
+    explain, counted from sample 0 of a record that is known as a whole. `cuts` are the estimates
+    before and after some times [s] from its first sample on. `offsets` [N m or N] are those of the
     torques of joints (from 0) that were fitted beside the parameters, and `additions` what else
     was. Each of the `explanations` alone explains nearly all that the torques are beyond the model.
     `cycles` (ripples, joints) are the periods per rad or m of the likeliest ripples. `totals`
@@ -77,7 +77,7 @@ class Diagnostics:
     counts: Array
     inflation: float
     bursts: tuple[Interval, ...] = ()
-    halves: Halves | None = None
+    cuts: tuple[tuple[float, Cut], ...] = ()
     explanations: tuple[Explanation, ...] = ()
     cycles: Array = field(default_factory=lambda: np.zeros((0, 0)))
     offsets: dict[int, float] = field(default_factory=dict)
@@ -160,7 +160,7 @@ def diagnose(
         counts=_counts(white, whole, whitened=noise is not None),
         inflation=_inflation(found.fit, scatter),
         bursts=() if record else bursts_of(rows, trimmed(whole)),
-        halves=trial.halves(longer),
+        cuts=trial.cuts(longer),
         explanations=explanations(trial, effects) if model and trial.plain else (),
         cycles=trial.ripples.cycles,
     )

@@ -23,8 +23,8 @@ from scarid_cli.algorithms.statistics.alternatives import (
     torque_columns,
 )
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
+from scarid_cli.algorithms.statistics.cuts import Cut, cuts
 from scarid_cli.algorithms.statistics.geometry import distance_columns
-from scarid_cli.algorithms.statistics.halves import Halves, halves
 from scarid_cli.algorithms.statistics.jackknife import block_numbers, quantile
 from scarid_cli.algorithms.statistics.parallel import ZEROS, smoothed
 from scarid_cli.algorithms.statistics.products import Products, Solved, jackknifed
@@ -228,9 +228,17 @@ class Trial:
             ratios = errors / jackknifed(self.plain.deviations)
         return np.asarray(np.where(ratios > 1.0, np.nan_to_num(ratios, posinf=1.0), 1.0))
 
-    def halves(self, longer: Array) -> Halves | None:
-        """The two halves of the record, with errors that are so many times those of blocks."""
-        return halves(self.beyond[0], longer, self.own) if self.plain else None
+    def cuts(self, longer: Array) -> tuple[tuple[float, Cut], ...]:
+        """Cuts of the record and their times [s] from its first sample on.
+
+        Their errors are so many times those of blocks.
+        """
+        if not self.plain:
+            return ()
+        found = cuts(self.beyond[0], longer, self.own)
+        starts = self.rows.at[np.searchsorted(self.number, [cut.at for cut in found])]
+        times = (starts - self.rows.at[0]) * self.rows.h
+        return tuple(zip(times.tolist(), found, strict=True))
 
     def effects(self) -> tuple[Effect, ...]:
         """The effects of all alternatives that the rows determine."""

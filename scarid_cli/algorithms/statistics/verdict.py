@@ -12,6 +12,7 @@ from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics import gains
 from scarid_cli.algorithms.statistics.alternatives import transmitted
+from scarid_cli.algorithms.statistics.cuts import Cut
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
 from scarid_cli.algorithms.statistics.jackknife import quantile
@@ -28,7 +29,7 @@ from scarid_cli.algorithms.statistics.sentences import (
     percents,
     percents_of_joints,
 )
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, Marks
 
 if TYPE_CHECKING:  # cvxpy takes a second to import
     from scarid_cli.algorithms.robots.possible import Possible
@@ -218,21 +219,30 @@ def _allowed(evidence: Evidence) -> Array:
 
 def _changed(evidence: Evidence, robot: Robot) -> list[str]:
     """Parameters of the links that changed during the log; friction may warm up."""
-    halves = evidence.diagnostics.halves
-    if halves is None:
-        return []
     friction = {p.name for p in robot.parameters if not transmitted(p.term)}
     links = np.array([name not in friction for name in evidence.names])
-    moved = 0.5 * (halves.second - halves.first)
-    far = halves.differ(links) & (np.abs(moved) > _allowed(evidence))
-    if not far.any():
+    cuts = evidence.diagnostics.cuts
+    found = [(*_farthest(evidence, cut, links), time, cut) for time, cut in cuts]
+    if not found:
         return []
-    worst = int(np.argmax(np.where(far, np.abs(moved) / halves.errors, 0.0)))
-    size = errors_in(2.0 * float(np.abs(moved[worst]) / halves.errors[worst]))
+    errors, worst, time, cut = max(found, key=lambda x: x[0])
+    if not errors:
+        return []
     return [
-        f"the halves of the log disagree: {evidence.names[worst]} is {halves.first[worst]:.3g} in "
-        f"the first and {halves.second[worst]:.3g} in the second ({size}): did the payload change?"
+        f"the log is not of one robot: {evidence.names[worst]} is {cut.before[worst]:.3g} up to "
+        f"about {time:.3g} s after its start, and {cut.after[worst]:.3g} from then on "
+        f"({errors_in(errors)}): did the payload change?"
     ]
+
+
+def _farthest(evidence: Evidence, cut: Cut, links: Marks) -> tuple[float, int]:
+    """By how many errors the estimate moves most that differs, and which it is; 0 if none does."""
+    moved = np.abs(cut.after - cut.before)
+    far = cut.differ(links) & (0.5 * moved > _allowed(evidence))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sizes = np.where(far, moved / cut.errors, 0.0)
+    worst = int(np.argmax(sizes))
+    return float(sizes[worst]), worst
 
 
 def _vague(evidence: Evidence) -> list[str]:

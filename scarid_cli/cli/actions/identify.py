@@ -78,8 +78,16 @@ def run(
     **given: Any,
 ) -> int:
     """Write the parameters, and report the verdict; returns the exit status."""
-    own = {"variance": variance, "require": require, "as_json": as_json}
-    return shown(job, None, files=files, robot=robot, **own, **given)
+    return shown(
+        job,
+        None,
+        files=files,
+        robot=robot,
+        variance=variance,
+        require=require,
+        as_json=as_json,
+        **given,
+    )
 
 
 def shown(

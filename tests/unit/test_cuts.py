@@ -12,8 +12,8 @@ from unit.test_effects import axis, diagnosed
 
 from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.statistics.cuts import Cut
 from scarid_cli.algorithms.statistics.diagnostics import diagnose
-from scarid_cli.algorithms.statistics.halves import Halves
 from scarid_cli.arrays import Array
 
 PAYLOAD = 2.0  # kg
@@ -26,10 +26,21 @@ def picked_up(motion: Array) -> Array:
     return np.asarray(PAYLOAD * motion[2] * (np.arange(samples) >= samples // 2))
 
 
-def halves(rows: Rows) -> Halves:
-    found = diagnosed(rows).halves
-    assert found
-    return found
+def halves(rows: Rows) -> Cut:
+    """The cut in the middle."""
+    found = [cut for _, cut in diagnosed(rows).cuts]
+    count = len({cut.at for cut in found})
+    assert count == len(found)
+    return found[count // 2]
+
+
+def first(rows: Rows) -> list[tuple[float, float]]:
+    """Time and size, in errors, of the cuts behind which the mass differs."""
+    return [
+        (time, float(abs(cut.after[0] - cut.before[0]) / cut.errors[0]))
+        for time, cut in diagnosed(rows).cuts
+        if cut.differ(ALL)[0]
+    ]
 
 
 def refitted(rows: Rows) -> Array:
@@ -39,15 +50,30 @@ def refitted(rows: Rows) -> Array:
 def test_the_halves_are_those_of_separate_fits() -> None:
     rows = axis(picked_up)
     found, middle = halves(rows), rows.samples // 2
-    np.testing.assert_allclose(found.first, refitted(rows.part(slice(0, middle))), rtol=1e-6)
-    np.testing.assert_allclose(found.second, refitted(rows.part(slice(middle, None))), rtol=1e-6)
+    np.testing.assert_allclose(found.before, refitted(rows.part(slice(0, middle))), rtol=1e-6)
+    np.testing.assert_allclose(found.after, refitted(rows.part(slice(middle, None))), rtol=1e-6)
 
 
 def test_a_payload_is_found_and_its_mass_is_the_difference() -> None:
     found = [halves(axis(picked_up, seed=seed)) for seed in range(20)]
     assert all(one.differ(ALL).tolist() == [True, False, False, False] for one in found)
-    differences = [one.second[0] - one.first[0] for one in found]
+    differences = [one.after[0] - one.before[0] for one in found]
     assert np.mean(differences) == pytest.approx(PAYLOAD, abs=found[0].errors[0])
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5, 0.7])
+def test_the_time_of_the_payload_is_found(share: float) -> None:
+    """The clearest cut is within a tenth of the log of the change."""
+
+    def later(motion: Array) -> Array:
+        samples = motion.shape[2]
+        return np.asarray(PAYLOAD * motion[2] * (np.arange(samples) >= share * samples))
+
+    for seed in range(5):
+        rows = axis(later, seed=seed)
+        duration = rows.samples * rows.h
+        time, _ = max(first(rows), key=lambda x: x[1])
+        assert abs(time - share * duration) < 0.1 * duration
 
 
 def test_a_robot_that_stays_the_same_is_not_called_changed() -> None:
@@ -55,8 +81,8 @@ def test_a_robot_that_stays_the_same_is_not_called_changed() -> None:
     ratios = []
     for seed in range(60):
         found = halves(axis(seed=seed))
-        assert not found.differ(ALL).any()
-        ratios.append((found.second - found.first) / found.errors)
+        assert not any(cut.differ(ALL).any() for _, cut in diagnosed(axis(seed=seed)).cuts)
+        ratios.append((found.after - found.before) / found.errors)
     assert np.all(np.sqrt(np.mean(np.square(ratios), axis=0)) < 1.25)
     assert np.all(np.sqrt(np.mean(np.square(ratios), axis=0)) > 0.6)
 
@@ -67,4 +93,5 @@ def test_halves_that_do_not_determine_the_parameters_are_not_compared() -> None:
     W = rows.W.copy()
     W[:2000, :, 0] = 0.0
     rows = replace(rows, W=W, y=W @ THETA)
-    assert diagnose(rows, estimated(ls.Estimator(), rows), P).halves is None
+    found = diagnose(rows, estimated(ls.Estimator(), rows), P).cuts
+    assert all(time > 0.5 * 4000 * rows.h for time, _ in found)
