@@ -17,6 +17,9 @@
 # make gauntlet       the blind procedure on four robots under all conditions (an hour)
 # make bench-mixtures the blind procedure on logs with random mixtures of imperfections
 # make bench-gains    torques of one joint in another unit: named, and the estimates
+# make bench-forgetting  parameters that change: variable forgetting beside constant factors
+# make bench-friction   what `identify --friction auto` chooses, judged on another motion
+# make bench-contacts   false alarms and pushes of `validate --residual`
 # make bench-known-load   torque constants from a load whose mass is known: within their intervals?
 # make bench-coarse   the choice of a bandwidth where positions are coarse
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
@@ -43,7 +46,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-known-load bench-gains bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-known-load bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -148,6 +151,15 @@ bench-coarse: $(VENV)/tested
 
 bench-gains: $(VENV)/tested
 	$(BIN)/python benchmarks/gains.py
+
+bench-forgetting: $(VENV)/tested
+	$(BIN)/python benchmarks/forgetting.py
+
+bench-friction: $(VENV)/tested
+	$(BIN)/python benchmarks/friction.py
+
+bench-contacts: $(VENV)/tested
+	$(BIN)/python benchmarks/contacts.py
 
 bench-mujoco: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/mujoco_arms.py --seeds 10

@@ -10,6 +10,7 @@ from typing import Any, cast, get_type_hints
 
 import numpy as np
 
+from scarid_cli.algorithms.estimators.adaptive import Bank
 from scarid_cli.algorithms.estimators.ekf import FilterState
 from scarid_cli.algorithms.estimators.rls import WeightedInformation
 from scarid_cli.algorithms.regression.counting import LeftOut, Speeds
@@ -27,6 +28,7 @@ from scarid_cli.stages.soundness import require_state
 KNOWN = {
     kind.__name__: kind
     for kind in (
+        Bank,
         Blocks,
         Information,
         Checkpoint,

@@ -12,6 +12,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from scarid_cli.algorithms.estimators.adaptive import FILTERS, LONGEST, Bank
 from scarid_cli.algorithms.estimators.ekf import FilterState
 from scarid_cli.algorithms.estimators.rls import WeightedInformation
 from scarid_cli.algorithms.regression.counting import Speeds
@@ -102,6 +103,17 @@ def _weighted(found: WeightedInformation, joints: int, _parameters: int) -> None
     _hold(found.residuals.shape in ((0, RUNNING), (joints, RUNNING)))
 
 
+def _bank(found: Bank, joints: int, parameters: int) -> None:
+    filters, p = len(found.weights), parameters
+    _hold(filters == FILTERS and found.means.shape == (filters, p))
+    _hold(found.covariances.shape == (filters, p, p) and found.gram.shape == (p, p))
+    _hold(found.noise.shape in ((0,), (joints,)))
+    _hold(found.noise.shape == found.torque.shape == found.alike.shape)
+    _hold(min(found.seen, found.rows, found.windows) >= 0 and bool((found.weights >= 0.0).all()))
+    positive = all(bool((x > 0.0).all()) for x in (found.noise, found.alike))
+    _hold(positive and len(found.window) < LONGEST and abs(found.weights.sum() - 1.0) < 1e-6)
+
+
 def _filter(found: FilterState, joints: int, parameters: int) -> None:
     size = 2 * joints + parameters
     _hold(found.x.shape == (size,) and found.covariance.shape == (size, size))
@@ -120,6 +132,7 @@ SIZES: dict[type, Callable[[Any, int, int], None]] = {
     Information: _information,
     WeightedInformation: _weighted,
     FilterState: _filter,
+    Bank: _bank,
     Speeds: _speeds,
 }
 
