@@ -1,4 +1,4 @@
-"""The measurements that led to the default settings, on the simulated robot; see DESIGN.md."""
+"""The measurements behind the defaults, on the simulated robot; see docs/design/signals.md."""
 
 from __future__ import annotations
 

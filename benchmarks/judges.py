@@ -1,4 +1,4 @@
-"""How well criteria that do not know the truth choose settings; see DESIGN.md.
+"""How well criteria that do not know the truth choose settings; see docs/design/signals.md.
 
 For causal methods on quintic moves measured by encoders of 13 and 16 bit: the error with the
 settings that a criterion chooses, over the error with those that the truth would choose. The

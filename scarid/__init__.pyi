@@ -456,7 +456,7 @@ def identify(
     to_time: Values | None = None,
     rows: Values | None = None,
     missing: Literal['refuse', 'drop', 'split'] | None = None,
-    estimator: Literal['didim', 'ekf', 'gls', 'irls', 'iv', 'ls', 'ml', 'rls', 'separable', 'tls', 'wls'] | None = None,
+    estimator: Literal['adaptive', 'didim', 'ekf', 'gls', 'irls', 'iv', 'ls', 'ml', 'rls', 'separable', 'tls', 'wls'] | None = None,
     set: Settings | None = None,
     forgetting: Values | None = None,
     p0: Values | None = None,

@@ -20,7 +20,7 @@ from scarid_cli.arrays import Array, Marks, Numbers
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.coupled import CoupledTerm
 
-# Chosen on simulated robots, see DESIGN.md, section "Rows that count".
+# Chosen on simulated robots, see docs/design/estimation.md, "Rows that count".
 SLOW = 0.02  # share of the root-mean-square velocity
 NOISES = 3.0  # standard deviations of the noise of the velocity
 REVERSAL = 0.5  # periods of the bandwidth, before and after a reversal

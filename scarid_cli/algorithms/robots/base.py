@@ -19,7 +19,8 @@ RANDOM_STATES = 400
 ROWS = 4000  # of the regressor at least, with fewer states for robots with many joints
 STATE_RANGE = 3.0  # rad or m, and per s and s2
 # Descriptions round angles to 1.5708 or 3.14159. What such an angle adds is 1e-5 at most; no log
-# can show it, and among 75 URDFs every other rest is below 1e-9 or above 1e-2 (DESIGN.md).
+# can show it, and among 75 URDFs every other rest is below 1e-9 or above 1e-2
+# (docs/design/robots.md).
 DEPENDENT = 1e-4  # of a column: what is left of it counts as nothing
 NOTHING = 1e-5  # of the longest column: a column, or what is left of it, that counts as nothing
 ROUNDING = 1e-12
