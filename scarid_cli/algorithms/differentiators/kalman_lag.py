@@ -62,7 +62,7 @@ class Differentiator(KalmanMethod):
 
     def step(self, state: FixedLagState, x: Array) -> tuple[FixedLagState, tuple[Array, ...]]:
         after, new = kalman.recorded(state.filter, x)
-        records = state.waiting.followed_by(new)
+        records = kalman.Records.joined([state.waiting, new])
         lag = len(state.weights) - 1
         out = kalman.lagged(records, max(len(records) - lag, 0), after, state.weights)
         waiting = FixedLagState(after, records.last(lag), state.weights)

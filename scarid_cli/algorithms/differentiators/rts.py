@@ -19,15 +19,20 @@ out (at most 3 in a row).
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-import numpy as np
+from typing import Any
 
 from scarid_cli.algorithms.choices.settings import require_not_negative
-from scarid_cli.algorithms.filters import kalman
 from scarid_cli.algorithms.filters.kalman_method import KalmanMethod
-from scarid_cli.algorithms.processes.method import Matching
+from scarid_cli.algorithms.filters.smoothing import (
+    ALL,
+    DERIVATIVES,
+    MatchedSmoothing,
+    Smoothing,
+)
+from scarid_cli.algorithms.processes.matching import over
+from scarid_cli.algorithms.processes.method import MatchedForm, Matching
 from scarid_cli.algorithms.processes.process import WholeRecord
-from scarid_cli.algorithms.processes.records import RecordMethod
+from scarid_cli.algorithms.processes.records import MatchedRecord, RecordMethod
 from scarid_cli.algorithms.tuning.likelihood import best_model, best_smoothing
 from scarid_cli.arrays import Array
 
@@ -57,10 +62,25 @@ class Differentiator(KalmanMethod, RecordMethod):
             return self
         return best_smoothing(best_model(self, x, h), x, h)
 
+    def init(self, x: float, h: float) -> Any:
+        return self._known.init(x, h) if self.is_fitted else super().init(x, h)
+
+    def step(self, state: Any, x: Array) -> tuple[Any, tuple[Array, ...]]:
+        return self._known.step(state, x) if self.is_fitted else super().step(state, x)
+
+    def finish(self, state: Any) -> tuple[Array, ...]:
+        return self._known.finish(state) if self.is_fitted else super().finish(state)
+
+    @property
+    def _known(self) -> Smoothing:
+        """The smoother with these settings, which does not hold the whole record."""
+        return Smoothing(self, DERIVATIVES)
+
     def smoothed(self, x: Array, h: float) -> tuple[Array, ...]:
-        method = self.fitted(x, h)
-        state, records = kalman.recorded(method.model(h).at_rest(x[0]), x)
-        return tuple(np.ascontiguousarray(kalman.smoothed(records, state).T))
+        return over(Smoothing(self.fitted(x, h), ALL), x, h)
+
+    def matched(self) -> MatchedForm:
+        return MatchedSmoothing(self) if self.is_fitted else MatchedRecord(self)
 
     def torque_filter(self) -> SmoothedSignal:
         return SmoothedSignal(self.ungated())

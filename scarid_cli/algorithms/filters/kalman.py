@@ -6,6 +6,7 @@ acceleration. See docs/theory.md, section "Kalman filters and smoothers".
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -130,15 +131,22 @@ class Records:
     def __len__(self) -> int:
         return len(self.predictions)
 
+    def first(self, rows: int) -> Records:
+        """The records of the first rows."""
+        return Records(*(array[:rows] for array in self.arrays))
+
     def last(self, rows: int) -> Records:
         """The records of the last rows."""
         start = max(len(self) - rows, 0)
         return Records(*(array[start:] for array in self.arrays))
 
-    def followed_by(self, other: Records) -> Records:
-        """These records and those of the rows after them."""
-        pairs = zip(self.arrays, other.arrays, strict=True)
-        return Records(*(np.concatenate(pair) for pair in pairs))
+    @classmethod
+    def joined(cls, parts: Sequence[Records]) -> Records:
+        """The records of rows that follow each other; at least one of them."""
+        if len(parts) == 1:
+            return parts[0]
+        pieces = zip(*(part.arrays for part in parts), strict=True)
+        return cls(*(np.concatenate(piece) for piece in pieces))
 
 
 def recorded(state: KalmanState, x: Array) -> tuple[KalmanState, Records]:
@@ -175,7 +183,10 @@ def lagged(records: Records, rows: int, state: KalmanState, weights: Array) -> A
 
 
 def smoothed(records: Records, state: KalmanState) -> Array:
-    """Position, velocity and acceleration (rows, 3) of every row, each from all rows."""
+    """Position, velocity and acceleration (rows, 3) of every row, each from all rows.
+
+    state: a later one of the filter, whose gain is as constant as that of any of the rows.
+    """
     out = np.empty((len(records), 3))
     room = np.empty(2 * len(state.x))
     kalman.smoothed(*records.arrays, state.P, state.model.F, out, room)

@@ -24,7 +24,7 @@ class RecordMethod(WholeRecord, Method):
     def over(self, x: Array, h: float) -> tuple[Array, ...]:
         return self.smoothed(x, h)[1:]
 
-    def matched(self) -> MatchedRecord:
+    def matched(self) -> MatchedForm:
         return MatchedRecord(self)
 
 
