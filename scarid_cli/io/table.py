@@ -193,7 +193,11 @@ def _cast(column: pa.Array, field: pa.Field, name: str) -> pa.Array:
 
 def without(table: Table, column: str) -> Table:
     """The table without a column."""
-    kept = [name for name in table.columns if name != column]
+    return only(table, [name for name in table.columns if name != column])
+
+
+def only(table: Table, kept: list[str]) -> Table:
+    """The table with these of its columns."""
     schema = pa.schema([table.schema.field(name) for name in kept])
     return replace(table, schema=schema, batches=(batch.select(kept) for batch in table.batches))
 

@@ -15,7 +15,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.equivalent import chain, equivalent, typed
 from scarid_cli.algorithms.tuning.lead import without_lead
 from scarid_cli.algorithms.tuning.likelihood import noise_floor
-from scarid_cli.algorithms.tuning.lowpassed import ORDER, Segment, removed
+from scarid_cli.algorithms.tuning.lowpassed import END, ORDER, Segment, removed
 from scarid_cli.algorithms.tuning.scatter import Choice, Scatter, chosen, curve, lowest
 from scarid_cli.algorithms.tuning.search import Trial
 from scarid_cli.algorithms.tuning.spread import spread
@@ -26,6 +26,7 @@ from scarid_cli.stages.tune import BANDWIDTH, SCATTER, Progress, Tried, nearest
 CHOICES = 3  # at most, each without the lead of the torques behind the cut-off of the one before
 FEWEST = 100  # rows: a shorter log says little about which joints move
 STILL = 10.0  # standard deviations of its noise within which a joint rests
+SEEN = 1.0  # Hz: the spectrum of a long log is that of blocks of 20 s
 NEAR = 0.1  # octaves between two cut-offs that count as the same
 
 
@@ -65,7 +66,8 @@ class Bandwidth:
 def bandwidth(record: Record, robot: Robot, progress: Progress = lambda: None) -> Bandwidth:
     """The cut-off at which estimates of the parameters of this robot agree best."""
     segments = record.segments
-    sample, share = spread(segments, record.h, lowest(robot, segments, record.h))
+    some, _ = spread(segments, record.h, SEEN)
+    sample, share = spread(segments, record.h, lowest(robot, some, record.h))
     points = curve(robot, sample, record.h, progress, share)
     if not _known(points):
         raise _too_few(record, robot)
@@ -105,10 +107,16 @@ def _known(points: Sequence[Scatter]) -> bool:
 
 
 def _noise(segments: Sequence[Segment], h: float, cutoff: float) -> float:
-    """What the low-pass takes from the positions (rms), at least what their resolution makes."""
-    rest = np.concatenate([removed(segment, h, cutoff) for segment in segments], axis=1)
-    floors = [noise_floor(list(segment.q)) for segment in segments]
-    return max(float(np.sqrt(np.mean(rest**2))), *floors)
+    """What the low-pass takes from the positions (rms), at least what their resolution makes.
+
+    Of a long log it is that of blocks, whose ends do not count.
+    """
+    some, share = spread(segments, h, cutoff)
+    ends = int(END / cutoff / h) if share < 1.0 else 0
+    rest = [removed(segment, h, cutoff) for segment in some]
+    inner = np.concatenate([x[:, ends : x.shape[1] - ends] for x in rest], axis=1)
+    floors = [noise_floor(list(segment.q)) for segment in some]
+    return max(float(np.sqrt(np.mean(inner**2))), *floors)
 
 
 def tune_for(

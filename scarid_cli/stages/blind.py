@@ -19,7 +19,7 @@ from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.io.schemas import numbered
-from scarid_cli.io.table import Metadata, Table
+from scarid_cli.io.table import SEGMENT, Metadata, Table, only
 from scarid_cli.stages.identify import identify
 
 if TYPE_CHECKING:  # scipy is needed for measurements only
@@ -168,6 +168,18 @@ def estimated(
     solver = found.chosen.method(**settings)
     start = np.zeros(len(robot.names)) if initial is None else initial
     return identify(found.motion, robot, solver, start, treatment=found.chosen.treatment, **further)
+
+
+def needed(log: Table, *, reference: bool) -> Table:
+    """A measurement without the columns that no step of the procedure reads.
+
+    It is held in memory. The estimator may read the `reference`.
+    """
+    if is_motion(log):
+        return log
+    names = {"t", SEGMENT, *numbered(log.columns, "q", "dq", "tau")}
+    ends = ("_measured", "_ref") if reference else ("_measured",)
+    return only(log, [c for c in log.columns if c in names or c.endswith(ends)])
 
 
 def is_motion(table: Table) -> bool:

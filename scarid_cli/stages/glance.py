@@ -16,7 +16,11 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Table
-from scarid_cli.stages.logs import log_of
+from scarid_cli.stages.compact import Compact
+from scarid_cli.stages.holding import measured
+from scarid_cli.stages.logs import velocities_of
+
+BLOCKS, ROWS = 10, 20_000  # of a long log
 
 
 def of_extremes(q: Array, tau: Array, robot: Robot, period: float) -> list[Finding]:
@@ -56,12 +60,34 @@ def in_seconds(log: Table) -> Iterator[None]:
         raise
 
 
-def of_measurement(table: Table, robot: Robot) -> list[Finding]:
-    """What is not in order in the values of a measurement in memory."""
-    log = log_of(table, len(robot.joints))
-    found = [clock.held(log), values.saturation(log.tau)]
+def of_measurement(held: Compact) -> list[Finding]:
+    """What is not in order in the values of a measurement in memory.
+
+    What concerns all of a long log is seen in blocks that are spread over it.
+    """
+    log = _log(held)
+    some = _spread(log)
+    found = [clock.held(some), values.saturation(log.tau)]
     if log.dq is not None:
-        found.append(velocities.finding(velocities.relation(log, table.period), table.period))
+        period = held.source.period
+        found.append(velocities.finding(velocities.relation(some, period), period))
     if leapt := leaps.found_in(log):
         found += [leaps.wraps(leapt), leaps.glitches(leapt, log.resampling("--missing", "drop"))]
     return [finding for finding in found if finding.status != OK]
+
+
+def _log(held: Compact) -> Log:
+    """The log of a measurement in memory, of which it has views."""
+    joints = held.joints
+    t, q, tau = held.values[0], held.values[1 : joints + 1], held.values[joints + 1 :]
+    others = [x for x in measured(held.source.schema) if x not in held.names]
+    dq = velocities_of(held.source, joints)
+    return Log(t, q, tau, held.other(others) if others else None, held.other(dq) if dq else None)
+
+
+def _spread(log: Log) -> Log:
+    """Blocks that are spread over a long log, or all of another."""
+    if log.rows <= 2 * BLOCKS * ROWS:
+        return log
+    starts = np.arange(BLOCKS) * ((log.rows - ROWS) // (BLOCKS - 1))
+    return log.part((starts[:, None] + np.arange(ROWS)).ravel())

@@ -15,7 +15,7 @@ def log_of(table: Table, joints: int) -> Log:
     names = ["t", *of_joints(joints, "q{i}", "tau{i}")]
     others = [name for name in measured(table.schema) if name not in names]
     names += others
-    velocities = _velocities(table, joints)
+    velocities = velocities_of(table, joints)
     names += velocities
     parts = [matrix(batch, names) for batch in table.batches]
     whole = np.concatenate(parts, axis=1) if parts else np.empty((len(names), 0))
@@ -25,7 +25,7 @@ def log_of(table: Table, joints: int) -> Log:
     return Log(t[0], q, tau, rest if others else None, dq if velocities else None)
 
 
-def _velocities(table: Table, joints: int) -> list[str]:
+def velocities_of(table: Table, joints: int) -> list[str]:
     """The columns of measured velocities, if every joint has one; none of a motion."""
     if set(of_joints(joints, "ddq{i}")) <= set(table.columns):
         return []

@@ -245,8 +245,7 @@ def _facts(found: Outcome, labels: Labels) -> dict[str, Any]:
         extra[GAINS] = {str(x.joint + 1): [x.factor, x.error] for x in told}
     if wide := widening(found.diagnostics, len(found.kept)):
         extra[WIDENED_BY_GAINS] = [x.tolist() for x in wide]
-    if found.thin > 1:
-        extra["thinned"] = found.thin
+    extra |= {k: n for k, n in (("thinned", found.thin), ("every_part", found.stride)) if n > 1}
     if np.isfinite(found.covariance).all():
         extra["covariance"] = found.covariance.tolist()
     if found.delay:

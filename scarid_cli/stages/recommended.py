@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from scarid_cli.algorithms.checks.finding import FAILED, Finding
@@ -14,6 +14,7 @@ from scarid_cli.algorithms.tuning.lowpassed import TWO_SIDED
 from scarid_cli.errors import TooShort
 from scarid_cli.io.table import Table
 from scarid_cli.stages.bandwidth import bandwidth, recommended, smoother_at
+from scarid_cli.stages.compact import Compact
 from scarid_cli.stages.differentiate import matched
 from scarid_cli.stages.glance import in_seconds, of_measurement
 from scarid_cli.stages.record import Record
@@ -57,18 +58,16 @@ def smoothed_motion(
     The measurement is held in memory. The smoother is that of the identification `before`, unless
     this lets through more noise than then and the parameters scatter least behind a stronger one.
     """
-    measurement = replace(measurement, batches=iter(batches := list(measurement.batches)))
-    findings = of_measurement(measurement, robot)
+    compact = Compact.of(measurement, len(robot.joints))
+    findings = of_measurement(compact)
+    held = Record(tuple(compact.segments), compact.joints, measurement.period, measurement.name)
 
     def motion(smoother: Any, text: str, cutoff: float, noise: float) -> Smoothed:
         left_out: list[TooShort] = []
-        again = replace(measurement, batches=iter(batches))
-        found = matched(again, [smoother] * held.joints, left_out)
+        found = matched(compact.table, [smoother] * held.joints, left_out)
         return Smoothed(found, smoother, text, cutoff, noise, left_out, findings)
 
     with (progress or _unseen)() as step, in_seconds(measurement):
-        log = replace(measurement, batches=iter(batches))
-        held = Record.of(log, len(robot.joints), torques=True)
         if before:
             cutoff = before.hertz / TWO_SIDED
             smoother = smoother_at(held, cutoff)

@@ -89,16 +89,19 @@ def test_a_subsample_may_cover_the_whole_record(sizes: tuple[int, ...], thinnest
 
 
 @pytest.mark.parametrize("sizes", SIZES)
-def test_a_subsample_that_covers_is_thinned_further_where_it_would_be_too_large(
+def test_a_subsample_that_covers_drops_segments_where_it_would_be_too_large(
     sizes: tuple[int, ...],
 ) -> None:
+    """Samples that are thinned further would not hold what their bandwidth passes."""
     W = np.arange(60_000.0).reshape(-1, 1, 1)
     numbers_a_sample = 1 + 1 + 1 + plain(W, W[:, :, 0]).motion.shape[0]
     empty = Subsample(samples=5_000, thinnest=4, covers=10_000 * numbers_a_sample)
     kept = fed(empty, plain(W, W[:, :, 0]), sizes)
     assert isinstance(kept, Subsample)
-    np.testing.assert_array_equal(kept.rows().W[:, 0, 0], np.arange(0.0, 60_000.0, 8))
-    assert kept.size == 7_500 * numbers_a_sample
+    segment = 4 * 5_000 // 8
+    every = np.arange(0.0, 60_000.0, 4)
+    np.testing.assert_array_equal(kept.rows().W[:, 0, 0], every[every // segment % 2 == 0])
+    assert (kept.thin, kept.stride) == (4, 2)
 
 
 @pytest.mark.parametrize("sizes", SIZES)

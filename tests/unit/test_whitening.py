@@ -66,7 +66,7 @@ def beyond(lag: int, interval: float) -> float:
 @pytest.mark.parametrize("step", [1, 2])
 def test_a_run_is_multiplied_by_the_inverse_cholesky_factor(step: int) -> None:
     noise, A = noise_of(), np.random.default_rng(1).standard_normal((40, 2, 3))
-    white = noise.whitened(A, np.ones((40, 2), dtype=bool), step * np.arange(40), H)
+    white = noise.whitened(A.copy(), np.ones((40, 2), dtype=bool), step * np.arange(40), H)
     for j in range(2):
         gamma = noise.autocovariance[j, ::step][:40]
         gamma = gamma + gamma[0] * np.array([beyond(k, step * H) for k in range(40)])
@@ -81,12 +81,12 @@ def test_after_a_gap_and_after_rows_that_do_not_count_nothing_is_predicted() -> 
     at = np.arange(200) + 7 * (np.arange(200) >= 130)
     counts = np.ones((200, 2), dtype=bool)
     counts[50:60, 1] = False
-    white = noise.whitened(A, counts, at, H)
+    white = noise.whitened(A.copy(), counts, at, H)
     every = np.ones((200, 2), dtype=bool)
     for joint, parts in ((0, (slice(0, 130), slice(130, 200))),
                          (1, (slice(0, 50), slice(60, 130), slice(130, 200)))):  # fmt: skip
         for part in parts:
-            alone = noise.whitened(A[part], every[part], at[part], H)
+            alone = noise.whitened(A[part].copy(), every[part], at[part], H)
             np.testing.assert_allclose(white[part, joint], alone[:, joint], rtol=1e-12, atol=1e-12)
     assert not white[50:60, 1].any()
 
@@ -179,7 +179,7 @@ def test_alternatives_are_fitted_to_the_whitened_rows() -> None:
     (offset,) = (effect for effect in effects if effect.name == "offset")
     kept = slice(None, None, 2)
     A = np.concatenate((rows.W, np.ones((2000, 1, 1)), rows.y[:, :, None]), axis=2)[kept]
-    white = noise.whitened(A, np.ones((1000, 1), dtype=bool), rows.at[kept], H)[:, 0]
+    white = noise.whitened(A.copy(), np.ones((1000, 1), dtype=bool), rows.at[kept], H)[:, 0]
     without, beside = (
         np.linalg.lstsq(white[:, chosen], white[:, 4])[0] for chosen in ([0, 1, 2], [0, 1, 2, 3])
     )

@@ -62,8 +62,11 @@ def _torque(rows: Rows, own: int) -> Array:
     counts = rows.scales > 0.0
     squares = np.sum(rows.y**2 * counts, axis=0)
     units = counts / np.sqrt(np.where(squares > 0.0, squares, 1.0))
-    scaled = (rows.W[:, :, :own] * units[:, :, None]).reshape(-1, own)
-    return np.asarray(scaled.T @ scaled)
+    found = np.zeros((own, own))
+    for j, unit in enumerate(units.T):  # joint by joint: a copy of W would be large
+        scaled = rows.W[:, j, :own] * unit[:, None]
+        found += scaled.T @ scaled
+    return found
 
 
 def _scatter(rows: Rows, found: Estimation, torque: Array) -> float:

@@ -13,7 +13,9 @@ bandwidth, of BEYOND times the mean density within it.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -69,30 +71,35 @@ class ColouredNoise:
 
     def rows(self, rows: Rows) -> Rows:
         """Every `step`-th of the rows, whitened."""
-        part = rows.part(self.kept(rows))
-        both = np.concatenate((part.W, part.y[:, :, None]), axis=2)
-        white = self.whitened(both, part.scales > 0.0, part.at, part.h)
-        return replace(
-            part, W=np.ascontiguousarray(white[:, :, :-1]), y=np.ascontiguousarray(white[:, :, -1])
-        )
+        kept = self.kept(rows)
+        part = rows if len(kept) == rows.samples else rows.part(kept)
+        W, y = np.empty_like(part.W), np.empty_like(part.y)
+        for j, white in enumerate(self._filters(part.scales > 0.0, part.at, part.h)):
+            both = white(np.column_stack((part.W[:, j], part.y[:, j])))
+            W[:, j], y[:, j] = both[:, :-1], both[:, -1]
+        return replace(part, W=W, y=y)
 
     def whitened(self, A: Array, counts: Marks, at: Numbers, h: float) -> Array:
         """A (samples, joints, columns) with unit white noise, 0 where a row does not count.
 
         `at` (samples) are the numbers of the samples in units of h [s]; the least distance of two
-        is that of rows which follow each other.
+        is that of rows which follow each other. A is large, and is overwritten.
         """
+        for j, white in enumerate(self._filters(counts, at, h)):
+            A[:, j] = white(np.ascontiguousarray(A[:, j]))
+        return A
+
+    def _filters(self, counts: Marks, at: Numbers, h: float) -> Iterator[Callable[[Array], Array]]:
+        """What whitens the rows (samples, columns) of each joint."""
         distances = np.diff(at)
         least = int(distances.min(initial=len(at)))
         step = max(1, round(least * h / self.h))
         follows = np.append(False, distances == least)
-        white = np.empty_like(A)
         for j, covariance in enumerate(self._covariances(step)):
             predictors, deviations = _levinson(covariance)
             before = _before(counts[:, j], follows, len(covariance) - 1)
             scales = counts[:, j] / deviations[before]
-            white[:, j] = _filtered(np.ascontiguousarray(A[:, j]), predictors[before], scales)
-        return white
+            yield partial(_filtered, factors=predictors[before], scales=scales)
 
     def _covariances(self, step: int) -> Array:
         """The autocovariances (joints, lags) of rows that are `step` samples apart."""

@@ -57,12 +57,10 @@ class _Sums:
         h = length * rows.h
         numbers = intervals(rows.at // length, round(3.0 * LAGS[-1] / h) if h > 0.0 else 1)
         counts = (rows.scales > 0.0).astype(np.float64)
-        scores = rows.W * (rows.scales**2 * weights)[:, :, None]
         count = summed(counts, numbers)
-        means = summed(rows.W * (counts * weights)[:, :, None], numbers)
-        return cls(
-            summed(scores, numbers), means / np.maximum(count, 1.0)[:, :, None], count > 0.0, h
-        )
+        scores = _summed_of_joints(rows.W, rows.scales**2 * weights, numbers)
+        means = _summed_of_joints(rows.W, counts * weights, numbers)
+        return cls(scores, means / np.maximum(count, 1.0)[:, :, None], count > 0.0, h)
 
     def taken(self, followed: Array, time: float) -> Iterator[Array]:
         """The part of the autocovariance (joints) that is taken out at each lag."""
@@ -81,6 +79,12 @@ class _Sums:
         """The sum over l of keep^|k - l| times the scores of interval l, for each interval k."""
         before, after = decayed(self.scores, keep), decayed(self.scores[::-1], keep)[::-1]
         return np.asarray(before + self.scores + after)
+
+
+def _summed_of_joints(W: Array, scales: Array, numbers: Numbers) -> Array:
+    """The sums of the scaled rows, joint by joint: a copy of W would be large."""
+    joints = enumerate(scales.T)
+    return np.stack([summed(W[:, j] * own[:, None], numbers) for j, own in joints], axis=1)
 
 
 def summed(x: Array, numbers: Numbers) -> Array:

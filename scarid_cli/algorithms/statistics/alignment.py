@@ -16,6 +16,8 @@ from scarid_cli.algorithms.statistics.essential import without
 from scarid_cli.algorithms.statistics.jackknife import jackknife
 from scarid_cli.arrays import Array
 
+SEARCHED = 4_000_000  # numbers in W, about, from which the lead is searched
+BLOCKS = 10  # of a long record, spread over it
 FITS = 10  # at most, each from the estimates of the one before
 NEAR = 0.02  # of a sample: a remaining delay up to this is left to the linear form
 LONGEST = 0.5  # s, of the delay
@@ -83,12 +85,21 @@ def aligned(
     If a low-pass is the likelier cause of the lead, the torques are straightened too. The error of
     what remains enters those of the parameters.
     """
-    lead = _Search(estimator.quick(), start, own, possible).lead(thinned(rows), theta)
+    lead = _Search(estimator.quick(), start, own, possible).lead(_some(thinned(rows)), theta)
     if not lead.shown:
         return Aligned(rows, estimator.widened(-1).of_rows(rows, start[:-1]), lead)
     moved = lead.theta[:own]
     wide = with_delay(in_step(rows, moved, lead.seconds, low_pass=lead.low_pass), moved)
     return Aligned(wide, estimator.of_rows(wide, start), lead)
+
+
+def _some(rows: Rows) -> Rows:
+    """Blocks that are spread over many rows, of which the search would make several copies."""
+    samples = SEARCHED // max(1, rows.W[0].size)
+    if rows.samples <= 2 * samples:
+        return rows
+    starts = np.arange(BLOCKS) * (rows.samples - samples // BLOCKS) // (BLOCKS - 1)
+    return rows.part((starts[:, None] + np.arange(samples // BLOCKS)).ravel())
 
 
 @dataclass(frozen=True)

@@ -47,17 +47,19 @@ def autocovariance_errors(rows: Rows, estimates: Array, weights: Array) -> Array
     bins = intervals(rows.at // length, round(3.0 * LONG / BIN))
     residuals = rows.y - rows.W @ estimates
     parameters = rows.W.shape[2]
-    scaled = rows.W * (rows.scales * weights)[:, :, None]
-    gram = np.tensordot(scaled, scaled, axes=((0, 1), (0, 1)))
+    scales = rows.scales * weights
+    gram = np.zeros((parameters, parameters))
+    for j, own in enumerate(scales.T):  # joint by joint: a copy of W would be large
+        scaled = rows.W[:, j] * own[:, None]
+        gram += scaled.T @ scaled
     if np.linalg.matrix_rank(gram, hermitian=True) < parameters:
         return np.full(parameters, np.nan)
     inverse = np.asarray(np.linalg.inv(gram), dtype=np.float64)
     middle = np.zeros((parameters, parameters))
-    scales = rows.scales * weights
     taken = absorbed(rows, weights, inverse, TIMES.tolist())
     noises = noises_of(residuals, scales > 0.0, bins, length * rows.h, taken)
     for j, noise in enumerate(noises):
-        scores = scaled[:, j] * scales[:, j, None]
+        scores = rows.W[:, j] * (scales[:, j] ** 2)[:, None]
         middle += noise.white * scores.T @ scores
         if noise.coloured > 0.0:
             middle += noise.coloured * _correlated(scores, bins, length * rows.h / noise.time)

@@ -47,12 +47,12 @@ def form(rows: Rows, bent: Array, residuals: Sequence[Array]) -> Form:
     counted = away_from_reversals(rows, MARGIN / rows.bandwidth if rows.bandwidth else 0.0) > 0.0
     squares = np.sum(residuals[0] ** 2 * counted, axis=0)
     weights = np.divide(counted.sum(axis=0), squares, np.zeros_like(squares), where=squares > 0.0)
-    signals = np.concatenate((rows.W, np.stack((bent, *residuals), axis=2)), axis=2)
-    signals *= (counted * np.sqrt(weights))[:, :, None]
-    smooth, at = _smooth(rows, signals)
+    further = np.stack((bent, *residuals), axis=2)
+    scales = (counted * np.sqrt(weights))[:, :, None]
+    smooth, at = _smooth(rows, further, scales)
     if not len(at):
         return Form(0.0, 0.0)
-    W, others = np.split(smooth.reshape(-1, signals.shape[2]), [rows.W.shape[2]], axis=1)
+    W, others = np.split(smooth.reshape(-1, smooth.shape[2]), [rows.W.shape[2]], axis=1)
     instrument = others[:, 0] - W @ np.linalg.lstsq(W, others[:, 0], rcond=None)[0]
     number, count = block_numbers(at, rows.h)
     of_joints = np.repeat(number, rows.W.shape[1])
@@ -65,10 +65,13 @@ def form(rows: Rows, bent: Array, residuals: Sequence[Array]) -> Form:
     return Form(0.5 * (delay**2 - low_pass**2) / variance, share)
 
 
-def _smooth(rows: Rows, x: Array) -> tuple[Array, Numbers]:
-    """The signals x (samples, joints, columns) behind the window, and the samples of the rows."""
+def _smooth(rows: Rows, further: Array, scales: Array) -> tuple[Array, Numbers]:
+    """[W, further columns] (samples, joints, columns), scaled, behind the window; the samples."""
     window = Window.of(rows.h)
-    found = [(run, window.centres(run.stop - run.start)) for run in runs(rows.at)]
-    smooth = [window.passed(x[run]) for run, centres in found if len(centres)]
-    kept = [run.start + centres for run, centres in found]
-    return np.concatenate([x[:0], *smooth]), rows.at[np.concatenate(kept)]
+    parts = [part for run in runs(rows.at) for part in window.parts(run)]
+    smooth = [
+        window.passed(np.concatenate((rows.W[part], further[part]), axis=2) * scales[part])
+        for part in parts
+    ]
+    none = np.empty((0, further.shape[1], rows.W.shape[2] + further.shape[2]))
+    return np.concatenate([none, *smooth]), rows.at[window.centres_of(parts)]

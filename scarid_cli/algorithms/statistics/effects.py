@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -279,9 +280,12 @@ class Trial:
             start += columns.shape[2]
         parts = [self.rows.W, *further.values(), self.rows.y[:, :, None]]
         if self.noise:
-            parts = [x[self.places] for x in parts]
-        A = np.concatenate(parts, axis=2)
-        return self._of(A, scales, self.places), places
+            A = np.concatenate([x[self.places] for x in parts], axis=2)
+            return self._of(A, scales, self.places), places
+        scales = (scales * self.weights)[:, :, None]
+        blocks = self._blocks(self.number)  # a block at a time: all columns of all rows are many
+        sums = (np.concatenate([x[k] for x in parts], axis=2) * scales[k] for k in blocks)
+        return Products.of(sums, self.rows.W.shape[2]), places
 
     def _of(self, A: Array, scales: Array, places: Numbers) -> Products:
         """The products of rows A in these places, which have the same distance in each run.
@@ -293,7 +297,12 @@ class Trial:
             A = self.noise.whitened(A, scales > 0.0, rows.at[places], rows.h)
             scales = np.ones_like(scales)
         A *= (scales * self.weights)[:, :, None]
-        return Products.of(A, self.number[places], self.count, rows.W.shape[2])
+        return Products.of((A[k] for k in self._blocks(self.number[places])), rows.W.shape[2])
+
+    def _blocks(self, number: Numbers) -> Iterator[slice]:
+        """The rows of each block, of which these are the numbers of the rows."""
+        edges = np.searchsorted(number, np.arange(self.count + 1)).tolist()
+        return (slice(a, b) for a, b in pairwise(edges))
 
     def beside(
         self,
@@ -328,7 +337,9 @@ class Trial:
         if smooth is None:
             return []
         for scales, without in same:
-            products = self._of(smooth.A.copy(), scales, smooth.centres)
+            last = without is same[-1][1]
+            A = smooth.A if last else smooth.A.copy()
+            products = self._of(A, scales, smooth.centres)
             if parallel := products.solved([]):
                 found = self.effect(PARALLEL, plain, without, parallel)
                 return [found, *self.beside(products, smooth.places, plain, parallel)]

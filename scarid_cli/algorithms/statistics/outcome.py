@@ -173,9 +173,10 @@ class Outcome:
     delay of the torques and its standard error [s], nan if the log does not show it, `low_pass`
     whether they lead as behind a low-pass. `excitation` (parameters) is the root-mean-square torque
     that one unit of each parameter causes on this motion. `samples` is the number of samples, of
-    which every `thin`-th is fitted. `evidence` is that of the rows, at these estimates, which later
-    logs are compared with. `products` are those of the rows of each joint, None without a model;
-    they and the `effects` of alternatives are those before any parameters were dropped.
+    which every `thin`-th is fitted, in every `stride`-th part of the record. `evidence` is that of
+    the rows, at these estimates, which later logs are compared with. `products` are those of the
+    rows of each joint, None without a model; they and the `effects` of alternatives are those
+    before any parameters were dropped.
     """
 
     found: Estimation
@@ -189,6 +190,7 @@ class Outcome:
     excitation: Array
     samples: int
     thin: int
+    stride: int
     evidence: LogEvidence
     products: JointProducts | None
     effects: tuple[Effect, ...]
@@ -235,6 +237,7 @@ def outcome(
         excitation=_excitation(whole),
         samples=end.subsample.total,
         thin=thin,
+        stride=end.subsample.stride if treatment.align else 1,
         evidence=_evidence(whole, fit.estimates[:own], kept, problem.rest),
         products=products,
         effects=effects,

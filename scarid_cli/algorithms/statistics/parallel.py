@@ -25,6 +25,7 @@ from scarid_cli.arrays import Array, Numbers
 SIGNALS, ZEROS, ENCODERS, ELASTICITY = "signals", "zeros", "encoders", "elasticity"
 LATE = "late"
 STEP = 0.025  # s between the rows that are kept: the window passes hardly anything above 10 Hz
+CENTRES = 1024  # rows that are computed at once: many columns stand beside them
 EDGE = 4  # samples at both ends of a run where the differences are not central
 
 
@@ -53,17 +54,21 @@ def smoothed(rows: Rows, model: Model | None, estimates: Array, own: int) -> Smo
     further columns. None if every run between gaps is shorter than the window.
     """
     window = Window.of(rows.h)
-    found: list[tuple[dict[str, Array], Numbers]] = []
-    for run in runs(rows.at):
-        centres = window.centres(run.stop - run.start)
-        if len(centres):
-            columns = _columns(rows.part(run), model, estimates, own, window)
-            found.append((columns, run.start + centres))
-    if not found:
+    parts = [part for run in runs(rows.at) for part in window.parts(run)]
+    if not parts:
         return None
-    sizes = {name: columns.shape[2] for name, columns in found[0][0].items()}
-    A = np.concatenate([np.concatenate([*x.values()], axis=2) for x, _ in found])
-    centres = np.concatenate([x for _, x in found])
+    centres = np.concatenate(
+        [part.start + window.centres(part.stop - part.start) for part in parts]
+    )
+    A, start, sizes = np.empty(0), 0, dict[str, int]()
+    for part in parts:
+        columns = _columns(rows.part(part), model, estimates, own, window)
+        if not sizes:
+            sizes = {name: x.shape[2] for name, x in columns.items()}
+            A = np.empty((len(centres), rows.y.shape[1], sum(sizes.values())))
+        count = len(columns["y"])
+        np.concatenate([*columns.values()], axis=2, out=A[start : start + count])
+        start += count
     return Smoothed(A, rows.at[centres], centres, _places(sizes))
 
 
@@ -94,6 +99,19 @@ class Window:
         """The samples of a run at which the window is inside, away from its edges."""
         edge = len(self.taps) // 2 + EDGE
         return np.arange(edge, samples - edge, self.step)
+
+    def centres_of(self, parts: list[slice]) -> Numbers:
+        """The samples at which the window is inside of these parts of a record."""
+        found = [part.start + self.centres(part.stop - part.start) for part in parts]
+        return np.concatenate([np.empty(0, dtype=np.int64), *found])
+
+    def parts(self, run: slice) -> list[slice]:
+        """The parts of a run (rows) with a centre or more, whose centres are those of the run."""
+        edge = len(self.taps) // 2 + EDGE
+        rows = self.step * CENTRES
+        starts = range(run.start, run.stop - 2 * edge, rows)
+        ends = (min(run.stop, start + rows - self.step + 2 * edge + 1) for start in starts)
+        return [slice(start, end) for start, end in zip(starts, ends, strict=True)]
 
     def passed(self, x: Array) -> Array:
         """x (samples, ...) of a run behind the window, at its centres."""

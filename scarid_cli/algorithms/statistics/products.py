@@ -8,13 +8,13 @@ no more than its own columns.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
-from scarid_cli.arrays import Array, Numbers
+from scarid_cli.arrays import Array
 
 SINGULAR = 1e12  # condition number, of columns of unit length, above which a fit is refused
 NEW = 1e-6  # share of a column that must not be a combination of the others
@@ -57,11 +57,10 @@ class Products:
     parameters: int
 
     @classmethod
-    def of(cls, A: Array, block: Numbers, count: int, parameters: int) -> Products:
-        """From rows A (samples, joints, columns + 1), scaled, in the blocks of these numbers."""
-        edges = np.searchsorted(block, np.arange(count + 1))
-        parts = (A[a:b].reshape(-1, A.shape[2]) for a, b in pairwise(edges.tolist()))
-        return cls(np.array([part.T @ part for part in parts]), parameters)
+    def of(cls, parts: Iterable[Array], parameters: int) -> Products:
+        """From the rows A (samples, joints, columns + 1) of each block, scaled."""
+        flat = (part.reshape(-1, part.shape[2]) for part in parts)
+        return cls(np.array([rows.T @ rows for rows in flat]), parameters)
 
     @cached_property
     def scale(self) -> Array:

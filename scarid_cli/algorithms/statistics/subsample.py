@@ -11,7 +11,7 @@ from scarid_cli.algorithms.regression.rows import Rows, joined
 MOST_SAMPLES = 16_384  # of a streamed record
 MOST_NUMBERS = 2_000_000  # in the arrays of these samples, unless FEWEST_SAMPLES have more
 MOST_HELD = 4_000_000  # numbers, before a record that is held is thinned
-MOST_COVERED = 20_000_000  # numbers, before it is thinned more than it should
+MOST_COVERED = 20_000_000  # numbers, before only some segments are kept
 FEWEST_SAMPLES = 4096
 MOST_SEGMENTS = 8
 
@@ -21,10 +21,10 @@ class Subsample:
     """Every `thin`-th sample of every `stride`-th segment of a record.
 
     At most `samples` are held, with at most so many `numbers`. As the record grows, the samples are
-    thinned first, until every `thinnest`-th is left; after that, segments are dropped, or samples
-    are thinned further to `covers` numbers of the whole record, if this is not 0. Bare rows will
-    get W with so many `columns`. `total` is the number of samples of the record so far, and
-    `counted` that of their rows whose scale is not 0.
+    thinned first, until every `thinnest`-th is left: fewer would not hold what their bandwidth
+    passes. After that, segments are dropped; if `covers` is not 0, not before there are so many
+    numbers. Bare rows will get W with so many `columns`. `total` is the number of samples of the
+    record so far, and `counted` that of their rows whose scale is not 0.
     """
 
     parts: tuple[Rows, ...] = ()
@@ -55,10 +55,10 @@ class Subsample:
             if number % stride == 0:
                 parts += _thinned([rows.part(slice(start, stop))], thin)
             while len({int(part.at[0]) // segment for part in parts}) > MOST_SEGMENTS:
-                if 2 * thin <= self.thinnest or self._is_too_large(parts):
+                if 2 * thin <= self.thinnest:
                     thin, segment = 2 * thin, 2 * segment
                     parts = _thinned(parts, thin)
-                elif self.covers:
+                elif self.covers and not self._is_too_large(parts):
                     break
                 else:
                     stride *= 2

@@ -15,26 +15,34 @@ ABOVE = 10.0  # times the noise's density, from which on the density is that of 
 
 
 def bandwidths(segments: Sequence[Segment], h: float) -> tuple[Array, Array]:
-    """Those of the velocities and of the torques (joints) [Hz] in the longest segment; h [s]."""
-    longest = max(segments, key=lambda segment: segment.q.shape[1])
-    velocities = np.array([bandwidth(q, h, derivative=1) for q in longest.q])
-    return velocities, np.array([bandwidth(tau, h, derivative=0) for tau in longest.tau])
+    """Those of the velocities and of the torques (joints) [Hz] in the longest segment; h [s].
+
+    If several are as long, as the blocks of a long log are, their densities are averaged.
+    """
+    length = max(segment.q.shape[1] for segment in segments)
+    longest = [segment for segment in segments if segment.q.shape[1] == length]
+    q, tau = (np.stack(x, axis=1) for x in zip(*((s.q, s.tau) for s in longest), strict=True))
+    velocities = np.array([bandwidth(x, h, derivative=1) for x in q])
+    return velocities, np.array([bandwidth(x, h, derivative=0) for x in tau])
 
 
 def bandwidth(x: Array, h: float, derivative: int) -> float:
     """The frequency [Hz] below which POWER of a signal's (or its derivative's) power lies.
 
-    x (rows) is sampled every h [s]. Frequencies at which the density does not exceed that of white
-    noise, found from the highest quarter of all frequencies, do not count. Nor do those above which
-    there is no more power than rounding to the resolution of x may cause, an error of up to half a
-    step: that of an encoder that is read often has tones. 0 for a signal at rest.
+    x (rows, or records and rows) is sampled every h [s]. Frequencies at which the density does not
+    exceed that of white noise, found from the highest quarter of all frequencies, do not count. Nor
+    do those above which there is no more power than rounding to the resolution of x may cause, an
+    error of up to half a step: that of an encoder that is read often has tones. 0 for a signal at
+    rest.
     """
-    trend, window = np.linspace(x[0], x[-1], len(x)), np.hanning(len(x))
-    density = np.abs(np.fft.rfft((x - trend) * window)) ** 2
+    x = np.atleast_2d(x)
+    rows = x.shape[1]
+    trend, window = np.linspace(x[:, 0], x[:, -1], rows, axis=1), np.hanning(rows)
+    density = np.mean(np.abs(np.fft.rfft((x - trend) * window)) ** 2, axis=0)
     floor = density[-(len(density) // 4) :].mean()
-    above = np.cumsum(density[::-1])[::-1] * 2.0 / (len(x) * np.sum(window**2))
-    signal = (density > ABOVE * floor) & (above > (0.5 * resolution_of(x)) ** 2)
-    frequency = np.fft.rfftfreq(len(x), h)
+    above = np.cumsum(density[::-1])[::-1] * 2.0 / (rows * np.sum(window**2))
+    signal = (density > ABOVE * floor) & (above > (0.5 * resolution_of(x[0])) ** 2)
+    frequency = np.fft.rfftfreq(rows, h)
     power = np.where(signal, density, 0.0) * frequency ** (2 * derivative)
     total = np.cumsum(power)
     if not total[-1] > 0.0:

@@ -243,7 +243,8 @@ def _read(job: Job, method: Any, file: str, robot: str | Robot | None) -> tuple[
     """The motion or measurement, or whatever else the estimator reads, and the robot."""
     if method.FOLLOWS:
         return job.read_for(file, "trajectory", robot, torques=True, reference=method.REFERENCE)
-    return read(job, file, robot, reference=method.REFERENCE)
+    log, arm = read(job, file, robot, reference=method.REFERENCE)
+    return blind.needed(log, reference=method.REFERENCE), arm
 
 
 def _options(chosen: Chosen) -> list[str]:
@@ -358,11 +359,17 @@ def _number(text: str, part: str) -> float:
         ) from None
 
 
+def _th(number: int) -> str:
+    return "2nd" if number == 2 else f"{number}th"
+
+
 def summary_lines(robot: str, estimator: str, extra: dict[str, Any]) -> tuple[str, str]:
     """A line of facts, and the verdict."""
     line = f"{robot}, {estimator}, {extra['samples']} samples"
     if thin := extra.get("thinned"):
-        line += f" (every {'2nd' if thin == 2 else f'{thin}th'} fitted)"
+        every = extra.get("every_part")
+        parts = f", of every {_th(every)} part of the log" if every else ""
+        line += f" (every {_th(thin)} fitted{parts})"
     if extra.get("whitened"):
         line += ", whitened, as the residuals are correlated in time"
     if "delay" in extra:
