@@ -7,6 +7,7 @@
 # make lint     ruff and mypy
 # make faults   inject every kind of fault, and write docs/faults.md (a quarter of an hour)
 # make bench    start-up, time per sample, memory
+# make bench-identify  time and memory of each step of identify, on short and long logs
 # make bench-latency      from a row written to its estimates read (a minute)
 # make bench-excitation   optimised excitations of several robots beside random ones (an hour)
 # make bench-experiments  expected errors, sequences of experiments, arms of URDFs (an hour)
@@ -46,7 +47,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-known-load bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-known-load bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -105,6 +106,9 @@ $(VENV)/compared: $(VENV)/tested
 
 bench: $(VENV)/compared
 	$(BIN)/python benchmarks/bench.py
+
+bench-identify: $(VENV)/tested
+	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/steps.py
 
 bench-latency: $(VENV)/tested
 	$(BIN)/python benchmarks/latency.py

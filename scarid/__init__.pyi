@@ -662,7 +662,9 @@ def payload(
     motion. The payload is the difference of the two identifications, as a part of the last link:
     friction and offsets may differ, and errors that both have in common drop out. The intervals
     contain the uncertainty of both. A value that the motion does not tell has no error, and is
-    named. The robot needs a URDF (pip install 'scarid[urdf]').
+    named. Where no body can have these values, the nearest one that can is given beside them. The
+    settings for controllers of UR, Franka and KUKA are printed as these take them. The robot needs
+    a URDF (pip install 'scarid[urdf]').
 
     Options:
         parameters: The parameters of the bare robot, as `scarid identify -o bare.parquet` writes them.

@@ -23,6 +23,7 @@ from scarid_cli.cli.declare import declare
 )
 @selecting.window
 @options.table_output
+@options.as_json
 @options.common
 def command() -> None:
     """Find what hangs on the flange: mass, centre and inertia, each with its 95 % interval.
@@ -36,5 +37,7 @@ def command() -> None:
     motion. The payload is the difference of the two identifications, as a part of the last link:
     friction and offsets may differ, and errors that both have in common drop out. The intervals
     contain the uncertainty of both. A value that the motion does not tell has no error, and is
-    named. The robot needs a URDF (pip install 'scarid[urdf]').
+    named. Where no body can have these values, the nearest one that can is given beside them. The
+    settings for controllers of UR, Franka and KUKA are printed as these take them. The robot needs
+    a URDF (pip install 'scarid[urdf]').
     """

@@ -7,12 +7,15 @@ or in the schema. A `half_interval` is half the 95 % interval: what stands behin
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite
+from math import isfinite, nan
 from typing import Any
+
+import numpy as np
 
 from scarid_cli import __version__
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.io.table import Table
+from scarid_cli.stages.controllers import settings
 from scarid_cli.stages.parameters import EVIDENCE
 
 Row = dict[str, Any]
@@ -94,6 +97,28 @@ def of_gains(table: Table) -> Document:
             "joints": rows,
         }
     )
+
+
+def of_payload(table: Table) -> Document:
+    """What `payload` has found, from its table."""
+    rows, extra = _rows(table), table.meta.extra
+    told = [row["quantity"] for row in rows if row["robust_error"] is not None]
+    body = np.array([nan if row["body"] is None else row["body"] for row in rows])
+    return _document(
+        {
+            **_head("payload", table),
+            **{name: extra[name] for name in ("frame", "possible", "away")},
+            "told": told,
+            "values": [{**row, "half_interval": _half_of(row)} for row in rows],
+            "controllers": settings(body),
+        }
+    )
+
+
+def _half_of(row: Row) -> float | None:
+    """Half the 95 % interval of a row of a table."""
+    known = row["low"] is not None and row["high"] is not None
+    return 0.5 * (row["high"] - row["low"]) if known else None
 
 
 def comparison(table: Table) -> Document:

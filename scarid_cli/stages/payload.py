@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import isfinite
 
 import numpy as np
 
@@ -11,10 +12,12 @@ from scarid_cli.algorithms.changes import payload as algorithm
 from scarid_cli.algorithms.changes.payload import NAMES, UNITS, Payload
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.rigid import Frame
+from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
+from scarid_cli.stages.controllers import settings
 from scarid_cli.stages.estimates import Estimates
 
 
@@ -23,12 +26,10 @@ def payload(bare: Estimates, loaded: Estimates, link: str | None) -> tuple[Paylo
     robot = bare.robot
     frame, name = frame_of(robot, link, "a payload needs")
     covariance = bare.covariance + loaded.covariance
-    phi, spread = algorithm.standard(
-        algorithm.directions(robot), loaded.full - bare.full, covariance
-    )
-    if not phi[algorithm.MASS]:
+    found = algorithm.standard(algorithm.directions(robot), loaded.full - bare.full, covariance)
+    if not found.phi[algorithm.MASS]:
         raise BadData("payload: both identifications are the same; give a log with the payload")
-    return algorithm.in_frame(phi, spread, frame), name
+    return algorithm.in_frame(found, frame), name
 
 
 def frame_of(robot: Robot, link: str | None, who: str) -> tuple[Frame, str]:
@@ -51,9 +52,10 @@ def table(found: Payload, of: Table, link: str) -> Table:
     half = HALF * found.errors
     rows = zip(
         NAMES, UNITS, found.values, found.errors, found.values - half, found.values + half,
-        strict=True,
+        found.told, strict=True,
     )  # fmt: skip
-    meta = replace(of.meta, kind="payload", extra={"frame": link, "possible": found.possible})
+    extra = {"frame": link, "possible": found.possible, "away": found.away}
+    meta = replace(of.meta, kind="payload", extra=extra)
     return table_of("payload", schemas.load("payload").arrow(), list(rows), meta)
 
 
@@ -82,8 +84,17 @@ def told(found: Payload, link: str) -> Iterator[str]:
     ]
     if vague:
         yield f"not distinguishable from 0: {', '.join(vague)}"
-    if not unknown and not found.possible:
+    if not found.possible:
         yield (
-            "warning: no body has this inertia within its estimates; take mass and centre, and a "
-            "motion with larger accelerations for the inertia"
+            "warning: no body has these values. The nearest one, "
+            f"{found.away:.2g} standard deviations away, has {_text(found.told)}; take a motion "
+            "with larger accelerations for the inertia"
         )
+    for controller, line in settings(found.told).items():
+        yield f"for {controller}, if {link} is its flange: {line}"
+
+
+def _text(values: Array) -> str:
+    """Mass, centre and moments of inertia in a line, as far as they are told."""
+    named = zip(NAMES, values.tolist(), UNITS, strict=True)
+    return ", ".join(f"{name} {x:.3g} {unit}" for name, x, unit in named if isfinite(x))

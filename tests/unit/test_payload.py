@@ -8,12 +8,13 @@ from pathlib import Path
 import numpy as np
 import pinocchio
 import pytest
+from cli.test_gates import document
 from conftest import Shell, refused
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from unit.arms import seven_axes
 
-from scarid_cli.algorithms.changes.payload import directions, in_frame, standard
+from scarid_cli.algorithms.changes.payload import Standard, directions, in_frame, matrix, standard
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.rigid import PINOCCHIO, Frame
 
@@ -48,11 +49,17 @@ def test_mass_centre_and_inertia_come_back(
     body = pinocchio.Inertia(mass, np.array(centre), about)
     moved = pinocchio.SE3(turn, origin).act(body)
     phi = moved.toDynamicParameters()[PINOCCHIO]
-    found = in_frame(phi, 1e-8 * np.eye(10), Frame(7, turn, origin))
+    found = in_frame(Standard(phi, 1e-8 * np.eye(10), 1e4 * np.eye(10)), Frame(7, turn, origin))
     wanted = [mass, *centre, *(about[i, j] for i in range(3) for j in range(i, 3))]
     np.testing.assert_allclose(found.values, wanted, atol=1e-9)
     assert np.isfinite(found.errors).all()
-    assert found.possible == ((moments := np.linalg.eigvalsh(about))[2] < moments[0] + moments[1])
+    moments = np.linalg.eigvalsh(about)
+    assert found.possible == (moments[2] < moments[0] + moments[1])
+    inertia = np.array(
+        [[found.body[4 + k] for k in row] for row in ((0, 1, 2), (1, 3, 4), (2, 4, 5))]
+    )
+    least, middle, most = np.linalg.eigvalsh(inertia)
+    assert most <= (least + middle) * (1.0 + 1e-9)
 
 
 def test_the_difference_of_base_parameters_tells_all_ten(arm: Path) -> None:
@@ -60,11 +67,14 @@ def test_the_difference_of_base_parameters_tells_all_ten(arm: Path) -> None:
     B = directions(robot)
     phi = np.array([0.03, 0.001, -0.002, 0.02, 0.003, 0.025, 0.05, -0.02, 0.1, 1.5])
     covariance = np.diag(np.linspace(1e-6, 1e-4, len(B)))
-    found, spread = standard(B, B @ phi, covariance)
-    np.testing.assert_allclose(found, phi, rtol=1e-9, atol=1e-12)
+    found = standard(B, B @ phi, covariance)
+    np.testing.assert_allclose(found.phi, phi, rtol=1e-9, atol=1e-12)
     rows = np.any(B != 0.0, axis=1)
     wanted = np.linalg.inv(B[rows].T @ np.linalg.inv(covariance[np.ix_(rows, rows)]) @ B[rows])
-    np.testing.assert_allclose(spread, wanted, rtol=1e-6, atol=1e-15)
+    np.testing.assert_allclose(found.covariance, wanted, rtol=1e-6, atol=1e-15)
+    np.testing.assert_allclose(
+        np.linalg.inv(found.factor.T @ found.factor), wanted, rtol=1e-6, atol=1e-15
+    )
 
 
 MADE = (
@@ -105,6 +115,15 @@ def test_the_command_finds_what_the_simulator_hung_there(
         " scarid payload -q --parameters bare.parquet --frame l7 p.parquet"
     )
     assert same.out == found.out
+    told = shell("scarid payload -q --json --parameters bare.parquet --frame l7 p.parquet")
+    machine = document(told.out)
+    assert [x["estimate"] for x in machine["values"]] == [
+        float(row["estimate"]) for row in rows.values()
+    ]
+    assert machine["controllers"]["UR"] in found.err
+    moments = np.linalg.eigvalsh(matrix(np.array([x["body"] for x in machine["values"]])[4:]))
+    assert moments[0] > 0.0
+    assert moments[2] < moments[0] + moments[1]
     wrong = shell("scarid payload --parameters bare.parquet --frame l3 p.parquet")
     refused(wrong, 2, "--frame l3: no link that is fixed to the last axis; it has l7, flange")
 

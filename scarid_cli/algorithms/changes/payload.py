@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.changes.body import nearest, pseudo_inertia
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.rigid import SYMBOLS, Frame
 from scarid_cli.arrays import Array
@@ -20,6 +21,7 @@ from scarid_cli.arrays import Array
 KNOWN = 1e-6  # share of a parameter that must be in the rows, as a projection
 MASS, MOMENTS, INERTIA = 9, [6, 7, 8], slice(6)
 PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))  # of the axes, in the order of SYMBOLS
+AS_GOOD = 0.01  # standard deviations, up to which a body is the estimate itself
 NAMES = ("mass", "x", "y", "z", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz")
 UNITS = ("kg", *("m",) * 3, *("kg m2",) * 6)
 
@@ -28,19 +30,40 @@ UNITS = ("kg", *("m",) * 3, *("kg m2",) * 6)
 class Payload:
     """Mass [kg], centre [m] and inertia about the centre [kg m2] in a frame, as in NAMES.
 
-    `values` and `errors` (10); an error is nan where the motion does not tell the value.
+    `values` and `errors` (10); an error is nan where the motion does not tell the value. `body`
+    (10) are the values of the nearest body that there can be, so many standard deviations `away`.
     """
 
     values: Array
     errors: Array
+    body: Array
+    away: float
 
     @property
     def possible(self) -> bool:
-        """Whether a body can have these values."""
-        moments = np.linalg.eigvalsh(_matrix(self.values[4:]))
-        return bool(
-            self.values[0] > 0.0 and moments[0] > 0.0 and moments[2] < moments[0] + moments[1]
-        )
+        """Whether a body can have these values, of which it may have any that are not told."""
+        return self.away < AS_GOOD
+
+    @property
+    def told(self) -> Array:
+        """The values (10) of the body, which are the estimates if there can be such a body.
+
+        nan where the motion does not tell the value.
+        """
+        return np.where(np.isfinite(self.errors), self.body, np.nan)
+
+
+@dataclass(frozen=True)
+class Standard:
+    """The ten standard parameters of a payload as a part of the last link.
+
+    `phi` (10) with its `covariance` (10, 10), nan where the rows do not tell one. Their information
+    is factor' factor (rows, 10).
+    """
+
+    phi: Array
+    covariance: Array
+    factor: Array
 
 
 def directions(robot: Robot) -> Array:
@@ -54,8 +77,8 @@ def directions(robot: Robot) -> Array:
     return found
 
 
-def standard(B: Array, difference: Array, covariance: Array) -> tuple[Array, Array]:
-    """The ten standard parameters and their covariance; nan where the rows do not tell one.
+def standard(B: Array, difference: Array, covariance: Array) -> Standard:
+    """The ten standard parameters.
 
     By generalised least squares: `difference` (parameters) of base parameters, with its
     `covariance` (parameters, parameters), nan for those that are not known.
@@ -72,17 +95,23 @@ def standard(B: Array, difference: Array, covariance: Array) -> tuple[Array, Arr
     spread = inverse @ inverse.T
     unknown = np.sum(Vt[kept] ** 2, axis=0) < 1.0 - KNOWN
     spread[unknown, :] = spread[:, unknown] = np.nan
-    return phi, spread
+    return Standard(phi, spread, s[kept, None] * Vt[kept])
 
 
-def in_frame(phi: Array, covariance: Array, frame: Frame) -> Payload:
+def in_frame(found: Standard, frame: Frame) -> Payload:
     """The payload in a frame that is fixed to the last axis; errors to first order."""
+    phi, covariance = found.phi, found.covariance
     known = np.isfinite(np.diag(covariance))
     J = _slopes(phi, frame)
     spread = np.where(np.isfinite(covariance), covariance, 0.0)
     errors = np.sqrt(np.diag(J @ spread @ J.T))
     told = np.all((J[:, ~known] == 0.0), axis=1) if not known.all() else np.ones(10, dtype=bool)
-    return Payload(_of_centre(phi, frame), np.where(told, errors, np.nan))
+    values = _of_centre(phi, frame)
+    body, away = values, 0.0
+    if not np.linalg.eigvalsh(pseudo_inertia(phi))[0] > 0.0:
+        nearby, away = nearest(phi, found.factor)
+        body = _of_centre(nearby, frame)
+    return Payload(values, np.where(told, errors, np.nan), body, away)
 
 
 def _slopes(phi: Array, frame: Frame) -> Array:
@@ -100,12 +129,13 @@ def _of_centre(phi: Array, frame: Frame) -> Array:
     """Mass, centre and inertia about the centre, from the standard parameters."""
     m = phi[MASS]
     centre = phi[MOMENTS] / m
-    about = _matrix(phi[INERTIA]) - m * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    about = matrix(phi[INERTIA]) - m * (centre @ centre * np.eye(3) - np.outer(centre, centre))
     turned = frame.turn.T @ about @ frame.turn
     place = frame.turn.T @ (centre - frame.origin)
     return np.array([m, *place, *(turned[i, j] for i, j in PAIRS)])
 
 
-def _matrix(values: Array) -> Array:
+def matrix(values: Array) -> Array:
+    """The symmetric matrix (3, 3) of xx, xy, xz, yy, yz, zz."""
     xx, xy, xz, yy, yz, zz = values
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

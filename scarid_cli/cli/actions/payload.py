@@ -6,11 +6,18 @@ from scarid_cli.cli.job import Job
 from scarid_cli.cli.loaded import loaded
 from scarid_cli.stages import payload as stage
 from scarid_cli.stages.corrected import gains_of
+from scarid_cli.stages.documents import of_payload
 from scarid_cli.stages.estimates import estimates_with_covariance
 
 
 def run(
-    job: Job, *, files: tuple[str, ...], parameters: str, robot: str | None, frame: str | None
+    job: Job,
+    *,
+    files: tuple[str, ...],
+    parameters: str,
+    robot: str | None,
+    frame: str | None,
+    as_json: bool,
 ) -> None:
     """Write the table of the payload, and say what hangs there."""
     bare = job.read(parameters, "parameters")
@@ -20,6 +27,7 @@ def run(
         estimates_with_covariance(bare, arm), estimates_with_covariance(found, arm), frame
     )
     lines = list(stage.told(hung, link))
-    job.write(job.recorded(stage.table(hung, found, link)))
+    result = job.recorded(stage.table(hung, found, link))
+    job.write_or_print(result, of_payload if as_json else None)
     for line in lines:
         job.say(line)
