@@ -1,6 +1,6 @@
 """Processor time and peak memory of each step of `scarid identify` on a measurement.
 
-    python benchmarks/steps.py --logs scara2:20:200,ur10e:60:500,panda:600:1000
+    python benchmarks/steps.py --logs scara2:20:200,ur10:60:500,panda:600:1000
 
 A log is NAME:SECONDS:HERTZ. A second thread looks at the stack and at the resident memory every
 10 ms; a step is the time during which its function is on the stack. The last table has the
@@ -115,7 +115,7 @@ def _cell(seconds: float, megabytes: float) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--logs", default=f"scara2:20:200,ur10e:60:500,{','.join(GROWTH)}")
+    parser.add_argument("--logs", default=f"scara2:20:200,ur10:60:500,{','.join(GROWTH)}")
     parser.add_argument("--run", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.run:
