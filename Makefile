@@ -21,6 +21,7 @@
 # make bench-forgetting  parameters that change: variable forgetting beside constant factors
 # make bench-friction   what `identify --friction auto` chooses, judged on another motion
 # make bench-contacts   false alarms and pushes of `validate --residual`
+# make bench-carried  pick-ups in logs: found when, false alarms, errors of the payload
 # make bench-known-load   torque constants from a load whose mass is known: within their intervals?
 # make bench-coarse   the choice of a bandwidth where positions are coarse
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
@@ -47,7 +48,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-known-load bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -142,6 +143,9 @@ gauntlet: $(VENV)/tested
 
 bench-mixtures: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/mixtures.py
+
+bench-carried: $(VENV)/tested
+	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/carried.py
 
 bench-known-load: $(VENV)/tested
 	cd benchmarks && ../$(BIN)/python known_load.py

@@ -647,6 +647,8 @@ def payload(
     parameters: TableLike | None = None,
     robot: TableLike | None = None,
     frame: Values | None = None,
+    trace: Values | None = None,
+    false_alarms: Values | None = None,
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
@@ -656,6 +658,7 @@ def payload(
 
       scarid payload --parameters bare.parquet loaded.csv
       scarid payload --parameters bare.parquet --frame tool loaded.parquet -o payload.csv
+      scarid payload --parameters bare.parquet --trace trace.csv loaded.parquet
 
     LOADED are logs of the robot with the payload, as recorded, or the table of parameters that
     `scarid identify` wrote for them. The bare robot is identified beforehand, best from the same
@@ -670,6 +673,8 @@ def payload(
         parameters: The parameters of the bare robot, as `scarid identify -o bare.parquet` writes them.
         robot: The robot: scara2, emps, planar2-gravity, or a .toml or .urdf file. [default: the robot named in the table's metadata, else $SCARID_ROBOT, else scara2]
         frame: The link of the URDF in whose frame the payload is stated. [default: the tool]
+        trace: Say when a payload is picked up or put down, as rows arrive, and write the present one after each quarter of a second to FILE. The table has a row for each payload.
+        false_alarms: Of --trace: how many changes may be told by chance alone [1/h].
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.

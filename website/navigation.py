@@ -26,6 +26,7 @@ SECTIONS: Navigation = {
         "howto/read-a-verdict.md",
         "howto/state-a-motor-constant.md",
         "howto/find-a-payload.md",
+        "howto/find-a-pick-up.md",
         "howto/gate-a-ci-job.md",
         "howto/*.md",
         "real-logs.md",

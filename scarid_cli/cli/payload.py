@@ -21,6 +21,19 @@ from scarid_cli.cli.declare import declare
     metavar="LINK",
     help="The link of the URDF in whose frame the payload is stated.  [default: the tool]",
 )
+@options.side_output(
+    "--trace",
+    help="Say when a payload is picked up or put down, as rows arrive, and write the present one "
+    "after each quarter of a second to FILE. The table has a row for each payload.",
+)
+@click.option(
+    "--false-alarms",
+    type=options.NUMBER,
+    default=1.0,
+    show_default=True,
+    metavar="RATE",
+    help="Of --trace: how many changes may be told by chance alone [1/h].",
+)
 @selecting.window
 @options.table_output
 @options.as_json
@@ -31,6 +44,7 @@ def command() -> None:
     \b
       scarid payload --parameters bare.parquet loaded.csv
       scarid payload --parameters bare.parquet --frame tool loaded.parquet -o payload.csv
+      scarid payload --parameters bare.parquet --trace trace.csv loaded.parquet
 
     LOADED are logs of the robot with the payload, as recorded, or the table of parameters that
     `scarid identify` wrote for them. The bare robot is identified beforehand, best from the same

@@ -109,6 +109,8 @@ KINDS = (
     "metrics",
     "comparison",
     "payload",
+    "loads",
+    "carried",
     "gains",
     "trials",
     "published",

@@ -54,6 +54,8 @@ USES = {
     "metrics": ("`validate`", "`report`"),
     "comparison": ("`compare`", "you"),
     "payload": ("`payload`", "you"),
+    "loads": ("`payload --trace`", "you"),
+    "carried": ("`payload --trace`", "`plot`"),
     "gains": ("`gains`", "`identify --gains`"),
     "prediction": ("`validate --predictions`", "`report`"),
     "residual": ("`validate --residual`", "`plot`"),

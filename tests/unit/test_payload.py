@@ -128,6 +128,34 @@ def test_the_command_finds_what_the_simulator_hung_there(
     refused(wrong, 2, "--frame l3: no link that is fixed to the last axis; it has l7, flange")
 
 
+def test_a_payload_is_found_when_it_is_picked_up(arm: Path, shell: Shell, tmp_path: Path) -> None:
+    """Live and from the log, with the same bits however the rows arrive."""
+    (tmp_path / "arm.toml").write_text(f'title = "seven"\nurdf = "{arm}"\n' + 7 * JOINT)
+    made = shell(MADE.replace("15", "30").replace("0.003,0;", "0.003,18.3;"))
+    assert made.status == 0, made.err
+    command = "scarid payload --parameters bare.parquet --frame l7"
+    found = shell(f"{command} --trace trace.csv loaded.parquet")
+    assert found.status == 0, found.err
+    bare, heavy = csv.DictReader(found.out.splitlines())
+    assert 18.0 <= float(heavy["start"]) <= 18.6
+    assert float(heavy["found"]) <= 19.3
+    assert abs(float(bare["mass"])) < 0.05
+    assert bare["x"] == ""
+    assert float(heavy["mass"]) == pytest.approx(1.2, abs=0.03)
+    for name, value in zip("xyz", (0.03, -0.02, 0.06), strict=True):
+        assert float(heavy[name]) == pytest.approx(value, abs=0.005)
+    assert "picked up 1." in found.err
+    motion = "scarid differentiate -q --format arrow loaded.parquet"
+    pipe = f"{motion} | {command} -q --trace piped.csv"
+    together = f"{motion} then {command[7:]} -q --trace together.csv"
+    assert shell(pipe).out == shell(together).out
+    traces = [(tmp_path / f"{name}.csv").read_text() for name in ("piped", "together")]
+    assert traces[0] == traces[1]
+    changed = [row for row in csv.DictReader(traces[0].splitlines()) if float(row["changed"])]
+    assert len(changed) == 1
+    refused(shell(f"{command} --trace t.csv --json loaded.parquet"), 2, "--json is of one payload")
+
+
 def test_a_robot_without_a_urdf_has_no_flange(shell: Shell) -> None:
     done = shell(
         "scarid identify -q --robot scara2 $SAMPLES/scara2.csv -o p.parquet;"
