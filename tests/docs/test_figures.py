@@ -78,5 +78,5 @@ def test_the_quoted_commands_have_these_options(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_page_shows_the_figure(name: str) -> None:
-    pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
     assert any(f"figures/{name}.svg" in page.read_text("utf-8") for page in pages)
