@@ -56,6 +56,7 @@ SECTIONS: Navigation = {
         "paper.md",
         "real-robots.md",
         "gauntlet.md",
+        "gauntlet/*.md",
         "faults.md",
         "speed.md",
     ],

@@ -2,7 +2,7 @@
 
 make gauntlet
 
-The study takes an hour; its tables are kept in docs/gauntlet.md, and are read from there.
+The study takes an hour; its tables are kept in docs/gauntlet/tables.md, and are read from there.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ MEANING = {
 
 def data() -> Data:
     """Of each condition and robot the three columns, as the page prints them."""
-    text = (ROOT / "docs" / "gauntlet.md").read_text("utf-8")
+    text = (ROOT / "docs" / "gauntlet" / "tables.md").read_text("utf-8")
     found: Data = {}
     for title in TABLES:
         section = text[text.index(title) :].split("\n## ")[0]
