@@ -55,6 +55,7 @@ SECTIONS: Navigation = {
         "explanation/*.md",
         "paper.md",
         "real-robots.md",
+        "verdict.md",
         "gauntlet.md",
         "gauntlet/*.md",
         "faults.md",
