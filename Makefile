@@ -109,7 +109,7 @@ bench: $(VENV)/compared
 	$(BIN)/python benchmarks/bench.py
 
 bench-identify: $(VENV)/tested
-	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/steps.py
+	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/identify_steps.py
 
 bench-latency: $(VENV)/tested
 	$(BIN)/python benchmarks/latency.py

@@ -23,6 +23,7 @@ SECONDS, EARLY, LATE, WITHIN = 60.0, 20.0, 40.0, 1.0  # s
 NEAR = 2.0  # s: a change at this distance is the one in question
 LIGHT, HEAVY, AWAY = 0.2, 5.0, 0.1  # kg, kg, m
 LAST = {"panda": "panda_link7", "ur10": "wrist_3_link", "xarm7": "link7"}  # as the simulator
+PLACES = ("load_mass", "centre_x", "centre_y", "centre_z")
 CONDITIONS: dict[str, tuple[str, ...]] = {
     "clean": (),
     "load-dependent friction": ("load-friction=0.05",),
@@ -43,21 +44,19 @@ class Found:
     inside: list[bool] = field(default_factory=list)
 
     def add(
-        self, loads: list[dict[str, float]], at: float, mass: float, centre: np.ndarray
+        self, loads: list[dict[str, float | None]], at: float, mass: float, centre: np.ndarray
     ) -> None:
         """The pieces of a log in which this was picked up at this time [s]."""
-        own = [x for x in loads[1:] if abs(x["start"] - at) <= NEAR]
-        self.within.append(any(at <= x["found"] <= at + WITHIN for x in own))
+        own = [x for x in loads[1:] if abs(x["t_start"] - at) <= NEAR]
+        self.within.append(any(at <= x["t_found"] <= at + WITHIN for x in own))
         self.missed += not own
         self.false += len(loads) - 1 - len(own[:1])
         last = loads[-1]
-        self.masses.append(abs(last["mass"] / mass - 1.0))
-        off = (
-            np.array([last[name] if last[name] is not None else np.nan for name in "xyz"]) - centre
-        )
+        self.masses.append(abs(last["load_mass"] / mass - 1.0))
+        off = np.array([last[name] for name in PLACES[1:]], dtype=np.float64) - centre
         self.centres.append(float(np.linalg.norm(off)))
-        halves = np.array([last[f"{name}_half"] or np.nan for name in ("mass", *"xyz")])
-        self.inside += (np.abs([last["mass"] - mass, *off]) <= halves).tolist()
+        halves = np.array([last[f"{name}_half"] for name in PLACES], dtype=np.float64)
+        self.inside += (np.abs([last["load_mass"] - mass, *off]) <= halves).tolist()
 
     def row(self, name: str, condition: str) -> str:
         hours = len(self.within) * SECONDS / 3600.0

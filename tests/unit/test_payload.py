@@ -137,13 +137,13 @@ def test_a_payload_is_found_when_it_is_picked_up(arm: Path, shell: Shell, tmp_pa
     found = shell(f"{command} --trace trace.csv loaded.parquet")
     assert found.status == 0, found.err
     bare, heavy = csv.DictReader(found.out.splitlines())
-    assert 18.0 <= float(heavy["start"]) <= 18.6
-    assert float(heavy["found"]) <= 19.3
-    assert abs(float(bare["mass"])) < 0.05
-    assert bare["x"] == ""
-    assert float(heavy["mass"]) == pytest.approx(1.2, abs=0.03)
+    assert 18.0 <= float(heavy["t_start"]) <= 18.6
+    assert float(heavy["t_found"]) <= 19.3
+    assert abs(float(bare["load_mass"])) < 0.05
+    assert bare["centre_x"] == ""
+    assert float(heavy["load_mass"]) == pytest.approx(1.2, abs=0.03)
     for name, value in zip("xyz", (0.03, -0.02, 0.06), strict=True):
-        assert float(heavy[name]) == pytest.approx(value, abs=0.005)
+        assert float(heavy[f"centre_{name}"]) == pytest.approx(value, abs=0.005)
     assert "picked up 1." in found.err
     motion = "scarid differentiate -q --format arrow loaded.parquet"
     pipe = f"{motion} | {command} -q --trace piped.csv"
@@ -151,7 +151,7 @@ def test_a_payload_is_found_when_it_is_picked_up(arm: Path, shell: Shell, tmp_pa
     assert shell(pipe).out == shell(together).out
     traces = [(tmp_path / f"{name}.csv").read_text() for name in ("piped", "together")]
     assert traces[0] == traces[1]
-    changed = [row for row in csv.DictReader(traces[0].splitlines()) if float(row["changed"])]
+    changed = [row for row in csv.DictReader(traces[0].splitlines()) if float(row["load_changed"])]
     assert len(changed) == 1
     refused(shell(f"{command} --trace t.csv --json loaded.parquet"), 2, "--json is of one payload")
 

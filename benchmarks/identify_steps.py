@@ -1,6 +1,6 @@
 """Processor time and peak memory of each step of `scarid identify` on a measurement.
 
-    python benchmarks/steps.py --logs scara2:20:200,ur10:60:500,panda:600:1000
+    python benchmarks/identify_steps.py --logs scara2:20:200,ur10:60:500,panda:600:1000
 
 A log is NAME:SECONDS:HERTZ. A second thread looks at the stack and at the resident memory every
 10 ms; a step is the time during which its function is on the stack. The last table has the
