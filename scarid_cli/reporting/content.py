@@ -10,7 +10,9 @@ from scarid_cli.reporting.evolution import evolution
 from scarid_cli.reporting.gains import gains
 from scarid_cli.reporting.kinds import (
     OF_NO_METHOD,
+    Hung,
     JointGains,
+    Loads,
     Measurement,
     Metrics,
     MotionEstimate,
@@ -19,6 +21,7 @@ from scarid_cli.reporting.kinds import (
     Result,
     Trace,
 )
+from scarid_cli.reporting.loads import loads, payloads
 from scarid_cli.reporting.parts import Section
 from scarid_cli.reporting.signals import compared_with, logs, soft_sensors
 from scarid_cli.reporting.wording import experiment_of, grouped, of_kind
@@ -41,6 +44,8 @@ def sections(results: Sequence[Result], values: published.Values | None = None) 
         *_of_estimates(results, colours),
         *_of_torques(results, colours),
         *gains(of_kind(results, JointGains)),
+        *payloads(of_kind(results, Hung)),
+        *loads(of_kind(results, Loads)),
     ]
 
 

@@ -101,6 +101,31 @@ class JointGains(Result):
 
 
 @dataclass(frozen=True)
+class Hung(Result):
+    """The ten values of a payload in a `frame`, with their 95 % intervals, nan where not told.
+
+    `body` are those of the nearest body that there can be, so many standard deviations `away`.
+    """
+
+    frame: str
+    possible: bool
+    away: float
+    quantities: tuple[str, ...]
+    units: tuple[str, ...]
+    values: tuple[float, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    body: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Loads(Result):
+    """Payloads over time: start, end and finding [s], mass and half its interval [kg] of each."""
+
+    rows: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
 class Prediction(_PerJoint):
     """Measured and predicted torque of each joint and their difference, as curves (2, points)."""
 

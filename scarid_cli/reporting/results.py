@@ -17,13 +17,23 @@ from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
 from scarid_cli.printable import printable
 from scarid_cli.reporting.common import with_common
-from scarid_cli.reporting.kinds import Comparison, JointGains, Metrics, Parameters, Result
+from scarid_cli.reporting.kinds import (
+    Comparison,
+    Hung,
+    JointGains,
+    Loads,
+    Metrics,
+    Parameters,
+    Result,
+)
 from scarid_cli.reporting.naming import name_of, names_of
 from scarid_cli.reporting.records import measurement, motion, prediction, trace
 from scarid_cli.reporting.said import files_of, of_comparison, of_validation
 from scarid_cli.reporting.source import Source
 
 WRONG = "wrong"  # key of the metadata of gains
+HUNG = {"values": "estimate", "low": "low", "high": "high", "body": "body"}  # columns
+OVER_TIME = ("t_start", "t_end", "t_found", "load_mass", "load_mass_half")
 
 
 class NotReported(UsageFault):
@@ -40,12 +50,12 @@ def reportable(table: Table) -> Table:
     if kind in (*schemas.KINDS, "via"):
         raise NotReported(
             f"{table.name} is a {kind} table; report takes parameters, trace, metrics, comparison, "
-            "gains, prediction, motion and measurement tables"
+            "gains, payload, loads, prediction, motion and measurement tables"
         )
     raise BadData(
         f"{table.name}: found the columns {printable(', '.join(table.columns))}, expected a "
-        "parameters, trace, metrics, comparison, gains, prediction, motion or measurement table; "
-        "name the columns as docs/tables.md does"
+        "parameters, trace, metrics, comparison, gains, payload, prediction, motion or "
+        "measurement table; name the columns as docs/tables.md does"
     )
 
 
@@ -132,6 +142,27 @@ def _gains(source: Source) -> JointGains:
     )
 
 
+def _payload(source: Source) -> Hung:
+    rows, extra = _rows(source.table), source.table.meta.extra
+    return Hung(
+        source.name,
+        source.robot,
+        frame=str(extra.get("frame", "the flange")),
+        possible=bool(extra.get("possible", True)),
+        away=float(extra.get("away", 0.0)),
+        quantities=_texts(rows["quantity"]),
+        units=_texts(rows["unit"]),
+        **{name: _numbers(rows, column) for name, column in HUNG.items()},
+    )
+
+
+def _loads(source: Source) -> Loads:
+    rows = _rows(source.table)
+    return Loads(
+        source.name, source.robot, tuple(zip(*(_numbers(rows, x) for x in OVER_TIME), strict=True))
+    )
+
+
 def _rows(table: Table) -> dict[str, list[Any]]:
     """All values of a small table by column; it must have a row."""
     rows: dict[str, list[Any]] = {column: [] for column in table.columns}
@@ -164,6 +195,8 @@ READERS: dict[str, Callable[[Source], Result]] = {
     "metrics": _metrics,
     "comparison": _comparison,
     "gains": _gains,
+    "payload": _payload,
+    "loads": _loads,
     "prediction": prediction,
     "motion": motion,
     "measurement": measurement,

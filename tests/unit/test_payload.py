@@ -124,6 +124,12 @@ def test_the_command_finds_what_the_simulator_hung_there(
     moments = np.linalg.eigvalsh(matrix(np.array([x["body"] for x in machine["values"]])[4:]))
     assert moments[0] > 0.0
     assert moments[2] < moments[0] + moments[1]
+    page = shell(
+        "scarid payload -q --parameters bare.parquet --frame l7 p.parquet -o payload.parquet;"
+        " scarid report bare.parquet payload.parquet"
+    )
+    assert "in the frame of l7" in page.out
+    assert f"{float(rows['mass']['estimate']):.4g}"[:4] in page.out
     wrong = shell("scarid payload --parameters bare.parquet --frame l3 p.parquet")
     refused(wrong, 2, "--frame l3: no link that is fixed to the last axis; it has l7, flange")
 
@@ -137,6 +143,8 @@ def test_a_payload_is_found_when_it_is_picked_up(arm: Path, shell: Shell, tmp_pa
     found = shell(f"{command} --trace trace.csv loaded.parquet")
     assert found.status == 0, found.err
     bare, heavy = csv.DictReader(found.out.splitlines())
+    page = shell(f"{command} -q --trace trace.csv loaded.parquet -o l.csv; scarid report l.csv")
+    assert "Payloads over time" in page.out
     assert 18.0 <= float(heavy["t_start"]) <= 18.6
     assert float(heavy["t_found"]) <= 19.3
     assert abs(float(bare["load_mass"])) < 0.05

@@ -9,7 +9,9 @@ from scarid_cli.reporting.estimates import said_of
 from scarid_cli.reporting.gains import gains
 from scarid_cli.reporting.kinds import (
     OF_NO_METHOD,
+    Hung,
     JointGains,
+    Loads,
     Measurement,
     Metrics,
     MotionEstimate,
@@ -18,6 +20,7 @@ from scarid_cli.reporting.kinds import (
     Result,
     Trace,
 )
+from scarid_cli.reporting.loads import loads, payloads
 from scarid_cli.reporting.parts import Section
 from scarid_cli.reporting.study import estimation, signals
 from scarid_cli.reporting.study.blocks import Chapter, Grid
@@ -50,6 +53,8 @@ def chapters(
     yield from estimated[1:]
     yield from signals.logs(view, of_kind(results, Measurement))
     yield from map(_plain, gains(of_kind(results, JointGains)))
+    yield from map(_plain, payloads(of_kind(results, Hung)))
+    yield from map(_plain, loads(of_kind(results, Loads)))
     yield from map(_plain, published.settings(results, values))
 
 
