@@ -214,6 +214,13 @@ def summary(piece: Piece, load: Load, link: str) -> str:
 def pieces(carried: Carried, motion: Table) -> Table:
     """A row for each piece: from when to when, what hung there, and its centre."""
     own = carried.found.pieces
+    if not own:
+        raise bad_data(
+            motion.name,
+            f"less than {2.0 * BLOCK:g} s of settled rows",
+            expected="blocks of a quarter of a second",
+            remedy="give a longer log",
+        )
     rows = [(x.start, x.end, x.found, *carried.of(x).row) for x in own]
     meta = replace(motion.meta, kind="loads", robot=carried.bare.estimates.robot.name)
     meta = replace(meta, extra={"frame": carried.link})

@@ -162,6 +162,8 @@ def test_a_payload_is_found_when_it_is_picked_up(arm: Path, shell: Shell, tmp_pa
     changed = [row for row in csv.DictReader(traces[0].splitlines()) if float(row["load_changed"])]
     assert len(changed) == 1
     refused(shell(f"{command} --trace t.csv --json loaded.parquet"), 2, "--json is of one payload")
+    short = shell(f"{motion} -o m.parquet; {command} --trace t.csv --rows 1:70 m.parquet")
+    refused(short, 65, "less than 0.5 s of settled rows")
 
 
 def test_a_robot_without_a_urdf_has_no_flange(shell: Shell) -> None:
