@@ -34,6 +34,12 @@ from scarid_cli.cli.declare import declare
     metavar="SECONDS",
     help="End after so long without a row.  [default: never]",
 )
+@click.option(
+    "--split",
+    is_flag=True,
+    help="Number the parts of the record between gaps in a column `segment`, so that the commands "
+    "that follow go on behind them.",
+)
 @options.table_output
 @options.common
 def command() -> None:
@@ -41,7 +47,7 @@ def command() -> None:
 
     \b
       scarid listen --port 5000 --idle 1 then differentiate then identify --robot scara2
-      scarid listen --follow log.csv --idle 1 then differentiate then watch --robot scara2
+      scarid listen --follow log.csv --idle 1 --split then differentiate then watch --robot scara2
       scarid listen --port 5001 --udp --columns t,q1,tau1 --idle 1 -o log.parquet
 
     By TCP, a source connects and sends lines; by UDP, each packet is a line. The first one is the
@@ -53,5 +59,6 @@ def command() -> None:
 
     At the end, what was lost is said: steps of the column t of more than 1.5 of their median are
     gaps, and a row whose time is before that of an earlier row is out of order. Such rows are
-    passed on as they came.
+    passed on as they came; with --split a gap begins a new part of the record, as where a source
+    was killed and started again.
     """

@@ -21,10 +21,10 @@ class Growing(ByteSource):
     time may begin again, and its repeated header is no row.
     """
 
-    def __init__(self, path: str, *, columns: str, idle: float | None) -> None:
+    def __init__(self, path: str, *, columns: str, idle: float | None, split: bool = False) -> None:
         self._path = path
         super().__init__(_opened(path), path)
-        self.rows = Rows(path, columns)
+        self.rows = Rows(path, columns, split=split)
         self.begun = 0  # times that the file was read anew
         self._idle, self._held = idle, b""
         self._any = False

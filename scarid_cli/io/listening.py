@@ -10,8 +10,9 @@ from collections.abc import Iterator
 
 from scarid_cli.errors import BadData, OutputFailure, UsageFault
 from scarid_cli.io.bytesource import CHUNK, ByteSource
-from scarid_cli.io.losses import Losses
+from scarid_cli.io.losses import Losses, Parts
 from scarid_cli.io.stop import STOP
+from scarid_cli.io.table import SEGMENT
 
 LONGEST = 1 << 20  # bytes of a row
 PACKET = 1 << 16  # bytes; no packet of UDP is longer
@@ -22,8 +23,9 @@ BUFFER = 1 << 22  # bytes that the kernel is asked to keep while a later command
 class Rows:
     """Tells rows from headers and from what is neither, and counts."""
 
-    def __init__(self, place: str, columns: str) -> None:
+    def __init__(self, place: str, columns: str, *, split: bool = False) -> None:
         self._place = place
+        self._parts = Parts() if split else None
         self._header: list[str] = []
         self._time: int | None = None  # the number of the time column
         self._begun = b""  # the header line, until it is passed on
@@ -52,11 +54,26 @@ class Rows:
                 )
             self._name(fields, line)
         start, self._begun = self._begun, b""
-        return start + (line + b"\n" if self._is_row(fields) else b"")
+        return start + (self._numbered(line, fields) if self._is_row(fields) else b"")
+
+    def _numbered(self, line: bytes, fields: list[str]) -> bytes:
+        """A row, with the number of its part if the record is split."""
+        if self._parts is None:
+            return line + b"\n"
+        assert self._time is not None
+        return line + b",%d\n" % self._parts.of(float(fields[self._time]))
 
     def _name(self, fields: list[str], line: bytes) -> None:
         self._header, self._begun = fields, line + b"\n"
         self._time = fields.index("t") if "t" in fields else None
+        if self._parts is None:
+            return
+        if self._time is None or SEGMENT in fields:
+            raise BadData(
+                f"{self._place}: found the columns {','.join(fields)}, expected t, and no "
+                f"{SEGMENT} yet; leave out --split"
+            )
+        self._begun = line + b"," + SEGMENT.encode() + b"\n"
 
     def _is_row(self, fields: list[str]) -> bool:
         if fields == self._header:
@@ -104,12 +121,19 @@ class Port(ByteSource):
     """
 
     def __init__(
-        self, host: str, port: int, *, udp: bool, columns: str, idle: float | None
+        self,
+        host: str,
+        port: int,
+        *,
+        udp: bool,
+        columns: str,
+        idle: float | None,
+        split: bool = False,
     ) -> None:
         place = f"{'udp' if udp else 'tcp'}://{host}:{port}"
         self._socket = _bound(host, port, place, udp=udp)
         super().__init__(self._socket.fileno(), place)
-        self.rows = Rows(place, columns)
+        self.rows = Rows(place, columns, split=split)
         self._idle, self._any = idle, False
         self._read = self._packets if udp else self._lines
         self._sources: dict[int, tuple[socket.socket, bytes]] = {}  # each with a part of a line

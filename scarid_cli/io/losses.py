@@ -73,5 +73,24 @@ class Losses:
         return "; ".join(parts) or "none lost, repeated or out of order"
 
 
+@dataclass
+class Parts:
+    """The numbers of the parts of a record between gaps of the time, from 0, row by row."""
+
+    number: int = 0
+    _latest: float | None = None
+    _steps: list[float] = field(default_factory=list)
+
+    def of(self, t: float) -> int:
+        """The part of a row of this time [s]."""
+        step = 0.0 if self._latest is None else t - self._latest
+        self._latest = t
+        if self._steps and step > GAP * median(self._steps):
+            self.number += 1
+        elif step > 0.0 and len(self._steps) < FEW:
+            self._steps.append(step)
+        return self.number
+
+
 def _many(count: int, what: str) -> str:
     return f"{count:,} {what}{'s' if count > 1 else ''}"

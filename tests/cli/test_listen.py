@@ -96,6 +96,23 @@ def test_a_source_that_was_killed_in_the_middle_of_a_row_goes_on() -> None:
     assert "50 rows; about 10 lost in 1 gap of t (the longest 0.043 s); 1 cut short" in said
 
 
+def test_a_gap_begins_a_part_of_the_record_where_it_is_split() -> None:
+    with listening("--idle", "0.5", "--split") as listener:
+        with listener.source() as source:
+            source.sendall(HEADER + b"".join(rows(range(30))))
+        with listener.source() as source:
+            source.sendall(HEADER + b"".join(rows(range(40, 60))))
+        lines, _ = listener.ended()
+    parts = [line.strip() + b",%d\n" % (k >= 30) for k, line in
+             enumerate([*rows(range(30)), *rows(range(40, 60))])]  # fmt: skip
+    assert lines == [b"t,q1,tau1,segment\n", *parts]
+    with listening("--idle", "0.5", "--split") as listener:
+        with listener.source() as source:
+            source.sendall(b"x,q1\n1,2\n")
+        _, said = listener.ended()
+    assert "expected t, and no segment yet; leave out --split" in said
+
+
 @pytest.mark.parametrize("named", [False, True])
 def test_lost_late_and_repeated_packets_are_counted(*, named: bool) -> None:
     times = [*range(1, 50), 53, 52, *range(54, 80), 79, *range(80, 100)]  # without 50 and 51

@@ -17,16 +17,17 @@ def run(
     host: str,
     columns: str,
     idle: float | None,
+    split: bool,
 ) -> None:
     """Write the rows that come to the port or the file, and say what was lost."""
     if (port is None) == (follow is None):
         raise UsageFault("give --port N or --follow FILE, and not both")
     source: Port | Growing
     if follow is not None:
-        source = Growing(follow, columns=columns, idle=idle)
+        source = Growing(follow, columns=columns, idle=idle, split=split)
     else:
         assert port is not None
-        source = Port(host, port, udp=udp, columns=columns, idle=idle)
+        source = Port(host, port, udp=udp, columns=columns, idle=idle, split=split)
     job.sources.append(source)
     if not job.quiet:
         job.place.say(f"waits at {source.name}")
