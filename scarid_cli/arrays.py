@@ -15,6 +15,11 @@ def varies(about: Array | float, squares: Array | float) -> Marks:
     return np.asarray(about > CONSTANT * np.asarray(squares))
 
 
+def spread_starts(rows: int, length: int, count: int) -> Numbers:
+    """The first rows of so many blocks of this length, spread evenly over all rows."""
+    return np.arange(count) * (rows - length) // max(1, count - 1)
+
+
 def median(values: Array) -> float:
     """The median of a vector, as numpy's, which would import numpy.ma; nan if a value is nan."""
     ordered = np.sort(values)

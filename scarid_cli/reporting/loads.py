@@ -15,17 +15,17 @@ def payloads(group: Sequence[Hung]) -> list[Section]:
 
 
 def _payload(one: Hung, name: str) -> Section:
+    impossible = (
+        f" No body has these values; the nearest one is {one.away:.2g} standard deviations away."
+    )
     note = (
         f"What hangs on the flange, in the frame of {one.frame}: mass, centre, and inertia about "
+        "the centre. A value without an interval is one that the motion does not tell."
     )
-    note += "the centre. A value without an interval is one that the motion does not tell."
-    if not one.possible:
-        note += f" No body has these values; the nearest one is {one.away:.2g} standard deviations "
-        note += "away."
     rows = zip(one.quantities, one.units, one.values, one.low, one.high, one.body, strict=True)
     return Section(
         title=titled("Payload", name if name != "payload" else ""),
-        note=note,
+        note=note if one.possible else note + impossible,
         headers=("quantity", "unit", "estimate", "low", "high", "nearest body"),
         rows=tuple((quantity, unit, *map(number, values)) for quantity, unit, *values in rows),
     )

@@ -47,15 +47,14 @@ def reportable(table: Table) -> Table:
     kind = detected.kind if detected else stated
     if kind in READERS:
         return checked(table, kind)
+    *others, last = READERS
     if kind in (*schemas.KINDS, "via"):
         raise NotReported(
-            f"{table.name} is a {kind} table; report takes parameters, trace, metrics, comparison, "
-            "gains, payload, loads, prediction, motion and measurement tables"
+            f"{table.name} is a {kind} table; report takes {', '.join(others)} and {last} tables"
         )
     raise BadData(
         f"{table.name}: found the columns {printable(', '.join(table.columns))}, expected a "
-        "parameters, trace, metrics, comparison, gains, payload, prediction, motion or "
-        "measurement table; name the columns as docs/tables.md does"
+        f"{', '.join(others)} or {last} table; name the columns as docs/tables.md does"
     )
 
 

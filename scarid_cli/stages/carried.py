@@ -9,23 +9,26 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.changes.carried import BLOCK, SIZES, VARIES, Carrying, Piece, Sums
-from scarid_cli.algorithms.changes.payload import directions
+from scarid_cli.algorithms.changes.hypotheses import FRICTION
+from scarid_cli.algorithms.changes.payload import directions, located
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.rigid import Frame
+from scarid_cli.algorithms.robots.terms import Offset
+from scarid_cli.algorithms.statistics.offsets import offset_joints
 from scarid_cli.arrays import Array, Marks
 from scarid_cli.errors import bad_data
 from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, matrix, table_of
 from scarid_cli.stages import Sink
+from scarid_cli.stages.changes import known
 from scarid_cli.stages.estimates import Estimates
 from scarid_cli.stages.payload import frame_of
 from scarid_cli.stages.prediction import predicted
 
 NAMES = ("mass", "x", "y", "z")
 HEAVIER, LIGHTER = "picked up", "put down"
-BODY, MOTOR, OFFSET = "standard", "mass", "offset"  # kinds of terms
 TINY = 1e-9  # N m or N: the least size
 UNTOLD = 0.5  # m: half an interval of a centre that is not told
 CLEAR = 4.0  # standard errors of a mass, from which on something hangs there
@@ -62,7 +65,8 @@ class Bare:
     """What is known of the bare robot: its estimates, and the deviation of its residuals (joints).
 
     `B` (parameters, 10 + frictions) is how the parameters depend on those of the payload, and on
-    what friction and offsets change by; `sizes` are those that this may have.
+    what friction and offsets change by; `sizes` are those that this may have. The `frame` is that
+    of a `link`.
     """
 
     estimates: Estimates
@@ -70,6 +74,7 @@ class Bare:
     B: Array
     sizes: Array
     frame: Frame
+    link: str
 
     @property
     def none(self) -> Sums:
@@ -79,31 +84,23 @@ class Bare:
     @classmethod
     def of(cls, estimates: Estimates, table: Table, link: str | None) -> Bare:
         robot = estimates.robot
-        frame, _ = frame_of(robot, link, "a payload needs")
-        stored = table.meta.extra.get("evidence") or {}
-        deviations = np.array(stored.get("deviations") or [], dtype=np.float64)
-        if len(deviations) != len(robot.joints) or not np.all(deviations > 0.0):
+        frame, name = frame_of(robot, link, "a payload needs")
+        evidence = known(table, robot, estimates.errors).evidence
+        if evidence is None or not np.all(evidence.deviations > 0.0):
             raise bad_data(
                 table.name,
                 "nothing about the residuals of its log",
                 expected="what `scarid identify` keeps in its table",
                 remedy="identify the bare robot again with `scarid identify -o FILE.parquet`",
             )
-        B, sizes = _free(estimates)
-        return cls(estimates, deviations, B, sizes, frame)
+        return cls(estimates, evidence.deviations, *_free(estimates), frame, name)
 
     def load(self, sums: Sums, noise: float) -> Load:
         """What the sums say, with the errors of the bare robot."""
         phi, covariance = sums.solved(noise)
-        covariance = (covariance + self._bare(sums, covariance / noise))[:10, :10]
-        m = phi[9]
-        slopes = np.zeros((4, 10))
-        slopes[0, 9] = 1.0
-        slopes[1:, 6:9] = self.frame.turn.T / m
-        slopes[1:, 9] = -self.frame.turn.T @ phi[6:9] / m**2
-        centre = self.frame.turn.T @ (phi[6:9] / m - self.frame.origin)
-        errors = np.sqrt(np.einsum("ij,jk,ik->i", slopes, covariance, slopes))
-        return Load(np.array([m, *centre]), errors)
+        covariance = covariance + self._bare(sums, covariance / noise)
+        values, errors = located(phi[:10], covariance[:10, :10], self.frame)
+        return Load(values[:4], errors[:4])
 
     def _bare(self, sums: Sums, gain: Array) -> Array:
         """What the errors of the bare robot add to the covariance of the parameters."""
@@ -118,19 +115,16 @@ class Carried:
 
     bare: Bare
     found: Carrying
-    sink: Sink | None
-    link: str
+    sink: Sink
 
     def over(self, motion: Table, treatment: Treatment) -> Iterator[tuple[Piece, Load, Load]]:
         """Each change as it is found: the piece that begins, and the loads before and after."""
         schema = schemas.load("carried").arrow()
-        if self.sink:
-            meta = replace(motion.meta, kind="carried", robot=self.bare.estimates.robot.name)
-            self.sink.start(replace(motion, schema=schema, meta=meta).arrow_schema())
+        meta = replace(motion.meta, kind="carried", robot=self.bare.estimates.robot.name)
+        self.sink.start(replace(motion, schema=schema, meta=meta).arrow_schema())
         for start, end, block in self._blocks(motion, treatment):
             changed = self.found.add(start, end, block)
-            if self.sink:
-                self.sink.write(self._row(schema, end, changed=changed))
+            self.sink.write(self._row(schema, end, changed=changed))
             if changed:
                 before, after = self.found.pieces[-2:]
                 yield after, self.of(before), self.of(after)
@@ -170,22 +164,14 @@ class Carried:
 
 def _free(estimates: Estimates) -> tuple[Array, Array]:
     """How the parameters depend on those that are free, and the sizes that these may have."""
-    parameters = estimates.robot.parameters
-    kinds = [p.term.NAME for p in parameters]
-    free = [k for k, kind in enumerate(kinds) if kind not in (BODY, MOTOR)]
-    friction = np.abs(estimates.full)
-    for k in free:  # an offset, which may be 0, changes with the friction of its joint
-        joint = parameters[k].term.joints
-        same = [
-            friction[i]
-            for i in free
-            if parameters[i].term.joints == joint and parameters[i].term.JUMPS
-        ]
-        if kinds[k] == OFFSET:
-            friction[k] = max(same, default=friction[k])
-    sizes = np.maximum(VARIES * friction[free], TINY)
-    B = np.column_stack((directions(estimates.robot), np.eye(len(parameters))[:, free]))
-    return B, np.append(SIZES, sizes)
+    robot, sizes = estimates.robot, np.abs(estimates.full)
+    terms = [parameter.term for parameter in robot.parameters]
+    free = [k for k, term in enumerate(terms) if isinstance(term, (*FRICTION, Offset))]
+    for k, joint in offset_joints(robot).items():  # which may be 0: it changes with the friction
+        own = [i for i, x in enumerate(terms) if x.JUMPS and x.joints == (joint + 1,)]
+        sizes[k] = max(sizes[own], default=sizes[k])
+    B = np.column_stack((directions(robot), np.eye(len(terms))[:, free]))
+    return B, np.append(SIZES, np.maximum(VARIES * sizes[free], TINY))
 
 
 def told(piece: Piece, before: Load, after: Load) -> str:
@@ -223,5 +209,5 @@ def pieces(carried: Carried, motion: Table) -> Table:
         )
     rows = [(x.start, x.end, x.found, *carried.of(x).row) for x in own]
     meta = replace(motion.meta, kind="loads", robot=carried.bare.estimates.robot.name)
-    meta = replace(meta, extra={"frame": carried.link})
+    meta = replace(meta, extra={"frame": carried.bare.link})
     return table_of("payload", schemas.load("loads").arrow(), rows, meta)

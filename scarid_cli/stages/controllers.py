@@ -6,7 +6,7 @@ from math import atan2, degrees, hypot
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.payload import matrix
+from scarid_cli.algorithms.robots.physical import inertia_of
 from scarid_cli.arrays import Array
 
 
@@ -34,7 +34,7 @@ def _ur(mass: float, centre: Array, inertia: Array | None) -> str:
 
 def _franka(mass: float, centre: Array, inertia: Array | None) -> str:
     """libfranka: kg, m, and the matrix about the centre [kg m2], column by column."""
-    every = np.zeros((3, 3)) if inertia is None else matrix(inertia)
+    every = np.zeros((3, 3)) if inertia is None else inertia_of(inertia)
     columns = _list(every.T.ravel())
     return f"robot.setLoad({mass:.4g}, {_braced(_list(centre))}, {_braced(columns)})"
 
@@ -43,7 +43,7 @@ def _kuka(mass: float, centre: Array, inertia: Array | None) -> str:
     """KRL: kg, mm, the directions of the principal axes [deg] and their moments [kg m2]."""
     moments, turn = np.zeros(3), np.eye(3)
     if inertia is not None:
-        moments, turn = np.linalg.eigh(matrix(inertia))
+        moments, turn = np.linalg.eigh(inertia_of(inertia))
         turn[:, 2] *= np.sign(np.linalg.det(turn))
     x, y, z = (f"{1e3 * c:.4g}" for c in centre)
     a, b, c = (f"{degrees(angle) + 0.0:.4g}" for angle in _zyx(turn))

@@ -37,7 +37,7 @@ def identification(table: Table, estimator: str) -> Document:
             "bandwidth": extra.get("bandwidth"),
             "delay": _delay(extra),
             "friction": extra.get("friction"),
-            "parameters": [_parameter(row) for row in rows],
+            "parameters": [_with_half(row) for row in rows],
             "joints": [
                 {
                     "joint": number,
@@ -109,16 +109,10 @@ def of_payload(table: Table) -> Document:
             **_head("payload", table),
             **{name: extra[name] for name in ("frame", "possible", "away")},
             "told": told,
-            "values": [{**row, "half_interval": _half_of(row)} for row in rows],
+            "values": [_with_half(row) for row in rows],
             "controllers": settings(body),
         }
     )
-
-
-def _half_of(row: Row) -> float | None:
-    """Half the 95 % interval of a row of a table."""
-    known = row["low"] is not None and row["high"] is not None
-    return 0.5 * (row["high"] - row["low"]) if known else None
 
 
 def comparison(table: Table) -> Document:
@@ -153,7 +147,8 @@ def _delay(extra: Row) -> Document | None:
     return {"seconds": extra["delay"], "standard_error": extra.get("delay_error")}
 
 
-def _parameter(row: Row) -> Row:
+def _with_half(row: Row) -> Row:
+    """A row of a table, with half its 95 % interval."""
     low, high = row.get("low"), row.get("high")
     half = 0.5 * (high - low) if low is not None and high is not None else None
     return {**row, "half_interval": half}

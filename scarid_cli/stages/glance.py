@@ -13,7 +13,7 @@ from scarid_cli.algorithms.checks import clock, leaps, units, values, velocities
 from scarid_cli.algorithms.checks.finding import FAILED, OK, WARNING, Finding
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, spread_starts
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Table
 from scarid_cli.stages.compact import Compact
@@ -89,5 +89,5 @@ def _spread(log: Log) -> Log:
     """Blocks that are spread over a long log, or all of another."""
     if log.rows <= 2 * BLOCKS * ROWS:
         return log
-    starts = np.arange(BLOCKS) * ((log.rows - ROWS) // (BLOCKS - 1))
+    starts = spread_starts(log.rows, ROWS, BLOCKS)
     return log.part((starts[:, None] + np.arange(ROWS)).ravel())

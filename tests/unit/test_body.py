@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scarid_cli.algorithms.changes.body import nearest, pseudo_inertia
+from scarid_cli.algorithms.changes.body import nearest
+from scarid_cli.algorithms.robots.physical import pseudo_inertia
 from scarid_cli.stages.controllers import settings as lines_of
 
 

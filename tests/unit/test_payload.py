@@ -14,7 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from unit.arms import seven_axes
 
-from scarid_cli.algorithms.changes.payload import Standard, directions, in_frame, matrix, standard
+from scarid_cli.algorithms.changes.payload import Standard, directions, in_frame, standard
+from scarid_cli.algorithms.robots.physical import inertia_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.rigid import PINOCCHIO, Frame
 
@@ -55,10 +56,7 @@ def test_mass_centre_and_inertia_come_back(
     assert np.isfinite(found.errors).all()
     moments = np.linalg.eigvalsh(about)
     assert found.possible == (moments[2] < moments[0] + moments[1])
-    inertia = np.array(
-        [[found.body[4 + k] for k in row] for row in ((0, 1, 2), (1, 3, 4), (2, 4, 5))]
-    )
-    least, middle, most = np.linalg.eigvalsh(inertia)
+    least, middle, most = np.linalg.eigvalsh(inertia_of(found.body[4:]))
     assert most <= (least + middle) * (1.0 + 1e-9)
 
 
@@ -121,7 +119,7 @@ def test_the_command_finds_what_the_simulator_hung_there(
         float(row["estimate"]) for row in rows.values()
     ]
     assert machine["controllers"]["UR"] in found.err
-    moments = np.linalg.eigvalsh(matrix(np.array([x["body"] for x in machine["values"]])[4:]))
+    moments = np.linalg.eigvalsh(inertia_of(np.array([x["body"] for x in machine["values"]])[4:]))
     assert moments[0] > 0.0
     assert moments[2] < moments[0] + moments[1]
     page = shell(

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from scarid_cli.algorithms.robots.physical import LENGTH, pseudo_inertia, standard_of
 from scarid_cli.arrays import Array
 
 FALL, LAST = 0.1, 1e-7  # of the barrier's weight: four times the last is the error of the minimum
@@ -17,7 +18,6 @@ STEPS = 100  # of Newton's method, at most, for each weight
 NEAR = 0.1  # the length of the last step for a weight, in the norm of the curvature
 LEAST = 1e-3  # of the largest eigenvalue: the least one of the body to begin with
 HELD = 1e-3  # standard deviations per own size, by which what is not told stays where it is
-REACH = 0.1  # m: the size of a payload, for what is not told
 LIGHT = 0.01  # kg, the least mass of which this is said
 
 
@@ -29,9 +29,9 @@ def nearest(phi: Array, factor: Array) -> tuple[Array, float]:
     does not tell is that of some body.
     """
     mass = max(abs(float(phi[9])), LIGHT)
-    sizes = mass * np.array([*np.full(6, REACH**2), *np.full(3, REACH), 1.0])
-    goal, units = phi / sizes, factor * sizes
-    information = units.T @ units + HELD**2 * np.eye(len(phi))
+    goal, units = phi / mass, factor * mass
+    sizes = np.array([*np.full(6, LENGTH**2), *np.full(3, LENGTH), 1.0])
+    information = units.T @ units + np.diag((HELD / sizes) ** 2)
     body = _start(goal)
     weight = max(1.0, float(np.sum((units @ (body - goal)) ** 2)))
     while weight > LAST:
@@ -41,18 +41,13 @@ def nearest(phi: Array, factor: Array) -> tuple[Array, float]:
             if length < NEAR:
                 break
         weight *= FALL
-    return sizes * body, float(np.linalg.norm(units @ (body - goal)))
-
-
-def pseudo_inertia(phi: Array) -> Array:
-    """The matrix (4, 4) that is positive definite if a body has these ten parameters."""
-    return np.asarray(np.tensordot(phi, _PARTS, 1))
+    return mass * body, float(np.linalg.norm(units @ (body - goal)))
 
 
 def _step(body: Array, phi: Array, information: Array, weight: float) -> tuple[Array, float]:
     """Newton's step for half the squared distance over the weight with the barrier; its length."""
     inverse = np.linalg.inv(pseudo_inertia(body))
-    turned = inverse @ _PARTS
+    turned = inverse @ PARTS
     slope = information @ (body - phi) / weight - np.trace(turned, axis1=1, axis2=2)
     curvature = information / weight + np.einsum("iab,jba->ij", turned, turned)
     scale = 1.0 / np.sqrt(np.diag(curvature))
@@ -65,23 +60,7 @@ def _start(phi: Array) -> Array:
     values, vectors = np.linalg.eigh(pseudo_inertia(phi))
     least = LEAST * max(float(np.abs(values).max()), LEAST)
     J = (vectors * np.maximum(values, least)) @ vectors.T
-    inertia = np.trace(J[:3, :3]) * np.eye(3) - J[:3, :3]
-    return np.array([*inertia[np.triu_indices(3)], *J[:3, 3], J[3, 3]])
+    return np.asarray(standard_of(J, np.hstack))
 
 
-def _parts() -> Array:
-    """What each of the ten parameters adds to the pseudo-inertia (10, 4, 4)."""
-    parts = np.zeros((10, 4, 4))
-    for k, (i, j) in enumerate(zip(*np.triu_indices(3), strict=True)):
-        if i == j:
-            parts[k, [0, 1, 2], [0, 1, 2]] = 0.5
-            parts[k, i, i] -= 1.0
-        else:
-            parts[k, i, j] = parts[k, j, i] = -1.0
-    for k in range(3):
-        parts[6 + k, k, 3] = parts[6 + k, 3, k] = 1.0
-    parts[9, 3, 3] = 1.0
-    return parts
-
-
-_PARTS = _parts()
+PARTS = np.array([pseudo_inertia(one) for one in np.eye(10)])  # of the ten parameters

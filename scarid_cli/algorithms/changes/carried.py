@@ -37,8 +37,7 @@ LATER = (1, 2, 3, 4, 6, 8, 12, 16, 24)  # blocks that are compared with those be
 SHORTEST = 4  # blocks of a piece before the blocks that are compared with it
 SECOND = 4  # blocks
 PLACES = LATER[-1] + SECOND  # blocks before the end, at one of which a change is sought
-SPANS = (1, 4, 16)  # blocks, of whose noise medians are taken
-KNOWN = (32, 8, 4)  # values, from which on they are known
+KNOWN = {1: 32, 4: 8, 16: 4}  # of spans of so many blocks: values from which on the noise is known
 LOST = 0.05  # of a load, which gears make friction of or not (2 to 10 %): no change of it
 ARMS = np.array([0.1, 0.1, 0.1, 1.0])  # m, by which it seems to be elsewhere; and 1 for the mass
 SHARE = 0.1  # of the last change: a standard deviation, until the noise is known again
@@ -128,42 +127,38 @@ class Piece:
 
 @dataclass
 class Noises:
-    """How many times the variance of white noise blocks have, in spans of different lengths.
+    """How many times the variance of white noise blocks have: the `medians` of spans of them.
 
-    `old` are the medians of the piece before, which count until those of this one are known.
+    If there is a piece `before`, its medians count until those of this one are known, which they
+    are of the spans that are `new`.
     """
 
-    old: dict[int, float] = field(default_factory=dict)
+    before: bool = False
+    medians: dict[int, float] = field(default_factory=dict)
+    new: set[int] = field(default_factory=set)
     values: dict[int, deque[float]] = field(
-        default_factory=lambda: {span: deque(maxlen=MEMORY // span) for span in SPANS}
+        default_factory=lambda: {span: deque(maxlen=MEMORY // span) for span in KNOWN}
     )
 
     def add(self, span: int, value: float) -> None:
         self.values[span].append(value)
-
-    @property
-    def known(self) -> dict[int, float]:
-        """The medians of the spans of which there are enough."""
-        pairs = zip(self.values.items(), KNOWN, strict=True)
-        return {
-            span: float(np.median(values)) for (span, values), few in pairs if len(values) >= few
-        }
+        if len(self.values[span]) >= KNOWN[span]:
+            self.medians[span] = float(np.median(self.values[span]))
+            self.new.add(span)
 
     @property
     def are_old(self) -> bool:
         """Whether the noise is that of the piece before."""
-        return bool(self.old) and not len(self.known) > 1
+        return self.before and len(self.new) < 2
 
     def among(self, blocks: int) -> float:
-        """Of so many blocks: the largest of shorter spans; 0 if it is not known."""
-        medians = {**self.old, **self.known}
-        own = [medians.get(span) for span in SPANS if span <= blocks or span == SPANS[0]]
-        found = [x for x in own if x is not None]
-        return max(found) if len(found) == len(own) or (blocks == MEMORY and found) else 0.0
+        """Of so many blocks: the largest of spans that are no longer; 0 if one is not known."""
+        spans = [span for span in KNOWN if span <= blocks]
+        return max(self.medians[x] for x in spans) if self.medians.keys() >= {*spans} else 0.0
 
     def anew(self) -> Noises:
         """Those of the next piece."""
-        return Noises({**self.old, **self.known})
+        return Noises(before=True, medians=dict(self.medians))
 
 
 @dataclass
@@ -177,7 +172,7 @@ class Carrying:
     rate: float
     pieces: list[Piece] = field(default_factory=list)
     suspected: float | None = None
-    noises: Noises = field(default_factory=lambda: Noises())
+    noises: Noises = field(default_factory=Noises)
 
     @property
     def threshold(self) -> float:
@@ -188,7 +183,7 @@ class Carrying:
     @property
     def noise(self) -> float:
         """How many times the variance of white noise pieces have; 1 before it is known."""
-        return self.noises.among(MEMORY) or 1.0
+        return max(self.noises.medians.values(), default=0.0) or 1.0
 
     @property
     def last(self) -> Piece:
@@ -211,7 +206,7 @@ class Carrying:
 
     def _note(self, piece: Piece, block: Sums) -> None:
         """What the piece leaves of the last blocks."""
-        for span in SPANS:
+        for span in KNOWN:
             if piece.blocks % span == span - 1 and piece.blocks + 1 >= span + SHORTEST:
                 since, before = self.none, piece.total
                 if span > 1:

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.body import nearest, pseudo_inertia
+from scarid_cli.algorithms.changes.body import nearest
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.physical import inertia_of, pseudo_inertia
 from scarid_cli.algorithms.robots.rigid import SYMBOLS, Frame
 from scarid_cli.arrays import Array
 
@@ -99,19 +100,27 @@ def standard(B: Array, difference: Array, covariance: Array) -> Standard:
 
 
 def in_frame(found: Standard, frame: Frame) -> Payload:
-    """The payload in a frame that is fixed to the last axis; errors to first order."""
-    phi, covariance = found.phi, found.covariance
+    """The payload in a frame that is fixed to the last axis."""
+    values, errors = located(found.phi, found.covariance, frame)
+    body, away = values, 0.0
+    if not np.linalg.eigvalsh(pseudo_inertia(found.phi))[0] > 0.0:
+        nearby, away = nearest(found.phi, found.factor)
+        body = _of_centre(nearby, frame)
+    return Payload(values, errors, body, away)
+
+
+def located(phi: Array, covariance: Array, frame: Frame) -> tuple[Array, Array]:
+    """Mass, centre and inertia about it in a frame, and their errors to first order (10).
+
+    Of the standard parameters and their covariance, which is nan where one is not told: an error
+    that depends on it is nan.
+    """
     known = np.isfinite(np.diag(covariance))
     J = _slopes(phi, frame)
     spread = np.where(np.isfinite(covariance), covariance, 0.0)
     errors = np.sqrt(np.diag(J @ spread @ J.T))
     told = np.all((J[:, ~known] == 0.0), axis=1) if not known.all() else np.ones(10, dtype=bool)
-    values = _of_centre(phi, frame)
-    body, away = values, 0.0
-    if not np.linalg.eigvalsh(pseudo_inertia(phi))[0] > 0.0:
-        nearby, away = nearest(phi, found.factor)
-        body = _of_centre(nearby, frame)
-    return Payload(values, np.where(told, errors, np.nan), body, away)
+    return _of_centre(phi, frame), np.where(told, errors, np.nan)
 
 
 def _slopes(phi: Array, frame: Frame) -> Array:
@@ -129,13 +138,7 @@ def _of_centre(phi: Array, frame: Frame) -> Array:
     """Mass, centre and inertia about the centre, from the standard parameters."""
     m = phi[MASS]
     centre = phi[MOMENTS] / m
-    about = matrix(phi[INERTIA]) - m * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    about = inertia_of(phi) - m * (centre @ centre * np.eye(3) - np.outer(centre, centre))
     turned = frame.turn.T @ about @ frame.turn
     place = frame.turn.T @ (centre - frame.origin)
     return np.array([m, *place, *(turned[i, j] for i, j in PAIRS)])
-
-
-def matrix(values: Array) -> Array:
-    """The symmetric matrix (3, 3) of xx, xy, xz, yy, yz, zz."""
-    xx, xy, xz, yy, yz, zz = values
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

@@ -136,9 +136,9 @@ class Records:
         return Records(*(array[:rows] for array in self.arrays))
 
     def last(self, rows: int) -> Records:
-        """The records of the last rows."""
+        """The records of the last rows, copied so that the rest can be freed."""
         start = max(len(self) - rows, 0)
-        return Records(*(array[start:] for array in self.arrays))
+        return Records(*(array[start:].copy() for array in self.arrays))
 
     @classmethod
     def joined(cls, parts: Sequence[Records]) -> Records:

@@ -135,7 +135,7 @@ class Arm:
         ]
         return cls(
             cvxpy,
-            [_standard(J, cvxpy.hstack) for J in pseudo],
+            [standard_of(J, cvxpy.hstack) for J in pseudo],
             beside,
             axes,
             _combinations(robot, standard),
@@ -231,8 +231,8 @@ def pseudo_inertia(body: Array) -> Array:
     return pseudo
 
 
-def _standard(J: Any, stack: Any) -> Any:
-    """The standard parameters of a pseudo-inertia, as an expression of cvxpy."""
+def standard_of(J: Any, stack: Any) -> Any:
+    """The standard parameters of a pseudo-inertia, joined by `stack` (of numpy, or of cvxpy)."""
     S = LENGTH**2 * J[:3, :3]
     inertia = [S[1, 1] + S[2, 2], -S[0, 1], -S[0, 2], S[0, 0] + S[2, 2], -S[1, 2]]
     moments = [LENGTH * J[k, 3] for k in range(3)]

@@ -14,7 +14,7 @@ from scarid_cli.algorithms.regression.shifting import bend, in_step
 from scarid_cli.algorithms.statistics.curvature import form
 from scarid_cli.algorithms.statistics.essential import without
 from scarid_cli.algorithms.statistics.jackknife import jackknife
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, spread_starts
 
 SEARCHED = 4_000_000  # numbers in W, about, from which the lead is searched
 BLOCKS = 10  # of a long record, spread over it
@@ -98,8 +98,9 @@ def _some(rows: Rows) -> Rows:
     samples = SEARCHED // max(1, rows.W[0].size)
     if rows.samples <= 2 * samples:
         return rows
-    starts = np.arange(BLOCKS) * (rows.samples - samples // BLOCKS) // (BLOCKS - 1)
-    return rows.part((starts[:, None] + np.arange(samples // BLOCKS)).ravel())
+    length = samples // BLOCKS
+    starts = spread_starts(rows.samples, length, BLOCKS)
+    return rows.part((starts[:, None] + np.arange(length)).ravel())
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -280,29 +280,25 @@ class Trial:
             start += columns.shape[2]
         parts = [self.rows.W, *further.values(), self.rows.y[:, :, None]]
         if self.noise:
-            A = np.concatenate([x[self.places] for x in parts], axis=2)
-            return self._of(A, scales, self.places), places
-        scales = (scales * self.weights)[:, :, None]
-        blocks = self._blocks(self.number)  # a block at a time: all columns of all rows are many
-        sums = (np.concatenate([x[k] for x in parts], axis=2) * scales[k] for k in blocks)
-        return Products.of(sums, self.rows.W.shape[2]), places
+            parts = [x[self.places] for x in parts]
+        return self._of(parts, scales, self.places), places
 
-    def _of(self, A: Array, scales: Array, places: Numbers) -> Products:
-        """The products of rows A in these places, which have the same distance in each run.
+    def _of(self, parts: Sequence[Array], scales: Array, places: Numbers) -> Products:
+        """The products of rows in these places, which have the same distance in each run.
 
-        A is large, and is overwritten.
+        The `parts` are their columns; all of them stand beside each other in a block at a time,
+        for they are many, unless they are whitened.
         """
         scales, rows = scales[places], self.rows
         if self.noise:
-            A = self.noise.whitened(A, scales > 0.0, rows.at[places], rows.h)
+            A = np.concatenate(parts, axis=2)
+            parts = [self.noise.whitened(A, scales > 0.0, rows.at[places], rows.h)]
             scales = np.ones_like(scales)
-        A *= (scales * self.weights)[:, :, None]
-        return Products.of((A[k] for k in self._blocks(self.number[places])), rows.W.shape[2])
-
-    def _blocks(self, number: Numbers) -> Iterator[slice]:
-        """The rows of each block, of which these are the numbers of the rows."""
-        edges = np.searchsorted(number, np.arange(self.count + 1)).tolist()
-        return (slice(a, b) for a, b in pairwise(edges))
+        scales = (scales * self.weights)[:, :, None]
+        edges = np.searchsorted(self.number[places], np.arange(self.count + 1)).tolist()
+        blocks = (slice(a, b) for a, b in pairwise(edges))
+        sums = (np.concatenate([x[k] for x in parts], axis=2) * scales[k] for k in blocks)
+        return Products.of(sums, rows.W.shape[2])
 
     def beside(
         self,
@@ -337,9 +333,7 @@ class Trial:
         if smooth is None:
             return []
         for scales, without in same:
-            last = without is same[-1][1]
-            A = smooth.A if last else smooth.A.copy()
-            products = self._of(A, scales, smooth.centres)
+            products = self._of([smooth.A], scales, smooth.centres)
             if parallel := products.solved([]):
                 found = self.effect(PARALLEL, plain, without, parallel)
                 return [found, *self.beside(products, smooth.places, plain, parallel)]

@@ -57,9 +57,7 @@ def smoothed(rows: Rows, model: Model | None, estimates: Array, own: int) -> Smo
     parts = [part for run in runs(rows.at) for part in window.parts(run)]
     if not parts:
         return None
-    centres = np.concatenate(
-        [part.start + window.centres(part.stop - part.start) for part in parts]
-    )
+    centres = window.centres_of(parts)
     A, start, sizes = np.empty(0), 0, dict[str, int]()
     for part in parts:
         columns = _columns(rows.part(part), model, estimates, own, window)

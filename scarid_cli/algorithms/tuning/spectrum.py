@@ -21,9 +21,9 @@ def bandwidths(segments: Sequence[Segment], h: float) -> tuple[Array, Array]:
     """
     length = max(segment.q.shape[1] for segment in segments)
     longest = [segment for segment in segments if segment.q.shape[1] == length]
-    q, tau = (np.stack(x, axis=1) for x in zip(*((s.q, s.tau) for s in longest), strict=True))
-    velocities = np.array([bandwidth(x, h, derivative=1) for x in q])
-    return velocities, np.array([bandwidth(x, h, derivative=0) for x in tau])
+    q, tau = (zip(*x, strict=True) for x in ([s.q for s in longest], [s.tau for s in longest]))
+    velocities = np.array([bandwidth(np.stack(x), h, derivative=1) for x in q])
+    return velocities, np.array([bandwidth(np.stack(x), h, derivative=0) for x in tau])
 
 
 def bandwidth(x: Array, h: float, derivative: int) -> float:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from scarid_cli.algorithms.tuning.lowpassed import Segment
+from scarid_cli.arrays import spread_starts
 
 BLOCKS = 10
 ROWS = 6000  # of a block, at least
@@ -34,12 +33,11 @@ def _blocks(segment: Segment, length: int, rows: int) -> list[Segment]:
     count = max(1, round(BLOCKS * own / rows))
     if own < 2 * count * length:
         return [segment]
-    starts = (np.arange(count) * (own - length)) // max(1, count - 1)
     return [
         replace(
             segment,
             q=segment.q[:, start : start + length],
             tau=segment.tau[:, start : start + length],
         )
-        for start in starts.tolist()
+        for start in spread_starts(own, length, count).tolist()
     ]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from scarid_cli.algorithms.changes.carried import Carrying
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.job import Job
@@ -19,7 +17,6 @@ from scarid_cli.stages.blind import Choices, Passed
 from scarid_cli.stages.corrected import corrected, gains_of
 from scarid_cli.stages.documents import of_payload
 from scarid_cli.stages.estimates import estimates_with_covariance
-from scarid_cli.stages.payload import frame_of
 
 
 def run(
@@ -66,20 +63,16 @@ def _follow(
     """Tell each payload as it is picked up or put down, and write the table of all of them."""
     if len(files) > 1:
         raise UsageFault("--trace follows one log")
-    batches = list(bare.batches)
-    bare = replace(bare, batches=iter(batches))
-    estimates = estimates_with_covariance(bare, arm)
-    known = following.Bare.of(estimates, bare, frame)
+    known = following.Bare.of(estimates_with_covariance(bare, arm), bare, frame)
     log, arm = read(job, files[0] if files else "-", robot or arm.name)
     if gains := gains_of(bare):
         log = corrected(log, gains)
     found = blind.prepared(
         [log], arm, Choices(align=False), progress=searching(job), before=Passed.of([bare])
     )
-    _, link = frame_of(arm, frame, "a payload needs")
-    carried = following.Carried(known, Carrying(known.none, rate), sink, link)
+    carried = following.Carried(known, Carrying(known.none, rate), sink)
     for piece, before, after in carried.over(found.motion, found.chosen.treatment):
         job.say(following.told(piece, before, after))
     job.write(job.recorded(following.pieces(carried, found.motion)))
     for piece in carried.found.pieces:
-        job.say(following.summary(piece, carried.of(piece), link))
+        job.say(following.summary(piece, carried.of(piece), known.link))
