@@ -3,8 +3,9 @@
     python benchmarks/identify_steps.py --logs scara2:20:200,ur10:60:500,panda:600:1000
 
 A log is NAME:SECONDS:HERTZ. A second thread looks at the stack and at the resident memory every
-10 ms; a step is the time during which its function is on the stack. The last table has the
-exponents with which time and memory grow from 60 to 600 s of an arm with seven axes at 1 kHz.
+10 ms; a step is the time during which its function is on the stack. Then the errors of the
+estimates: their rms and the largest, over the stated ones. The last line has the exponents with
+which time and memory grow from 60 to 600 s of an arm with seven axes at 1 kHz.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ import time
 from collections import defaultdict
 from math import log as ln
 from pathlib import Path
+
+import numpy as np
 
 STEPS = {  # of which the first that is on the stack counts: module and function
     "spectrum, cut-off": "bandwidth.bandwidth",
@@ -82,12 +85,22 @@ def watched(words: list[str]) -> dict[str, tuple[float, float]]:
     return {step: (seconds[step], peaks[step]) for step in (*STEPS, REST) if step in seconds}
 
 
-def cost(text: str) -> dict[str, tuple[float, float]]:
-    """The steps of the identification of a simulated log, in a process of its own."""
+def errors(path: Path, truth: np.ndarray) -> str:
+    """The errors of the estimates in a table, over those that it states."""
+    import pyarrow.parquet as pq
+
+    estimates, stated = (pq.read_table(path)[x].to_numpy() for x in ("estimate", "robust_error"))
+    ratios = np.abs(estimates - truth) / stated
+    worst, rms = ratios.max(), np.sqrt(np.mean(ratios**2))
+    return f"rms {rms:.2f} of those stated, the largest {worst:.1f}, of {ratios.size} parameters"
+
+
+def cost(text: str) -> tuple[dict[str, tuple[float, float]], str]:
+    """The steps of the identification of a simulated log, in a process of its own; its errors."""
     import pyarrow as pa
     import pyarrow.parquet as pq
     from arms import URDFS, described
-    from conditions import Condition, log, robot_named
+    from conditions import Condition, log, robot_named, truth_of
 
     name, duration, rate = text.split(":")
     with tempfile.TemporaryDirectory() as folder:
@@ -101,7 +114,8 @@ def cost(text: str) -> dict[str, tuple[float, float]]:
         words = ["identify", "-q", "--robot", robot, str(path), "-o", f"{folder}/out.parquet"]
         command = [sys.executable, __file__, "--run", json.dumps(words)]
         out = subprocess.run(command, check=True, capture_output=True, text=True)
-    return {step: tuple(x) for step, x in json.loads(out.stdout).items()}
+        off = errors(Path(folder) / "out.parquet", truth_of(robot_named(name), condition))
+    return {step: tuple(x) for step, x in json.loads(out.stdout).items()}, off
 
 
 def total(steps: dict[str, tuple[float, float]]) -> tuple[float, float]:
@@ -121,12 +135,15 @@ def main() -> None:
     if given.run:
         print(json.dumps(watched(json.loads(given.run))))
         return
-    found = {text: cost(text) for text in given.logs.split(",")}
+    costs = {text: cost(text) for text in given.logs.split(",")}
+    found = {text: steps for text, (steps, _) in costs.items()}
     print("step | " + " | ".join(found))
     for step in (*STEPS, REST):
         cells = [_cell(*steps[step]) if step in steps else "" for steps in found.values()]
         print(step, *cells, sep=" | ")
     print("all", *(_cell(*total(steps)) for steps in found.values()), sep=" | ")
+    for text, (_, off) in costs.items():
+        print(f"{text}: errors {off}")
     if set(GROWTH) <= set(found):
         (few, small), (many, large) = (total(found[text]) for text in GROWTH)
         time_grows, memory_grows = (ln(x) / ln(10.0) for x in (many / few, large / small))

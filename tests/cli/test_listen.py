@@ -11,9 +11,10 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from scarid_cli.io.losses import BLOCK, Losses
+from scarid_cli.io.losses import BLOCK, GAP, Losses, Parts
 
 SCARID = str(Path(sys.executable).with_name("scarid"))
 HOST = "127.0.0.1"
@@ -230,3 +231,13 @@ def test_a_port_or_a_file_is_listened_to(words: tuple[str, ...], tmp_path: Path)
     run = subprocess.run([SCARID, "listen", *words], capture_output=True, cwd=tmp_path, check=False)
     assert run.returncode == 2
     assert b"give --port N or --follow FILE, and not both" in run.stderr
+
+
+def test_parts_begin_behind_gaps_and_nowhere_else() -> None:
+    rng = np.random.default_rng(3)
+    steps = 1e-3 * (1.0 + 0.3 * rng.uniform(-1.0, 1.0, 2000))
+    gaps = [500, 501, 1700]
+    steps[gaps] = 2.0 * GAP * 1e-3
+    parts, t = Parts(), np.cumsum(steps)
+    numbers = [parts.of(float(x)) for x in t]
+    assert numbers == np.cumsum(np.isin(np.arange(2000), gaps)).tolist()

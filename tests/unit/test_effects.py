@@ -17,6 +17,7 @@ from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.regression.rows import Rows, plain, rows_of, thinned
 from scarid_cli.algorithms.regression.shifting import led, shifted
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.statistics import alignment
 from scarid_cli.algorithms.statistics.alignment import Aligned, aligned
 from scarid_cli.algorithms.statistics.alternatives import (
     CURVATURE,
@@ -391,6 +392,22 @@ def test_a_delay_does_not_take_the_place_of_an_inertia() -> None:
         assert abs(found.delay) < 0.01
         errors.append(found.found.fit.estimates[0] - SERVO[0])
     assert np.sqrt(np.mean(np.square(errors))) < 0.2 * SERVO[0]
+
+
+def test_the_delay_of_a_long_log_is_found_in_blocks_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = strokes(2, 1)
+    estimates = estimated(ls.Estimator(), whole).fit.estimates
+    in_all = aligned(ls.Estimator(), np.zeros(5), whole, estimates, 4)
+    monkeypatch.setattr(alignment, "SEARCHED", whole.W.size // 3)
+    some = alignment._some(whole)
+    assert whole.samples // 4 < some.samples <= whole.samples // 3
+    assert set(some.at) < set(whole.at)
+    in_some = aligned(ls.Estimator(), np.zeros(5), whole, estimates, 4)
+    assert in_some.rows.samples == in_all.rows.samples
+    assert in_some.delay == pytest.approx(-2 * H, abs=0.1 * H)
+    np.testing.assert_allclose(
+        in_some.found.fit.estimates[:4], in_all.found.fit.estimates[:4], rtol=2e-3
+    )
 
 
 def test_torques_are_shifted_within_runs_only() -> None:
