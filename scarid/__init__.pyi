@@ -612,7 +612,7 @@ def validate(
         rollout: Also simulate: from measured states, the model moves by the measured torques for so long, and its positions are compared with the measured ones.
         predictions: Write the measured and the predicted torques.
         residual: Write the residual torque of each row, the band that it stays in, and the joint that is beyond it: a contact.
-        false_alarms: How often in an hour of motion --residual may call a contact by chance.
+        false_alarms: How often in an hour of motion --residual may call a contact by chance. [default: 1]
         observer: Let --residual take the residual of a momentum observer of this bandwidth, which needs no accelerations. [default: that of the torques]
         no_history: Write no history into the metadata.
     """
@@ -674,7 +674,7 @@ def payload(
         robot: The robot: scara2, emps, planar2-gravity, or a .toml or .urdf file. [default: the robot named in the table's metadata, else $SCARID_ROBOT, else scara2]
         frame: The link of the URDF in whose frame the payload is stated. [default: the tool]
         trace: Say when a payload is picked up or put down, as rows arrive, and write the present one after each quarter of a second to FILE. The table has a row for each payload.
-        false_alarms: Of --trace: how many changes may be told by chance alone [1/h].
+        false_alarms: Of --trace: how many changes may be told by chance alone [1/h]. [default: 1]
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.

@@ -29,10 +29,8 @@ from scarid_cli.cli.declare import declare
 @click.option(
     "--false-alarms",
     type=options.NUMBER,
-    default=1.0,
-    show_default=True,
     metavar="RATE",
-    help="Of --trace: how many changes may be told by chance alone [1/h].",
+    help="Of --trace: how many changes may be told by chance alone [1/h].  [default: 1]",
 )
 @selecting.window
 @options.table_output

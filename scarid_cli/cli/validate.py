@@ -50,9 +50,7 @@ from scarid_cli.cli.headings import DATA, OUTPUT, heading
     "--false-alarms",
     type=options.NUMBER,
     metavar="RATE",
-    default=1.0,
-    show_default=True,
-    help="How often in an hour of motion --residual may call a contact by chance.",
+    help="How often in an hour of motion --residual may call a contact by chance.  [default: 1]",
 )
 @click.option(
     "--observer",

@@ -108,7 +108,8 @@ def test_parameters_that_say_nothing_of_their_log_are_refused(made: Path, scarid
         assert not Path("nothing.parquet").exists()
 
 
-def test_an_observer_alone_is_refused(made: Path, scarid: Run) -> None:
-    result = scarid("validate", "--parameters", "p.parquet", "second.parquet", "--observer", 5)
+@pytest.mark.parametrize("option", ["--observer", "--false-alarms"])
+def test_an_option_of_the_residual_alone_is_refused(made: Path, scarid: Run, option: str) -> None:
+    result = scarid("validate", "--parameters", "p.parquet", "second.parquet", option, 5)
     assert result.status == 2
-    assert "--observer belongs to --residual" in result.err
+    assert f"{option} belongs to --residual" in result.err

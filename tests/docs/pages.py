@@ -29,6 +29,7 @@ PAGES = sorted(
 # reader, or take minutes (make, and the benchmarks behind it).
 NOT_RUN = re.compile(r"(make|pip|source|git|python|ruff|\.ci/run)\b|\.venv/")
 REAL_LOG = re.compile(r"\bDATA/|\bemps_(train|test_pulses)\.csv|\btx40\.toml")
+WRITTEN = re.compile(r"-o (\S+)|\bexport (\w+)=")
 MESSAGE = re.compile(r"scarid( \w+)*: ")
 FENCE = re.compile(r"^(?P<indent> *)```(?P<info>.*)$")
 
@@ -42,6 +43,7 @@ class Block:
     info: str
     text: str
     shown: str | None = None
+    real: bool = False  # it needs the real logs, or what a block above makes of them
 
     @property
     def place(self) -> str:
@@ -65,7 +67,7 @@ class Block:
     @property
     def lacks(self) -> str | None:
         """What the block needs and is not here."""
-        if REAL_LOG.search(self.text) and not (SHARED / "data").is_dir():
+        if self.real and not (SHARED / "data").is_dir():
             return f"{self.place} needs the real robot logs (../shared/data)"
         return None
 
@@ -90,6 +92,21 @@ def blocks(page: str) -> list[Block]:
         directly = language == "sh"
         if directly:
             found.append(Block(page, line, info, text))
+    return with_real(found)
+
+
+def with_real(page: list[Block]) -> list[Block]:
+    """The blocks of a page, of which those are marked that the real logs are needed for."""
+    made: set[str] = set()
+    found = []
+    for block in page:
+        written = {file or variable for file, variable in WRITTEN.findall(block.text)}
+        written = {"scarid " if name == "SCARID_ROBOT" else name for name in written}
+        made -= written
+        real = bool(REAL_LOG.search(block.text)) or any(name in block.text for name in made)
+        if real:
+            made |= written
+        found.append(replace(block, real=real))
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from scarid_cli.algorithms.changes.carried import Carrying
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.cli.belonging import FALSE_ALARMS, needs
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.loaded import loaded
 from scarid_cli.cli.measured import read, searching
@@ -27,17 +28,27 @@ def run(
     robot: str | None,
     frame: str | None,
     trace: str | None,
-    false_alarms: float,
+    false_alarms: float | None,
     as_json: bool,
 ) -> None:
     """Write the table of the payload, and say what hangs there."""
+    needs("--trace FILE", trace, {"--false-alarms": false_alarms})
     sink = job.side_table(trace)
     bare = job.read(parameters, "parameters")
     arm = job.robot(robot, bare)
     if sink:
         if as_json:
             raise UsageFault("--json is of one payload; --trace follows several")
-        _follow(job, sink, files, robot, bare, arm, frame, false_alarms)
+        _follow(
+            job,
+            sink,
+            files,
+            robot,
+            bare,
+            arm,
+            frame,
+            FALSE_ALARMS if false_alarms is None else false_alarms,
+        )
         return
     found = loaded(job, files, robot, arm, gains_of(bare))
     hung, link = stage.payload(

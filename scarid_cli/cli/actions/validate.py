@@ -12,6 +12,7 @@ import pyarrow as pa
 from scarid_cli.algorithms.checks.finding import FAILED
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.cli.belonging import FALSE_ALARMS, needs
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.logs import read_logs
 from scarid_cli.cli.measured import read, searching, tell_of
@@ -50,7 +51,7 @@ def run(
     robot: str | None,
     predictions: str | None,
     residual: str | None,
-    false_alarms: float,
+    false_alarms: float | None,
     observer: float | None,
     rollout: float | None,
     require: str | None,
@@ -60,8 +61,7 @@ def run(
     """Write the quality of the predicted torques; returns the exit status."""
     treatment = treatment_of(given)
     _require_rows(treatment, predictions=predictions, residual=residual)
-    if observer and not residual:
-        raise UsageFault("--observer belongs to --residual FILE, which was not given")
+    needs("--residual FILE", residual, {"--observer": observer, "--false-alarms": false_alarms})
     side, contacts = job.side_table(predictions), job.side_table(residual)
     tables = [job.read(file, "parameters") for file in parameters if file != APRIORI]
     stated = robot or (stated_robot(tables[0]) if tables else None)
@@ -82,8 +82,9 @@ def run(
     reach = Reach(len(arm.joints))
     beside: list[Beside] = [Rollouts(rollout)] if rollout else []
     if contacts:
-        band = band_of(tables, before, model.robot, false_alarms)
-        beside.append(Residuals(band, model.robot, contacts, false_alarms, observer))
+        rate = FALSE_ALARMS if false_alarms is None else false_alarms
+        band = band_of(tables, before, model.robot, rate)
+        beside.append(Residuals(band, model.robot, contacts, rate, observer))
     result = stage.validate(
         job.recorded(reach.watched(table)),
         model,
