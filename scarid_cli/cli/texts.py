@@ -13,7 +13,7 @@ from scarid_cli.io.jsonio import is_json, read_json
 from scarid_cli.io.notation import Notation, notation_of
 from scarid_cli.io.roles import role_of
 from scarid_cli.io.table import Table
-from scarid_cli.stages.recorders import expanded, recognised, units_in_names
+from scarid_cli.stages.recorders import expanded, known_unit, recognised, units_in_names
 from scarid_cli.stages.seconds import clock_columns, with_one_clock
 from scarid_cli.stages.side import as_role, flattened, side_by_side, texts_flattened
 from scarid_cli.stages.wording import Unclear, in_short, in_words
@@ -53,7 +53,7 @@ def _read(
     job: Job, file: str, source: ByteSource, given: Notation | None, named: Collection[str]
 ) -> Table:
     if file.endswith(ARCHIVES):
-        table, left_out = read_archive(file, named)
+        table, left_out = read_archive(file, named, given.header if given else ())
         if left_out:
             job.notes.append(f"{file}: left out {', '.join(left_out)}, which --map does not name")
         return table
@@ -63,11 +63,20 @@ def _read(
     if is_json(source):
         return read_json(source)
     notation = notation_of(source, given, by_name=bool(named))
+    if notation.units:
+        notation = _with_units(notation)
     if notation.plain:
         return texts_flattened(job.read_source(source))
     if not (given and given.separator):
         job.notes.append(f"{source.name}: read with {notation.text}")
     return texts_flattened(job.read_source(TranslatedCsv(source, notation)))
+
+
+def _with_units(notation: Notation) -> Notation:
+    """The notation whose names have the units that stand below them, as far as these are known."""
+    pairs = zip(notation.header, notation.units, strict=True)
+    header = [f"{name} [{unit}]" if known_unit(unit) else name for name, unit in pairs]
+    return replace(notation, header=tuple(header))
 
 
 def _one_clock(job: Job, table: Table, named: Collection[str]) -> Table:

@@ -95,10 +95,15 @@ class ByteSource:
         self._ahead = b"".join(parts)
         return self._ahead
 
+    def drop_lines(self, count: int) -> None:
+        """Leave out the first lines."""
+        for _ in range(count):
+            self.read(self.peek_lines(1).find(b"\n") + 1 or -1)
+
     def drop_comments(self, marks: bytes) -> None:
         """Leave out the lines at the start that begin with one of these characters."""
         while (start := self.peek(1)) and start in marks:
-            self.read(self.peek_lines(1).find(b"\n") + 1 or -1)
+            self.drop_lines(1)
 
     def read_some(self, size: int = CHUNK) -> bytes:
         """What has arrived: at least one byte, or none at the end."""

@@ -13,9 +13,11 @@ from dataclasses import dataclass
 
 import pyarrow as pa
 
-from scarid_cli.errors import BadData, bad_row
+from scarid_cli.errors import BadData, bad_data, bad_row
+from scarid_cli.io.csvio import NUMERIC
 
 Parse = Callable[[bytes, pa.Schema], object]
+UNITS = "convert it first: `scarid convert` reads a line of units below the header"
 LONGEST = 60  # characters of a value that a message shows
 
 
@@ -46,7 +48,11 @@ class Refused:
             if not self._parses([raw], index):
                 field = self.schema.field(index)
                 column = field.name or str(index + 1)
-                return bad_row(self.name, _shown(value), _wanted(field.type), number, column)
+                found, wanted = _shown(value), _wanted(field.type)
+                if number == 1 and not any(NUMERIC.match(x) for x in values):
+                    return bad_data(self.name, found, expected=wanted, remedy=UNITS, row=number,
+                                    column=column)  # fmt: skip
+                return bad_row(self.name, found, wanted, number, column)
         return BadData(f"{self.name}, row {number}: not CSV; correct or remove the row")
 
     def _first_bad(self, rows: Sequence[bytes]) -> int:

@@ -31,11 +31,24 @@ BOM = "\N{ZERO WIDTH NO-BREAK SPACE}"  # at the start of a text of Windows
 JSON = (b'{"', b"[{", b"[[")  # how a file of JSON begins
 
 # How programs write a missing number; in a table with a column of text they are texts.
-MARKS = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
+MISSING = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
 # Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
 INDEX = "index"  # a first column without a name, which pandas writes
 NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
+
+
+PICKLE = "a pickle, which can run any program: save the arrays with numpy.savez, or as CSV"
+# How files of other formats begin, and what to do with them.
+OTHERS = {
+    b"\x89HDF": "an HDF5 file: call it NAME.h5 and read it with `scarid convert`",
+    b"\x93NUMPY": "an array of NumPy: call it NAME.npy and read it with `scarid convert`",
+    b"PK\3\4": "a workbook or another archive: save the sheet as CSV, or unpack it",
+    b"\xd0\xcf\x11\xe0": "a workbook of Excel: save the sheet as CSV",
+    **{bytes((0x80, version)): PICKLE for version in range(2, 6)},
+    b"TDSm": "a TDMS file of LabVIEW: export it as CSV",
+    b"ULog": "a log of PX4: export its topics as CSV",
+}
 
 
 def read_csv(source: ByteSource) -> Table:
@@ -47,17 +60,18 @@ def read_csv(source: ByteSource) -> Table:
     try:
         return _table(source)
     except csv.Error:
-        raise _not_a_table(source.name) from None
+        raise _not_a_table(source.name, b"") from None
 
 
-def _not_a_table(name: str) -> BadData:
+def _not_a_table(name: str, start: bytes) -> BadData:
     from scarid_cli.io.bags import BEGINNINGS  # neither is needed otherwise
     from scarid_cli.io.foreign import ARCHIVES
 
     if name.lower().endswith((*ARCHIVES, *BEGINNINGS.values())):
         convert = f"scarid convert {shlex.quote(name)} -o log.parquet"
         return BadData(f"{name}: convert it first: `{convert}`")
-    return BadData(f"{name}: neither CSV nor Parquet nor Arrow; is it a table?")
+    known = (text for mark, text in OTHERS.items() if start.startswith(mark))
+    return BadData(f"{name}: {next(known, 'neither CSV nor Parquet nor Arrow; is it a table?')}")
 
 
 def _refuse_json(header: bytes, name: str) -> None:
@@ -69,6 +83,8 @@ def _refuse_json(header: bytes, name: str) -> None:
 def _table(source: ByteSource) -> Table:
     lines = _complete_lines(source)
     first = next(lines, b"")
+    if first.startswith(tuple(OTHERS)):
+        raise _not_a_table(source.name, first)
     while not (header_end := _header_end(first)) and (more := next(lines, None)):
         first = more
     if not header_end:
@@ -143,16 +159,24 @@ def _header_end(block: bytes) -> int:
 
 def _header(block: bytes, end: int, name: str) -> list[str]:
     if b"\0" in block[:end]:
-        raise _not_a_table(name)
+        raise _not_a_table(name, block)
     text = block[:end].decode("utf-8-sig", errors="replace")
     line = text.rstrip("\r\n").rpartition("\n")[2]
     names = [column.strip() for column in next(csv.reader([line]), [])]
-    if len(names) == 1 and (re.search(r"[;\t]", names[0]) or _spaced(names[0], block[end:])):
+    body = block[end:]
+    if len(names) == 1 and (re.search(r"[;\t]", names[0]) or _spaced(names[0], body)):
         raise bad_data(
             name,
             f"the single column {names[0]!r}",
             expected="columns separated by commas",
             remedy="convert it first: `scarid convert` finds the separator",
+        )
+    if len(names) == 1 and body.count(b",") > 2 * body.count(b"\n"):
+        raise bad_data(
+            name,
+            f"{names[0]!r} in the first line",
+            expected="a header with the names of the columns",
+            remedy="convert it first: `scarid convert` finds where the table begins",
         )
     if names and all(NUMERIC.match(column) for column in names):
         raise bad_data(
@@ -250,7 +274,7 @@ def _parsed(block: bytes, schema: pa.Schema) -> pa.Table:
         parse_options=pacsv.ParseOptions(newlines_in_values=b'"' in block),
         convert_options=pacsv.ConvertOptions(
             column_types=schema,
-            null_values=["", *([] if _has_text(schema) else MARKS)],
+            null_values=["", *([] if _has_text(schema) else MISSING)],
             strings_can_be_null=True,
             quoted_strings_can_be_null=_one_of_numbers(schema),
         ),
@@ -266,7 +290,7 @@ class CsvWriter:
         self._carried, self._first = Carried.of(schema), True
         schema = self._carried.schema(schema)
         self._numeric = not _has_text(schema)
-        self._write(_csv_text([schema.names]))
+        self._write(csv_text([schema.names]))
 
     def write(self, batch: pa.RecordBatch) -> None:
         batch = self._carried.beside(batch, first=self._first)
@@ -289,7 +313,7 @@ class CsvWriter:
         )
         columns |= {name: batch.column(name).to_pylist() for name in texts}
         ordered = [columns[name] for name in batch.schema.names]
-        return _csv_text(list(zip(*ordered, strict=True)))
+        return csv_text(list(zip(*ordered, strict=True)))
 
 
 def _require_writable(schema: pa.Schema) -> None:
@@ -349,7 +373,8 @@ def _one_of_numbers(schema: pa.Schema) -> bool:
     return len(schema) == 1 and not pa.types.is_string(schema.field(0).type)
 
 
-def _csv_text(rows: Sequence[Sequence[str]]) -> bytes:
+def csv_text(rows: Sequence[Sequence[str]]) -> bytes:
+    """Rows of texts as CSV."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue().encode()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from os import SEEK_END
 from pathlib import Path
 from typing import Any
@@ -11,14 +11,15 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.errors import BadData, ScaridError, bad_data
+from scarid_cli.errors import BadData, ScaridError, UsageFault, bad_data
 from scarid_cli.io.bytesource import ByteSource, Wrapped, max_batch, require_moderate
+from scarid_cli.io.csvio import csv_text
 from scarid_cli.io.matfile import COPIES, TOO_LARGE
-from scarid_cli.io.notation import SPACE, Notation
+from scarid_cli.io.notation import SPACE, Notation, without_names
 from scarid_cli.io.table import Metadata, Table, doubles
 from scarid_cli.printable import printable
 
-ARCHIVES = (".npz", ".mat", ".h5", ".hdf5")
+ARCHIVES = (".npz", ".npy", ".mat", ".h5", ".hdf5")
 END_OF_ZIP = struct.Struct("<4s6xH10x")  # the last bytes: a mark, and how many files there are
 MANY = 0xFFFF  # stands for a number that is elsewhere
 COMMENTS = b"#%"  # that begin a line before the header
@@ -39,9 +40,11 @@ class TranslatedCsv(Wrapped):
         )
         self._space = notation.separator == SPACE
         self._rest = b""
+        source.drop_lines(notation.skip)
         source.drop_comments(COMMENTS)
+        source.drop_lines(2 if notation.units else 0)
         if notation.header:
-            self._ahead = ",".join(notation.header).encode() + b"\n"
+            self._ahead = csv_text([notation.header])
 
     def _fetch(self, size: int) -> bytes:
         data = self.source.read_some(size)
@@ -58,10 +61,13 @@ class TranslatedCsv(Wrapped):
         return b"\n".join(b",".join(line.split()) for line in lines)
 
 
-def read_archive(path: str, named: Collection[str] = ()) -> tuple[Table, list[str]]:
-    """The arrays of an .npz or .mat file as columns; a matrix `q` becomes q1, q2, ...
+def read_archive(
+    path: str, named: Collection[str] = (), header: Sequence[str] = ()
+) -> tuple[Table, list[str]]:
+    """The arrays of an .npz, .npy, .mat or HDF5 file as columns; a matrix `q` becomes q1, q2, ...
 
-    Single numbers are left out. If the other arrays are not the columns of one table, only those
+    The columns of the one matrix of an .npy file have the names of the `header`. Single numbers
+    are left out. If the other arrays are not the columns of one table, only those
     are read that are `named`, by themselves or one of their columns; the second value are the names
     of those that are left out. An array that is not of real numbers, or whose numbers a double
     cannot hold exactly, is BadData, as is a file that cannot be read.
@@ -82,6 +88,8 @@ def read_archive(path: str, named: Collection[str] = ()) -> tuple[Table, list[st
                 column=both[0],
             )
         columns |= own
+    if header or (path.endswith(".npy") and not named and len(arrays) == 1 < len(columns)):
+        columns = _with_header(path, columns, header)
     if not _are_a_table(kept):
         found = ", ".join(f"{name} ({_size(x)})" for name, x in kept.items()) or "no numbers"
         remedy = "name those of the log, such as `--map 't=time,q*=pos'`"
@@ -89,6 +97,15 @@ def read_archive(path: str, named: Collection[str] = ()) -> tuple[Table, list[st
     batch = pa.RecordBatch.from_arrays([doubles(x) for x in columns.values()], list(columns))
     table = Table(path, batch.schema, Metadata(), iter([batch]))
     return table, [name for name in arrays if name not in kept]
+
+
+def _with_header(path: str, columns: dict[str, Any], header: Sequence[str]) -> dict[str, Any]:
+    """The columns of a matrix, called by the names of the header."""
+    if not header:
+        raise without_names(path, len(columns))
+    if len(header) != len(columns):
+        raise UsageFault(f"--header: {len(header)} names for {len(columns)} columns of {path}")
+    return dict(zip(header, columns.values(), strict=True))
 
 
 def _numeric(array: Any) -> bool:
@@ -108,6 +125,8 @@ def _size(array: Any) -> str:
 
 def _read(path: str) -> dict[str, Any]:
     try:
+        if path.endswith(".npy"):
+            return _npy(path)
         return _npz(path) if path.endswith(".npz") else _mat(path)
     except (MemoryError, ScaridError):
         raise
@@ -136,6 +155,15 @@ def _npz(path: str) -> dict[str, Any]:
     if other is not None:
         raise ValueError(f"it contains {printable(other)}, which is not an array")
     return found
+
+
+def _npy(path: str) -> dict[str, Any]:
+    """The fields of the array, or the array under the name of the file."""
+    array = np.load(path, allow_pickle=False, mmap_mode="r")
+    require_moderate(path, COPIES * array.nbytes)
+    if array.dtype.names:
+        return {name: np.ascontiguousarray(array[name]) for name in array.dtype.names}
+    return {Path(path).stem: np.array(array)}
 
 
 def _require_all(path: str, found: int) -> None:

@@ -19,6 +19,7 @@ SEPARATORS = (",", ";", "\t", "|", SPACE)
 NAMES = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", SPACE: "white space"}
 ROWS = 3  # lines that are looked at: a header, if there is one, and rows
 MOST_LINES = 10_000  # that are looked at for them, among comments and empty lines
+LATEST = 64  # rows that may stand before the header: what a program says of its file
 COMMENT = "#%"  # with which a comment begins
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*\Z")
 
@@ -27,13 +28,16 @@ DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*\Z")
 class Notation:
     """The separator (SPACE for any white space), the decimal mark, and the names of the columns.
 
-    The names are empty if the file has a header, and `comment` says that it is a comment.
+    The names are empty if the file has a header, and `comment` says that it is a comment. `skip`
+    lines stand before the header. If the line behind it has `units`, it has them in its names.
     """
 
     separator: str = ","
     decimal_comma: bool = False
     header: tuple[str, ...] = ()
     comment: bool = False
+    skip: int = 0
+    units: tuple[str, ...] = ()
 
     @property
     def plain(self) -> bool:
@@ -45,7 +49,11 @@ class Notation:
         """In words, for a report."""
         parts = [f"values separated by {NAMES[self.separator]}"]
         parts += ["decimal commas"] if self.decimal_comma else []
-        if self.header:
+        if self.skip:
+            parts.append(f"after {self.skip} lines that are no table")
+        if self.units:
+            parts.append(f"units in the second line: {', '.join(filter(None, self.units))}")
+        elif self.header:
             names = ",".join(self.header)
             parts.append(f"names from a comment: {names}" if self.comment else f"columns {names}")
         return ", ".join(parts)
@@ -57,28 +65,42 @@ def notation_of(source: ByteSource, given: Notation | None, *, by_name: bool) ->
     The columns of a log without names are called after the file if they are to be renamed
     `by_name`; else a log without names is refused.
     """
-    comments, lines = _first_lines(source)
+    comments, lines, skip = _first_lines(source)
     given = given or Notation(separator="")
     found = given if given.separator else _looked_at(lines, source.name)
     separator, comma = found.separator, found.decimal_comma
     if given.header or not lines:
-        return Notation(separator, comma, given.header)
+        return Notation(separator, comma, given.header, skip=skip)
     fields = split(lines[0], separator)
     if separator == "," and (echoed := joint_state_names(fields)):
         return Notation(separator, comma, echoed)
     if not all(is_number(field, comma=comma) for field in fields):
-        return Notation(separator, comma)
+        units = _units(lines, separator, comma=comma)
+        header = tuple(name.strip() for name in fields) if units else ()
+        return Notation(separator, comma, header, skip=skip, units=units)
     names = split(comments[-1].lstrip("#% "), separator) if comments else []
     if len(names) == len(fields) and not any(is_number(n, comma=comma) for n in names):
-        return Notation(separator, comma, tuple(name.strip() for name in names), comment=True)
-    stem = Path(source.name).stem.partition(".")[0].strip("<>")
+        return Notation(
+            separator, comma, tuple(name.strip() for name in names), comment=True, skip=skip
+        )
     if by_name:
-        return Notation(separator, comma, tuple(f"{stem}{i + 1}" for i in range(len(fields))))
-    raise UsageFault(
-        f"{source.name}: no header: the first line is a row of {len(fields)} numbers; name them: "
-        f"--header {_example(len(fields))}, or call them {stem}1, {stem}2, ... and rename them: "
+        header = tuple(f"{_stem(source.name)}{i + 1}" for i in range(len(fields)))
+        return Notation(separator, comma, header, skip=skip)
+    raise without_names(source.name, len(fields))
+
+
+def without_names(name: str, columns: int) -> UsageFault:
+    """What to say of a file whose columns have no names."""
+    stem = _stem(name)
+    return UsageFault(
+        f"{name}: no header: the first line is a row of {columns} numbers; name them: "
+        f"--header {_example(columns)}, or call them {stem}1, {stem}2, ... and rename them: "
         f"--map 'q*={stem}'"
     )
+
+
+def _stem(name: str) -> str:
+    return Path(name).stem.partition(".")[0].strip("<>")
 
 
 def split(line: str, separator: str) -> list[str]:
@@ -95,18 +117,47 @@ def is_number(text: str, *, comma: bool) -> bool:
     return bool(NUMERIC.match(text.replace(",", ".") if comma else text))
 
 
-def _first_lines(source: ByteSource) -> tuple[list[str], list[str]]:
-    """The comments at the start, and the first lines after them."""
-    count = ROWS
+def _units(lines: Sequence[str], separator: str, *, comma: bool) -> tuple[str, ...]:
+    """The second line, if it states units: no numbers, and some behind it."""
+    if len(lines) < ROWS:
+        return ()
+    second, third = (split(line, separator) for line in lines[1:3])
+    if len(second) != len(third) or any(is_number(field, comma=comma) for field in second):
+        return ()
+    numbers = sum(is_number(field, comma=comma) for field in third)
+    stated = tuple(field.strip().strip("[]()") for field in second)
+    return stated if any(stated) and 2 * numbers > len(third) else ()
+
+
+def _first_lines(source: ByteSource) -> tuple[list[str], list[str], int]:
+    """The comments before the table, its first lines, and how many lines are before both."""
+    count, skip = ROWS, 0
     while True:
         block = source.peek_lines(count)
         text = block.decode("utf-8-sig", errors="replace").splitlines()[:count]
         rows = [i for i, line in enumerate(text) if line.strip() and line[0] not in COMMENT]
-        if len(rows) >= ROWS or len(text) < count or count > MOST_LINES:
-            text = text[: rows[:ROWS][-1] + 1] if len(rows) >= ROWS else text
-            comments = [line for line in text if line.startswith(tuple(COMMENT))]
-            return comments, [text[i] for i in rows[:ROWS]]
+        complete = len(text) < count or count > MOST_LINES
+        start = _start([text[i] for i in rows])
+        if start is not None or complete or len(rows) > LATEST:
+            break
         count *= 2
+    if start:
+        skip = rows[start]
+        text, rows = text[skip:], [i - skip for i in rows[start:]]
+    text = text[: rows[:ROWS][-1] + 1] if len(rows) >= ROWS else text
+    comments = [line for line in text if line.startswith(tuple(COMMENT))]
+    return comments, [text[i] for i in rows[:ROWS]], skip
+
+
+def _start(lines: Sequence[str]) -> int | None:
+    """The line with which a table begins: as many values as in the next two, the last numbers."""
+    for at in range(min(len(lines) - ROWS + 1, LATEST)):
+        for separator in SEPARATORS:
+            rows = [split(line, separator) for line in lines[at : at + ROWS]]
+            numbers = sum(is_number(field.replace(",", "."), comma=False) for field in rows[-1])
+            if len({len(row) for row in rows}) == 1 < len(rows[0]) and 2 * numbers > len(rows[0]):
+                return at
+    return None
 
 
 def _looked_at(lines: Sequence[str], name: str) -> Notation:

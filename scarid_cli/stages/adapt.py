@@ -11,7 +11,9 @@ from math import inf, pi
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.errors import UsageFault
+from scarid_cli.errors import UsageFault, bad_row
+from scarid_cli.io.csvio import MISSING
+from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Table, doubles, matrix, number
 from scarid_cli.stages.dates import since_start
 
@@ -41,6 +43,8 @@ def adapted(
 ) -> Table:
     """The table with renamed and converted columns, and with a clock.
 
+    Texts in columns of numbers are read as numbers, or as missing.
+
     `names` maps each new column name to the old one; `units` pairs patterns of new names with the
     unit of these columns in the log. A `rate` [Hz] adds a time column to a table without one. Dates
     become seconds since the first one.
@@ -49,6 +53,8 @@ def adapted(
         table = since_start(table, names.get("t", "t"))
     fields = _renamed(table, names)
     new = [field.name for field in fields]
+    table = _with_numbers(table, new)
+    fields = [f.with_type(own.type) for f, own in zip(fields, table.schema, strict=True)]
     scales = _scales(new, units)
     if rate is not None and "t" in new:
         raise UsageFault("--rate: the table has a time column t")
@@ -56,6 +62,53 @@ def adapted(
     clock = [number("t", "s")] if rate is not None else []
     schema = pa.schema([*clock, *out])
     return replace(table, schema=schema, batches=_rows(table, schema, new, scales, rate))
+
+
+def _with_numbers(table: Table, names: list[str]) -> Table:
+    """The table with numbers for texts where its columns, by their new names, have numbers.
+
+    A reader takes a column for texts if its first value is missing.
+    """
+    texts = [
+        k
+        for k, (name, field) in enumerate(zip(names, table.schema, strict=True))
+        if pa.types.is_string(field.type) and column_type(name) == pa.float64()
+    ]
+    if not texts:
+        return table
+    schema = table.schema
+    for k in texts:
+        schema = schema.set(k, schema.field(k).with_type(pa.float64()))
+    return replace(table, schema=schema, batches=_numbers(table, schema, texts))
+
+
+def _numbers(table: Table, schema: pa.Schema, texts: list[int]) -> Iterator[pa.RecordBatch]:
+    row = 0
+    for batch in table.batches:
+        columns = [*batch.columns]
+        for k in texts:
+            try:
+                columns[k] = pa.array(map(_number, columns[k].to_pylist()), pa.float64())
+            except ValueError:
+                wrong = next(i for i, x in enumerate(columns[k].to_pylist()) if not _is_number(x))
+                found, at = f"'{columns[k][wrong]}'", table.row(row + wrong + 1)
+                raise bad_row(table.name, found, "a number", at, schema[k].name) from None
+        row += batch.num_rows
+        yield pa.RecordBatch.from_arrays(columns, schema=schema)
+
+
+def _number(text: str | None) -> float | None:
+    if text is None or text.strip() in ("", "-", *MISSING):
+        return None
+    return float(text.replace("_", "x"))  # no separator of thousands
+
+
+def _is_number(text: str | None) -> bool:
+    try:
+        _number(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:

@@ -1,12 +1,14 @@
-"""A clock that shows dates, as seconds since the first row."""
+"""A clock that shows dates or times of the day, as seconds since the first row."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain
 
+import numpy as np
 import pyarrow as pa
 
 from scarid_cli.arrays import Numbers
@@ -15,6 +17,18 @@ from scarid_cli.io.table import Table, doubles, number
 
 DATE = re.compile(r"\d{4}-\d\d-\d\d[T ].*?(?P<zone>Z|[+-]\d\d(:?\d\d)?)?\Z")
 NANOSECOND = 1e-9  # s
+# Other texts, by the names of their parts: times of the day, dates in other orders, durations.
+OF_DAY = r"(?P<H>\d\d?):(?P<M>\d\d):(?P<S>\d\d)(?:[.,](?P<f>\d+))?"
+FORMS = tuple(
+    re.compile(form)
+    for form in (
+        OF_DAY,
+        rf"(?P<d>\d\d?)\.(?P<m>\d\d?)\.(?P<Y>\d{{4}}),?[ T]+{OF_DAY}",
+        rf"(?P<Y>\d{{4}})/(?P<m>\d\d?)/(?P<d>\d\d?),?[ T]+{OF_DAY}",
+        r"(?P<value>[+-]?[\d.]+(?:[eE][+-]?\d+)?) *(?P<unit>s|secs?|seconds?|ms|msec|us|ns)",
+    )
+)
+UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}  # s
 EPOCH = (9e8, 5e9)  # s since 1970: dates from 1998 to 2128
 
 
@@ -23,7 +37,8 @@ def since_start(table: Table, clock: str) -> Table:
 
     So is one of milliseconds, microseconds or nanoseconds since 1970.
 
-    Dates are those of Arrow, or texts as ISO 8601 writes them; all have a zone, or none has.
+    Dates are those of Arrow, or texts as ISO 8601 writes them; all have a zone, or none has. Texts
+    may also be times of the day, dates such as 31.12.2026 23:59:59.5, or durations as `0.01 sec`.
     """
     if clock not in table.columns or not _may_have_dates(table.schema.field(clock).type):
         return table
@@ -32,12 +47,12 @@ def since_start(table: Table, clock: str) -> Table:
         return replace(table, batches=_numbers(table, at))
     first = next(batches, None)
     table = replace(table, batches=chain([first] if first else [], batches))
-    kind = _kind(first.column(at)) if first and first.num_rows else None
-    if kind is None:
+    read = _reader(first.column(at)) if first and first.num_rows else None
+    if read is None:
         unit = _epoch_unit(first.column(at)) if first and first.num_rows else None
         return _since_epoch(table, at, unit) if unit else table
     schema = table.schema.set(at, number(clock, "s"))
-    return replace(table, schema=schema, batches=_rows(table, schema, at, kind))
+    return replace(table, schema=schema, batches=_rows(table, schema, at, read))
 
 
 def _may_have_dates(kind: pa.DataType) -> bool:
@@ -103,21 +118,27 @@ def _integers(column: pa.Array) -> Numbers | None:
     return times
 
 
-def _kind(column: pa.Array) -> pa.DataType | None:
-    """The dates in nanoseconds, with a zone if the first one has one; None if it is no date."""
+Reader = Callable[[pa.Array], Numbers | None]  # whole nanoseconds; None if one is no date
+
+
+def _reader(column: pa.Array) -> Reader | None:
+    """What reads dates like the first one; None if it is no date."""
     if pa.types.is_timestamp(column.type):
-        return pa.timestamp("ns", column.type.tz)
-    found = DATE.match(str(column[0]))
-    return pa.timestamp("ns", "UTC" if found["zone"] else None) if found else None
+        return partial(_cast, kind=pa.timestamp("ns", column.type.tz))
+    text = str(column[0]).strip()
+    if found := DATE.match(text):
+        return partial(_cast, kind=pa.timestamp("ns", "UTC" if found["zone"] else None))
+    form = next((form for form in FORMS if form.fullmatch(text)), None)
+    return _Texts(form) if form else None
 
 
-def _rows(table: Table, schema: pa.Schema, at: int, kind: pa.DataType) -> Iterator[pa.RecordBatch]:
+def _rows(table: Table, schema: pa.Schema, at: int, read: Reader) -> Iterator[pa.RecordBatch]:
     start, row = None, 0
     for batch in table.batches:
         dates = batch.column(at)
-        times = _whole(dates, kind)
+        times = read(dates)
         if times is None:
-            wrong = next(k for k in range(len(dates)) if _whole(dates[k : k + 1], kind) is None)
+            wrong = next(k for k in range(len(dates)) if read(dates[k : k + 1]) is None)
             found = f"'{dates[wrong]}'" if dates[wrong].is_valid else "no value"
             expected = f"a date such as {dates[0]}"
             at_row = table.row(row + wrong + 1)
@@ -130,10 +151,39 @@ def _rows(table: Table, schema: pa.Schema, at: int, kind: pa.DataType) -> Iterat
         yield pa.RecordBatch.from_arrays(columns, schema=schema)
 
 
-def _whole(dates: pa.Array, kind: pa.DataType) -> Numbers | None:
+def _cast(dates: pa.Array, kind: pa.DataType) -> Numbers | None:
     """The dates in whole nanoseconds, whose differences are exact; None if one is no date."""
     try:
         times: Numbers = dates.cast(kind).cast(pa.int64()).to_numpy()
     except pa.ArrowInvalid:
         return None
     return times
+
+
+@dataclass(frozen=True)
+class _Texts:
+    """Reads texts of this form, each in the same way."""
+
+    form: re.Pattern[str]
+
+    def __call__(self, texts: pa.Array) -> Numbers | None:
+        found = [self.form.fullmatch((text or "").strip()) for text in texts.to_pylist()]
+        parts = [match.groupdict() for match in found if match]
+        if len(parts) < len(found):
+            return None
+        if "unit" in self.form.groupindex:
+            return np.array([_duration(own) for own in parts], dtype=np.int64)
+        return _cast(pa.array([_iso(own) for own in parts], pa.string()), pa.timestamp("ns"))
+
+
+def _duration(parts: dict[str, str]) -> int:
+    """Nanoseconds of a value with its unit."""
+    unit = parts["unit"]
+    return round(float(parts["value"]) * UNITS.get(unit.removesuffix("ec"), 1.0) / NANOSECOND)
+
+
+def _iso(parts: dict[str, str]) -> str:
+    """A date as ISO 8601 writes it; a time of the day is that of some day."""
+    day = "-".join(parts[x].zfill(2) for x in "Ymd") if "Y" in parts else "2000-01-01"
+    fraction = (parts["f"] or "0")[:9]
+    return f"{day}T{parts['H'].zfill(2)}:{parts['M']}:{parts['S']}.{fraction}"

@@ -62,7 +62,27 @@ RECORDERS = {
     "lerobot": Recorder(
         "timestamp",
         "s",
-        {"q{i}": ("observation.state[{k}]",), "q{i}_ref": ("action[{k}]",)},
+        {
+            "q{i}": ("observation.state[{k}]",),
+            "dq{i}_measured": ("observation.velocity[{k}]",),
+            "tau{i}": ("observation.effort[{k}]", "observation.torque[{k}]"),
+            CURRENT: ("observation.current[{k}]",),
+            "q{i}_ref": ("action[{k}]",),
+        },
+    ),
+    # The low-level state of Unitree's robots, whose torques are estimated from the currents.
+    "unitree": Recorder(
+        "tick",
+        "ms",
+        {
+            "q{i}": ("*otor_state[{k}].q", "*otor_state_{k}_q", "*otorState[{k}].q"),
+            "dq{i}_measured": ("*otor_state[{k}].dq", "*otor_state_{k}_dq", "*otorState[{k}].dq"),
+            "tau{i}": (
+                "*otor_state[{k}].tau_est",
+                "*otor_state_{k}_tau_est",
+                "*otorState[{k}].tauEst",
+            ),
+        },
     ),
 }
 OTHER_NAMES = {"aurt": "ur-rtde"}
@@ -170,21 +190,27 @@ def _numbered(
 
 
 ALIASES = {
-    "°": "deg", "degree": "deg", "degrees": "deg", "sec": "s", "seconds": "s", "µs": "us",
+    "°": "deg", "degree": "deg", "degrees": "deg", "Grad": "deg", "turn": "rev", "turns": "rev",
+    "sec": "s", "seconds": "s", "µs": "us", "msec": "ms", "usec": "us", "nsec": "ns",
     "Nm": "N m", "N*m": "N m", "N·m": "N m", "N.m": "N m", "mNm": "mN m", "kNm": "kN m",
     "Nmm": "N mm", "1/min": "rpm", "rad/s^2": "rad/s2", "deg/s^2": "deg/s2", "m/s^2": "m/s2",
 }  # fmt: skip
 KNOWN = {**{unit: unit for unit in UNITS}, **{si: si for _, si in UNITS.values()}, **ALIASES}
 BRACKETS = re.compile(r"(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\])]*)[\])]\s*")
 SUFFIX = re.compile(r"(?P<name>.+)_(?P<unit>[^_]+)")
-TIMES = ("time", "timestamp")  # names of the clock, if a unit follows
+TIMES = ("time", "timestamp", "zeit", "temps", "tiempo", "tempo")  # of the clock, before a unit
+
+
+def known_unit(text: str) -> str | None:
+    """The unit that a log states with this text, as UNITS calls it; None if it is none of them."""
+    return KNOWN.get(text.strip()) or KNOWN.get(text.strip().lower())
 
 
 def unit_in_name(column: str) -> tuple[str, str] | None:
     """From a name such as `q1 [deg]` or `time_ms` the name without the unit, and the unit."""
     for form in (BRACKETS, SUFFIX):
         match = form.fullmatch(column)
-        unit = KNOWN.get(match["unit"].strip()) if match else None
+        unit = known_unit(match["unit"]) if match else None
         if match and unit:
             return "t" if match["name"].lower() in TIMES else match["name"], unit
     return None

@@ -12,43 +12,52 @@ from scarid_cli.stages.adapt import UNITS
 from scarid_cli.stages.recorders import CURRENT, Recognised, recognised, unit_in_name
 
 POSITION, VELOCITY, TORQUE = "q{i}", "dq{i}_measured", "tau{i}"
+# In English, German, French, Spanish and Italian, without accents.
 QUANTITIES = {
-    POSITION: {"angle", "angles", "pos", "position", "positions", "q", "qpos", "theta"},
-    VELOCITY: {"dq", "qd", "qdot", "qvel", "speed", "speeds", "vel", "velocities", "velocity"},
-    TORQUE: {"effort", "efforts", "force", "forces", "tau", "torque", "torques", "trq"},
-    CURRENT: {"current", "currents"},
-}
-AMPERES = {"amp", "ampere", "amperes", "amps", "cur", "curr"}  # words of currents only
+    POSITION: {
+        "achsposition", "achswinkel", "angle", "angles", "angolo", "angulo", "gelenkposition",
+        "gelenkwinkel", "istposition", "pos", "posicion", "position", "positionen", "positions",
+        "posizione", "q", "qpos", "theta", "winkel",
+    },
+    VELOCITY: {
+        "achsgeschwindigkeit", "dq", "drehzahl", "geschwindigkeit", "istgeschwindigkeit", "qd",
+        "qdot", "qvel", "speed", "speeds", "vel", "velocidad", "velocita", "velocities", "velocity",
+        "vitesse",
+    },
+    TORQUE: {
+        "achsmoment", "coppia", "couple", "drehmoment", "effort", "efforts", "force", "forces",
+        "istmoment", "kraft", "moment", "momente", "momento", "tau", "torque", "torques", "trq",
+    },
+    CURRENT: {"corrente", "corriente", "courant", "current", "currents", "strom"},
+}  # fmt: skip
+AMPERES = {"amp", "ampere", "amperes", "amps", "cur", "curr", "iq"}  # words of currents only
 CLOCK = {
-    "date",
-    "datetime",
-    "sec",
-    "seconds",
-    "secs",
-    "stamp",
-    "t",
-    "time",
-    "times",
-    "timestamp",
-    "timestamps",
-}
+    "date", "datetime", "sec", "seconds", "secs", "stamp", "t", "temps", "tempo", "tiempo", "time",
+    "times", "timestamp", "timestamps", "tout", "zeit", "zeitstempel",
+}  # fmt: skip
 BESIDE = {"elapsed", "field", "header", "log", "relative"}  # a word of the clock
 FRACTION = {"nanosec", "nanosecs", "nsec", "nsecs", "usec", "usecs"}  # that a clock leaves out
 # Words that tell neither the joint nor the quantity.
 PLAIN = {
-    "act", "actual", "axis", "current", "data", "feedback", "field", "j", "jnt", "joint", "joints",
-    "js", "link", "log", "meas", "measured", "msr", "present", "state", "states", "value", "values",
+    "achse", "act", "actual", "articulation", "asse", "axe", "axis", "current", "data", "eje",
+    "feedback", "field", "gelenk", "giunto", "ist", "j", "jnt", "joint", "joints", "js", "link",
+    "log", "meas", "measured", "msr", "present", "state", "states", "value", "values",
+}  # fmt: skip
+# Words of what was commanded or wished.
+COMMANDED = {
+    "cmd", "command", "commanded", "commands", "d", "des", "desired", "goal", "planned", "ref",
+    "reference", "set", "setpoint", "soll", "target", "targets",
 }  # fmt: skip
 # Words of what was not measured at a joint itself: references, estimates, motors, the tool.
-OTHER = {
-    "cartesian", "cmd", "command", "commanded", "commands", "coriolis", "d", "ddot", "des",
-    "desired", "dot", "ee", "eef", "encoder", "err", "error", "est", "estimated", "ext", "external",
-    "feedforward", "ff", "filt", "filtered", "friction", "goal", "gravity", "hat", "limit", "lp",
-    "max", "mean", "min", "model", "motor", "motors", "nominal", "planned", "pose", "predicted",
-    "raw", "ref", "reference", "residual", "rms", "set", "setpoint", "smooth", "smoothed", "std",
-    "target", "targets", "tcp", "temperature", "tool", "var", "x", "y", "z",
+OTHER = COMMANDED | {
+    "cartesian", "coriolis", "ddot", "dot", "ee", "eef", "encoder", "err", "error", "est",
+    "estimate", "estimated", "ext", "external", "feedforward", "ff", "filt", "filtered", "friction",
+    "gravity", "hat", "limit", "lp", "max", "mean", "min", "model", "motor", "motors", "nominal",
+    "pose", "predicted", "raw", "residual", "rms", "smooth", "smoothed", "std", "tcp",
+    "temperature", "tool", "var", "x", "y", "z",
 }  # fmt: skip
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
+INSIDE = re.compile(r"[^./]+[./]")  # the name of a structure, before that of its member
 
 Key = tuple[str, ...]  # the words that tell the joint: ("3",), ("shoulder", "pan")
 
@@ -86,7 +95,7 @@ def in_words(
     order = _order(measured, joints)
     if "q1" in known and not _numbers(order):
         order = []  # nothing says which joint is the first one
-    pairs = [] if "t" in known else _clock(columns)
+    pairs = [] if "t" in known else _clock(columns, _structure(names))
     for new, own in found.items():
         if all(key in own for key in order):
             pairs += [(new.replace("{i}", str(i + 1)), own[key]) for i, key in enumerate(order)]
@@ -113,7 +122,7 @@ def renamable(columns: Sequence[str]) -> bool:
 
 def is_current(name: str) -> bool:
     """Whether the words of a name say a current, and no other quantity."""
-    words = {word.lower() for word in WORD.findall(name)}
+    words = {*words_of(name)}
     known = QUANTITIES[POSITION] | QUANTITIES[VELOCITY] | QUANTITIES[TORQUE]
     return bool(words & {*AMPERES, *QUANTITIES[CURRENT]}) and words.isdisjoint(known)
 
@@ -134,11 +143,27 @@ def _few(names: list[str]) -> str:
     return f"{names[0]} to {names[-1]}" if alike and len(names) > 2 else ", ".join(names)
 
 
+def _structure(names: Sequence[str]) -> str:
+    """How all names begin if they are members of one structure, as `out.`; else nothing."""
+    found = {m[0] if (m := INSIDE.match(name)) else "" for name in names}
+    return found.pop() if len(found) == 1 and len(names) > 1 else ""
+
+
+def words_of(name: str) -> tuple[str, ...]:
+    """The words of a name in small letters without accents, and its numbers without zeros."""
+    plain = name
+    if not name.isascii():
+        from unicodedata import combining, normalize  # not needed otherwise
+
+        plain = "".join(c for c in normalize("NFKD", name) if not combining(c))
+    words = (word.lower() for word in WORD.findall(plain))
+    return tuple(str(int(word)) if word.isdigit() else word for word in words)
+
+
 def _read(name: str) -> _Column:
-    """A column, the unit that its name states, and the words before it, numbers without zeros."""
+    """A column, the unit that its name states, and the words before it."""
     before, unit = unit_in_name(name) or (name, "")
-    words = (word.lower() for word in WORD.findall(before))
-    return _Column(name, unit, tuple(str(int(w)) if w.isdigit() else w for w in words))
+    return _Column(name, unit, words_of(before))
 
 
 def _wanted(known: Collection[str]) -> list[str]:
@@ -149,11 +174,15 @@ def _wanted(known: Collection[str]) -> list[str]:
     return wanted
 
 
-def _clock(columns: Sequence[_Column]) -> list[tuple[str, _Column]]:
-    """The column of the time, preferably the stamp in the header of a message."""
+def _clock(columns: Sequence[_Column], structure: str) -> list[tuple[str, _Column]]:
+    """The column of the time, preferably the stamp in the header of a message.
+
+    It may be a member of the structure that all columns are in.
+    """
     if any({*column.words} & FRACTION for column in columns):
         return []  # seconds in one column, their fractions in another
-    found = [c for c in columns if {*c.words} & CLOCK and {*c.words} <= CLOCK | BESIDE]
+    beside = BESIDE.union(words_of(structure))
+    found = [c for c in columns if {*c.words} & CLOCK and {*c.words} <= CLOCK | beside]
     stamps = [column for column in found if "header" in column.words]
     return [("t", column) for column in (stamps or found)[:1]]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
-from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
@@ -17,13 +15,13 @@ from scarid_cli.io.notation import Notation
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages.adapt import adapted
+from scarid_cli.stages.lacking import lacking
 from scarid_cli.stages.side import episodes_joined
 from scarid_cli.stages.wording import is_current
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
 
-SHOWN = 8  # names of columns in a message
 EPISODE = "episode_index"  # the column of LeRobot's data sets
 
 
@@ -60,7 +58,8 @@ def run(
         table = read_log(job, file, source, notation, beside, named=pairs.values())
         columns = columns_of(job, table, pairs, given, recorder, arm, order)
         _require_torques(pairs, columns, arm)
-        _tell_unknown(job, table, columns, arm)
+        clock = rate or (arm and arm.log and arm.log.rate)
+        _tell_lacking(job, table, columns, arm, clock=bool(clock))
     else:
         from scarid_cli.cli.recordings import Choice, read_recording  # not needed otherwise
 
@@ -98,25 +97,18 @@ def _require_torques(pairs: dict[str, str], columns: Columns, robot: Robot | Non
             )
 
 
-def _tell_unknown(job: Job, table: Table, columns: Columns, robot: Robot | None) -> None:
-    """Say which columns of a raw log were not recognised, if neither positions nor torques were."""
-    described = robot.log.columns if robot and robot.log else {}
-    names = [*table.columns, *columns.names, *described]
-    if table.meta.kind or not table.columns or numbered(names, "q", "tau") or _known(names):
+def _tell_lacking(
+    job: Job, table: Table, columns: Columns, robot: Robot | None, *, clock: bool
+) -> None:
+    """Say which positions, torques or clock a raw log lacks, and which columns may hold them."""
+    if table.meta.kind:
         return
-    shown = ", ".join(table.columns[:SHOWN]) + (", ..." if len(table.columns) > SHOWN else "")
-    left = [c for c in table.columns if c not in columns.names.values() and "time" not in c.lower()]
-    one = left[0] if left else table.columns[0]
-    example = shlex.quote(f"q1={one}")
-    job.notes.append(
-        f"no column is recognised as positions or torques; it has {shown}: name them, as in "
-        f"--map {example}"
-    )
-
-
-def _known(names: Sequence[str]) -> bool:
-    """Whether these are the columns of one of our tables that is no log."""
-    return bool({"parameter", "joint", "method", "dq1", "ddq1"} & {*names})
+    described = robot.log.columns if robot and robot.log else {}
+    old = {*columns.names.values()}
+    kept = [name for name in table.columns if name not in old]
+    text = lacking(kept, [*columns.names, *described], clock=clock)
+    if text:
+        job.notes.append(text)
 
 
 def _signals(table: Table, columns: Columns, robot: Robot | None) -> list[str]:
