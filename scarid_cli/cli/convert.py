@@ -16,7 +16,7 @@ from scarid_cli.io.roles import ROLES
 @click.option(
     "--from",
     "recorder",
-    type=click.Choice(("ur-rtde", "aurt", "libfranka", "plotjuggler", "lerobot")),
+    type=click.Choice(("ur-rtde", "aurt", "libfranka", "plotjuggler", "lerobot", "unitree")),
     help="Whose column names the log has.  [default: found from them]",
 )
 @click.option(
@@ -114,14 +114,15 @@ def command() -> None:
       scarid convert --robot arm.urdf recording.mcap -o log.parquet
 
     Reads and writes CSV, Parquet, Arrow streams and Arrow files. It also reads NumPy's .npz and
-    MATLAB's .mat files (before version 7.3), whose matrices become the columns q1, q2, ..., or
-    log.q1, log.q2, ... if they are in a structure. Every number is kept exactly. CSV has no
+    .npy and MATLAB's .mat files (those of version 7.3, as HDF5, with the extra `hdf5`), whose
+    matrices become the columns q1, q2, ..., or log.q1, log.q2, ... if they are in a structure. Every number is kept exactly. CSV has no
     metadata: units and history are lost there.
 
-    The separator of a text log, decimal commas, names in a comment, and units in names (q1 [deg],
-    t_ms) are found from its first lines and reported. Known recorders are recognised by their
-    columns (--from), and other names by their words: arm_2_joint_position, effort_0, Time (s). What
-    is ambiguous keeps its name, or is refused. Dates become seconds since the first one.
+    The separator of a text log, decimal commas, names in a comment, lines before the header, and
+    units in names (q1 [deg], t_ms) or below them are found from its first lines and reported. Known
+    recorders are recognised by their columns (--from), and other names by their words:
+    arm_2_joint_position, effort_0, Time (s). What is ambiguous keeps its name, or is refused. Dates
+    and times of the day become seconds since the first one.
 
     --unwrap and --despike hold the log in memory. What they did is reported, with the rows.
 

@@ -22,7 +22,7 @@ from scarid_cli.printable import printable
 ARCHIVES = (".npz", ".npy", ".mat", ".h5", ".hdf5")
 END_OF_ZIP = struct.Struct("<4s6xH10x")  # the last bytes: a mark, and how many files there are
 MANY = 0xFFFF  # stands for a number that is elsewhere
-COMMENTS = b"#%"  # that begin a line before the header
+COMMENTS = b"#%\r\n"  # that begin a line before the header, if it is not empty
 
 
 class TranslatedCsv(Wrapped):

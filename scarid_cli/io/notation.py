@@ -134,7 +134,7 @@ def _first_lines(source: ByteSource) -> tuple[list[str], list[str], int]:
     count, skip = ROWS, 0
     while True:
         block = source.peek_lines(count)
-        text = block.decode("utf-8-sig", errors="replace").splitlines()[:count]
+        text = _lines(block.decode("utf-8-sig", errors="replace"))[:count]
         rows = [i for i, line in enumerate(text) if line.strip() and line[0] not in COMMENT]
         complete = len(text) < count or count > MOST_LINES
         start = _start([text[i] for i in rows])
@@ -147,6 +147,12 @@ def _first_lines(source: ByteSource) -> tuple[list[str], list[str], int]:
     text = text[: rows[:ROWS][-1] + 1] if len(rows) >= ROWS else text
     comments = [line for line in text if line.startswith(tuple(COMMENT))]
     return comments, [text[i] for i in rows[:ROWS]], skip
+
+
+def _lines(text: str) -> list[str]:
+    """The lines of a text; str.splitlines takes other characters for ends of lines as well."""
+    lines = [line.removesuffix("\r") for line in text.split("\n")]
+    return lines if lines[-1] else lines[:-1]
 
 
 def _start(lines: Sequence[str]) -> int | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from math import isfinite
 
@@ -58,6 +58,21 @@ def in_seconds(log: Table) -> Iterator[None]:
         if finding := of_rate(log.period):
             raise BadData(f"{log.name}: {finding.text}") from None
         raise
+
+
+@contextlib.contextmanager
+def explained(name: str, findings: Callable[[], list[Finding]]) -> Iterator[None]:
+    """A log that cannot be used is refused for what is not in order with it, if anything is."""
+    try:
+        yield
+    except BadData as error:
+        found = [finding for finding in findings() if finding.status == FAILED]
+        if not found:
+            raise
+        parts = [one.text for one in found]
+        why = str(error).removeprefix(f"{name}: ").partition(";")[0]
+        more = "`scarid check` looks for more"
+        raise BadData(f"{name}: {'; '.join(parts)}; {more} ({why})") from None
 
 
 def of_measurement(held: Compact) -> list[Finding]:

@@ -41,12 +41,14 @@ def lacking(kept: Sequence[str], new: Collection[str], *, clock: bool) -> str | 
             f"no column is recognised as positions or torques; it has {shown}: name them, as in "
             f"{options}"
         )
-    parts = [
-        "" if q else f"no positions{_perhaps(kept, q=True)}",
-        "" if tau else f"no torques{_perhaps(kept, tau=True)}",
-        "" if t else f"no clock{_perhaps(kept, t=True) or RATE}",
+    hints = [
+        ("no positions", q, _perhaps(kept, q=True)),
+        ("no torques", tau, _perhaps(kept, tau=True)),
+        ("no clock", t, _perhaps(kept, t=True) or RATE),
     ]
-    return "; ".join(filter(None, parts)) or None
+    # A table with names of ours alone may be one of positions on purpose.
+    parts = [what + hint for what, there, hint in hints if not there and (hint or new)]
+    return "; ".join(parts) or None
 
 
 def _of_no_log(names: Collection[str]) -> bool:

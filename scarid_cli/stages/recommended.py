@@ -6,7 +6,10 @@ import contextlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from scarid_cli.algorithms.checks.finding import FAILED, Finding
 from scarid_cli.algorithms.robots.description import Robot
@@ -16,7 +19,7 @@ from scarid_cli.io.table import Table
 from scarid_cli.stages.bandwidth import bandwidth, recommended, smoother_at
 from scarid_cli.stages.compact import Compact
 from scarid_cli.stages.differentiate import matched
-from scarid_cli.stages.glance import in_seconds, of_measurement
+from scarid_cli.stages.glance import explained, in_seconds, of_extremes, of_measurement
 from scarid_cli.stages.record import Record
 
 if TYPE_CHECKING:
@@ -67,7 +70,8 @@ def smoothed_motion(
         found = matched(compact.table, [smoother] * held.joints, left_out)
         return Smoothed(found, smoother, text, cutoff, noise, left_out, findings)
 
-    with (progress or _unseen)() as step, in_seconds(measurement):
+    seen = partial(_unusual, compact, robot, findings)
+    with (progress or _unseen)() as step, in_seconds(measurement), explained(held.name, seen):
         if before:
             cutoff = before.hertz / TWO_SIDED
             smoother = smoother_at(held, cutoff)
@@ -82,6 +86,15 @@ def smoothed_motion(
         text += ", and positions are noisier than at the identification" if before else ""
         smoother = recommended(found, measurement.period)
         return motion(smoother, text, found.cutoff, found.noise)
+
+
+def _unusual(held: Compact, robot: Robot, findings: list[Finding]) -> list[Finding]:
+    """What may be the reason why a measurement cannot be smoothed: leaps before their extremes."""
+    if any(finding.status == FAILED for finding in findings):
+        return findings
+    ends = np.column_stack((held.values.min(axis=1), held.values.max(axis=1)))[1:]
+    q, tau = ends[: held.joints], ends[held.joints :]
+    return of_extremes(q, tau, robot, held.source.period)
 
 
 @contextlib.contextmanager

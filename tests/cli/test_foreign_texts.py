@@ -1,0 +1,238 @@
+"""Text logs as measuring programs write them: lines before the header, units below it, dates."""
+
+from __future__ import annotations
+
+import re
+import struct
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pytest
+from bags import table
+from conftest import Result, Shell
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scarid_cli.io.bytesource import ByteSource
+from scarid_cli.io.csvio import read_csv
+from scarid_cli.io.foreign import TranslatedCsv
+from scarid_cli.io.notation import notation_of
+
+Run = Callable[..., Result]
+
+ROWS = 30
+T = 0.01 * np.arange(ROWS)
+VALUES = np.random.default_rng(5).standard_normal((ROWS, 4))
+LOG = np.column_stack((T, VALUES))
+ORDER = ["t", "q1", "q2", "tau1", "tau2"]
+DEGREES = np.array([1.0, *[180.0 / np.pi] * 2, 1.0, 1.0])
+
+
+@pytest.fixture(autouse=True)
+def inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def written(names: str, first: list[str] | None = None, rows: np.ndarray = LOG) -> str:
+    """A log with these names, whose clock has these texts."""
+    clock = first or [f"{t:.17g}" for t in rows[:, 0]]
+    lines = [
+        ",".join([t, *(f"{x:.17g}" for x in row[1:])]) for t, row in zip(clock, rows, strict=True)
+    ]
+    return "\n".join([names, *lines]) + "\n"
+
+
+def converted(shell: Shell, tmp_path: Path, text: str | bytes, options: str = "") -> np.ndarray:
+    """The columns t, q1, q2, tau1 and tau2 that `scarid convert` makes of a log."""
+    data = text if isinstance(text, bytes) else text.encode()
+    (tmp_path / "log.csv").write_bytes(data)
+    done = shell(f"scarid convert {options} log.csv")
+    assert done.status == 0, done.err
+    names, values = table(done.out)
+    return np.asarray(values[:, [names.index(name) for name in ORDER]])
+
+
+CHARACTERS = st.characters(codec="ascii", exclude_categories=["Cc"], exclude_characters=',;| #%"')
+LINE = st.text(CHARACTERS, min_size=1, max_size=9)
+PAIR = st.tuples(LINE, LINE).map(";".join)
+BEFORE = st.lists(st.one_of(LINE, PAIR), max_size=9)
+UNITS = ("s", "rad", "rad", "Nm", "Nm")
+
+
+@given(BEFORE, st.sampled_from([", .", "; .", "; ,", "\t .", "\t ,", "  .", "  ,"]), st.data())
+def test_a_table_is_found_behind_any_lines_and_above_units(
+    before: list[str], marks: str, data: st.DataObject
+) -> None:
+    separator, decimal = marks[0], marks[-1]
+    units = UNITS if data.draw(st.booleans()) else ()
+    lines = [*before, *data.draw(st.sampled_from([[], [""]])), separator.join(ORDER)]
+    lines += [separator.join(units)] if units else []
+    lines += [separator.join(f"{x:.6f}".replace(".", decimal) for x in row) for row in LOG]
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "log")
+        path.write_text("\n".join(lines) + "\n")
+        source = ByteSource.open(str(path))
+        notation = notation_of(source, None, by_name=False)
+        found = read_csv(source if notation.plain else TranslatedCsv(source, notation))
+        values = np.hstack([np.array([batch.column(n) for n in ORDER]) for batch in found.batches])
+    assert notation.units == units
+    np.testing.assert_allclose(values.T, LOG, atol=1e-6)
+
+
+@pytest.mark.parametrize("brackets", ["{}", "[{}]", "({})"])
+def test_units_below_the_header_are_used(brackets: str, shell: Shell, tmp_path: Path) -> None:
+    below = ",".join(brackets.format(unit) for unit in ("ms", "deg", "deg", "mNm", "mNm"))
+    scale = np.array([1e3, *DEGREES[1:3], 1e3, 1e3])
+    text = written(",".join(ORDER) + "\n" + below, rows=LOG * scale)
+    np.testing.assert_allclose(converted(shell, tmp_path, text), LOG, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "Zeit [s],Achsposition A1 [Grad],Achsposition A2 [Grad],Moment A1 [Nm],Moment A2 [Nm]",
+        "Zeitstempel,Winkel 1 [deg],Winkel 2 [deg],Drehmoment 1,Drehmoment 2",
+        "temps,position axe 1 (deg),position axe 2 (deg),couple axe 1,couple axe 2",
+        "tiempo,posición_1_deg,posición_2_deg,momento_1,momento_2",
+        "tempo,posizione giunto 1 [°],posizione giunto 2 [°],coppia giunto 1,coppia giunto 2",
+    ],
+)
+def test_words_of_other_languages_are_known(names: str, shell: Shell, tmp_path: Path) -> None:
+    found = converted(shell, tmp_path, written(names, rows=LOG * DEGREES))
+    np.testing.assert_allclose(found, LOG, rtol=1e-12)
+
+
+CLOCKS = {
+    "duration": [f"{t:.2f} sec" for t in T],
+    "milliseconds": [f"{round(1e3 * t)} ms" for t in T],
+    "time of the day": [f"9:59:{59 + t:05.2f}" if t < 1 else "" for t in T],
+    "German date": [f"27.11.2026 09:59:{59 + t:05.2f}" for t in T],
+    "slashes": [f"2026/1/7 9:59:{59 + t:05.2f}" for t in T],
+    "ISO": [f"2026-11-27T09:59:{59 + t:05.2f}" for t in T],
+}
+
+
+@pytest.mark.parametrize("kind", CLOCKS)
+def test_texts_that_are_times_become_seconds(kind: str, shell: Shell, tmp_path: Path) -> None:
+    found = converted(shell, tmp_path, written(",".join(["time", *ORDER[1:]]), CLOCKS[kind]))
+    np.testing.assert_allclose(found, LOG, atol=1e-9)
+
+
+def test_a_text_among_times_is_refused_with_its_row(scarid: Run, tmp_path: Path) -> None:
+    clock = [*CLOCKS["duration"][:-1], "soon"]
+    Path("log.csv").write_text(written(",".join(["time", *ORDER[1:]]), clock))
+    result = scarid("convert", "log.csv", "-o", "out.csv")
+    assert result.status == 65
+    assert f"row {ROWS}, column time: found 'soon', expected a date such as 0.00 sec" in result.err
+
+
+@pytest.mark.parametrize("word", ["", "NaN", "None", "null", "-", "N/A"])
+def test_a_first_value_that_is_missing_makes_no_column_of_texts(
+    word: str, shell: Shell, tmp_path: Path
+) -> None:
+    lines = written("time,pos_1,pos_2,torque_1,torque_2").splitlines()
+    lines[1] = ",".join([*lines[1].split(",")[:3], word, word])
+    (tmp_path / "log.csv").write_text("\n".join(lines) + "\n")
+    done = shell("scarid convert log.csv -o log.parquet && scarid info log.parquet")
+    assert done.status == 0, done.err
+    assert re.search(r"tau1 +double", done.out)
+    done = shell("scarid identify log.parquet -o p.csv")
+    assert "row 1, column tau1: found " in done.err
+
+
+def test_a_text_where_numbers_belong_is_refused_with_its_row(scarid: Run) -> None:
+    text = written("time,pos_1,pos_2,torque_1,torque_2").splitlines()
+    text[1] = text[1].rsplit(",", 1)[0] + ",off"
+    Path("log.csv").write_text("\n".join(text) + "\n")
+    result = scarid("convert", "log.csv", "-o", "out.csv")
+    assert result.status == 65
+    assert "row 1, column torque_2: found 'off', expected a number" in result.err
+    assert not Path("out.csv").exists()
+
+
+def test_an_array_of_numpy_takes_names(scarid: Run, shell: Shell, tmp_path: Path) -> None:
+    np.save(tmp_path / "log.npy", LOG)
+    result = shell("scarid convert log.npy")
+    assert result.status == 2
+    assert "name them: --header t,q1,q2,tau1,tau2" in result.err
+    assert "4 names for 5 columns" in shell("scarid convert log.npy --header t,q1,q2,tau1").err
+    for options in ("--header t,q1,q2,tau1,tau2", "--map t=log1 --map q1=log2 --map q2=log3 "
+                    "--map tau1=log4 --map tau2=log5"):  # fmt: skip
+        done = shell(f"scarid convert log.npy {options}")
+        assert done.status == 0, done.err
+        names, values = table(done.out)
+        np.testing.assert_array_equal(values[:, [names.index(name) for name in ORDER]], LOG)
+
+
+def test_an_array_of_numpy_with_fields_has_names(shell: Shell, tmp_path: Path) -> None:
+    np.save(tmp_path / "log.npy", np.array([*map(tuple, LOG)], [(name, "f8") for name in ORDER]))
+    done = shell("scarid convert log.npy")
+    assert done.status == 0, done.err
+    np.testing.assert_array_equal(table(done.out)[1], LOG)
+
+
+STARTS = {
+    "a.dat": (b"\x89HDF\r\n\x1a\n" + bytes(40), "call it NAME.h5"),
+    "b.dat": (b"\x93NUMPY\x01\x00v\x00{'descr': 1}\n", "call it NAME.npy"),
+    "c.xlsx": (b"PK\x03\x04" + bytes(40), "save the sheet as CSV"),
+    "d.xls": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(40), "save the sheet as CSV"),
+    "e.pkl": (b"\x80\x04\x95" + struct.pack("<Q", 12) + b"t\n", "a pickle, which can run any"),
+    "f.tdms": (b"TDSm\x0e\0\0\0", "export it as CSV"),
+}
+
+
+@pytest.mark.parametrize("name", STARTS)
+@pytest.mark.parametrize("command", ["convert", "identify"])
+def test_files_of_other_formats_are_known_by_their_first_bytes(
+    name: str, command: str, scarid: Run
+) -> None:
+    start, advice = STARTS[name]
+    Path(name).write_bytes(start)
+    result = scarid(command, name, "-o", "out.csv")
+    assert result.status == 65
+    assert result.err.count("\n") == 1
+    assert advice in result.err
+
+
+LACKING = {
+    "time,axis0.encoder.pos_estimate,axis1.encoder.pos_estimate,axis0.Iq_measured,axis1.Iq_measured":
+        "name them, as in --map t=time --map 'q*=axis*.encoder.pos_estimate' "
+        "--map 'current*=axis*.Iq_measured'",
+    "tick,pos_1,pos_2,tau_est_1,tau_est_2":
+        "no torques: perhaps --map 'tau*=tau_est_*'; no clock: perhaps --map t=tick",
+    "pos_1,pos_2,torque_1,torque_2,x": "no clock: give --rate HZ",
+    "time,cmd_pos_1,cmd_pos_2,torque_1,torque_2": "--map t=time --map 'tau*=torque_*'",
+    "a,b,c,d,e": "as in --map q1=a",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("names", LACKING)
+def test_what_a_log_lacks_is_said_with_the_columns_that_may_hold_it(
+    names: str, scarid: Run
+) -> None:
+    Path("log.csv").write_text(written(names))
+    assert LACKING[names] in scarid("convert", "log.csv", "-o", "out.csv").err
+
+
+def test_advised_options_are_taken(shell: Shell, tmp_path: Path) -> None:
+    names = "tick,motor_pos_0,motor_pos_1,tau_est_0,tau_est_1"
+    (tmp_path / "log.csv").write_text(written(names))
+    done = shell("scarid convert log.csv -o out.csv")
+    options = done.err.partition("as in ")[2].strip()
+    assert converted(shell, tmp_path, written(names), options).tolist() == LOG.tolist()
+
+
+def test_a_log_that_wraps_is_refused_for_this_reason(scarid: Run, samples: Path) -> None:
+    rows = np.genfromtxt(samples / "scara2.csv", delimiter=",", names=True)
+    columns = {name: rows[name] for name in ORDER}
+    for name in ("q1", "q2"):
+        columns[name] = np.degrees(columns[name]) % 360.0
+    text = np.column_stack([*columns.values()])
+    np.savetxt("log.csv", text, "%.9g", ",", header=",".join(columns), comments="")
+    result = scarid("identify", "log.csv", "-o", "out.csv")
+    assert result.status == 65
+    assert "wraps: q1 leaps by 360 in 2 rows" in result.err
+    assert "`scarid convert --unwrap`" in result.err
+    assert "too few rows are away from reversals" in result.err
