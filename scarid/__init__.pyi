@@ -55,8 +55,8 @@ def read(
 
     Reads and writes CSV, Parquet, Arrow streams and Arrow files. It also reads NumPy's .npz and
     .npy and MATLAB's .mat files (those of version 7.3, as HDF5, with the extra `hdf5`), whose
-    matrices become the columns q1, q2, ..., or log.q1, log.q2, ... if they are in a structure. Every number is kept exactly. CSV has no
-    metadata: units and history are lost there.
+    matrices become the columns q1, q2, ..., or log.q1, log.q2, ... if they are in a structure.
+    Every number is kept exactly. CSV has no metadata: units and history are lost there.
 
     The separator of a text log, decimal commas, names in a comment, lines before the header, and
     units in names (q1 [deg], t_ms) or below them are found from its first lines and reported. Known
@@ -902,8 +902,8 @@ def convert(
 
     Reads and writes CSV, Parquet, Arrow streams and Arrow files. It also reads NumPy's .npz and
     .npy and MATLAB's .mat files (those of version 7.3, as HDF5, with the extra `hdf5`), whose
-    matrices become the columns q1, q2, ..., or log.q1, log.q2, ... if they are in a structure. Every number is kept exactly. CSV has no
-    metadata: units and history are lost there.
+    matrices become the columns q1, q2, ..., or log.q1, log.q2, ... if they are in a structure.
+    Every number is kept exactly. CSV has no metadata: units and history are lost there.
 
     The separator of a text log, decimal commas, names in a comment, lines before the header, and
     units in names (q1 [deg], t_ms) or below them are found from its first lines and reported. Known

@@ -56,7 +56,7 @@ def converted(shell: Shell, tmp_path: Path, text: str | bytes, options: str = ""
 
 CHARACTERS = st.characters(codec="ascii", exclude_categories=["Cc"], exclude_characters=',;| #%"')
 LINE = st.text(CHARACTERS, min_size=1, max_size=9)
-PAIR = st.tuples(LINE, LINE).map(";".join)
+PAIR = st.tuples(LINE, LINE).map(lambda pair: f"{pair[0]};x{pair[1]}")  # no rows of numbers
 BEFORE = st.lists(st.one_of(LINE, PAIR), max_size=9)
 UNITS = ("s", "rad", "rad", "Nm", "Nm")
 
