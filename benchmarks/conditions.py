@@ -9,13 +9,13 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
 from altered import Change, altered, clipped, drifted, hurried, loose, pulled, saturated
 from arms import URDFS, described
-from mechanics import BUILT, CHANGES, LOADED
+from mechanics import BUILT, CHANGES, LOADED, cubic
 
 from scarid_cli.algorithms.choices.registry import EXCITATIONS
 from scarid_cli.algorithms.plants.controllers import law
@@ -181,6 +181,8 @@ UNSEEN = [
     Condition("Fourier series", excitation="fourier"),
     replace(MIXED, name="Fourier series, all together", excitation="fourier"),
     *[Condition(name, altered=change) for name, change in CHANGES.items()],
+    # A robot whose joints turn many times has no such cable.
+    Condition("cubic cable", altered=partial(cubic, 0.2), stroke=1.5),
     *[Condition(name, built=build) for name, build in BUILT.items()],
     *[Condition(name, own=given) for name, given in LOADED.items()],
 ]

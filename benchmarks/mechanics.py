@@ -76,7 +76,7 @@ def uneven(share: float, robot: Robot, log: Recorded) -> Recorded:
 def cubic(share: float, robot: Robot, log: Recorded) -> Recorded:
     """A cable pulls with the cube of the position, at 1 rad with this part of the friction."""
     t, q, tau = log
-    return t, q, tau + share * coulomb(robot) * np.clip(q, -1.5, 1.5) ** 3
+    return t, q, tau + share * coulomb(robot) * q**3
 
 
 def late(seconds: float, _: Robot, log: Recorded) -> Recorded:
@@ -110,7 +110,6 @@ CHANGES: dict[str, Change] = {
     **{f"torque hysteresis {100 * x:g} %": partial(hysteresis, x) for x in (0.005, 0.02)},
     **{f"Maxwell slip {1e3 * x:g} mrad": partial(slipping, x) for x in (0.02, 0.06)},
     "Coulomb friction over the position 30 %": partial(uneven, 0.3),
-    "cubic cable": partial(cubic, 0.2),
     "position of joint 2 late 4 ms": partial(late, 0.004),
 }
 BUILT: dict[str, Callable[[Robot], Robot]] = {"link length +1 %": partial(longer, 1.01)}

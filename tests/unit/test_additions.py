@@ -20,6 +20,8 @@ from scarid_cli.algorithms.statistics.additions import (
 )
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
+    CABLE,
+    CUBE,
     CURVATURE,
     DECAYED,
     DRIFT,
@@ -62,6 +64,11 @@ def pulled(at: Array) -> Array:
     return np.array([[0.0], [0.1]]) * at[0]
 
 
+def bent(at: Array) -> Array:
+    """A cable at the second joint that pulls the more, the farther it is bent."""
+    return np.array([[0.0], [0.1]]) * at[0] ** 3
+
+
 def of_the_speed(at: Array) -> Array:
     """Stribeck friction of the first joint, at speeds between two of those that are tried."""
     return np.array([[0.2], [0.0]]) * np.sign(at[1]) * np.exp(-((at[1] / 0.4) ** 2))
@@ -94,6 +101,7 @@ def diagnosed(rows: Rows) -> Diagnostics:
         (of_the_load, {(LOAD, 0), (LOAD, 1)}),
         (of_the_first_load, {(LOAD, 0)}),
         (pulled, {(SPRING, 1)}),
+        (bent, {(CABLE, 1)}),
         (rippled, {(RIPPLE, 0)}),
         (lambda at: of_the_load(at) + rippled(at), {(LOAD, 0), (LOAD, 1), (RIPPLE, 0)}),
     ],
@@ -209,14 +217,25 @@ def test_the_torques_are_those_of_the_robot_and_not_of_the_log() -> None:
     rows = log(nothing)
     additions = [
         Addition(name, 1, 0.5, 2.0)
-        for name in (OFFSET, ASYMMETRY, SPRING, SLOW, STRIBECK, CURVATURE, SATURATION, DRIFT, LOAD)
+        for name in (
+            OFFSET,
+            ASYMMETRY,
+            SPRING,
+            CUBE,
+            SLOW,
+            STRIBECK,
+            CURVATURE,
+            SATURATION,
+            DRIFT,
+            LOAD,
+        )
     ]
     q, v = rows.motion[0, 1], rows.motion[1, 1]
     model = (rows.W @ ARM.apriori)[:, 1]
     own = MODEL.transmits
     carried = (rows.W[:, :, own] @ ARM.apriori[own])[:, 1]
     friction = sum(np.exp(-((v / (0.5 * part)) ** 2)) for part in (0.1, 0.3, 1.0))
-    expected = 1.0 + np.abs(v) + q + np.sign(v) * (friction + np.abs(carried))
+    expected = 1.0 + np.abs(v) + q + q**3 + np.sign(v) * (friction + np.abs(carried))
     expected += model * np.abs(model)
     torques = Shapes(additions, MODEL, ARM.apriori).torques(rows)
     assert torques[:, 1] == pytest.approx(2.0 * expected)

@@ -20,6 +20,7 @@ from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics import alignment
 from scarid_cli.algorithms.statistics.alignment import Aligned, aligned
 from scarid_cli.algorithms.statistics.alternatives import (
+    CABLE,
     CURVATURE,
     DRIFT,
     LOAD,
@@ -147,6 +148,12 @@ def pulled(motion: Array) -> Array:
     return 20.0 * motion[0]
 
 
+def bent_far(motion: Array) -> Array:
+    """A cable that pulls with the cube of the position, half of it in proportion."""
+    q = motion[0] / np.max(np.abs(motion[0]))
+    return np.asarray(3.0 * q + 10.0 * q**3)
+
+
 def saturated(motion: Array) -> Array:
     """A motor whose constant falls by a tenth up to the largest force."""
     exact = AXIS.torques(AXIS.regressor(*motion), AXIS.apriori)
@@ -160,6 +167,7 @@ def saturated(motion: Array) -> Array:
         (bent, CURVATURE),
         (loaded, LOAD),
         (pulled, SPRING),
+        (bent_far, CABLE),
         (saturated, SATURATION),
     ],
 )

@@ -17,13 +17,14 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.alternatives import (
+    CABLE,
     DRIFT,
     LOAD,
     OFFSET,
+    PARTS,
     RIPPLE,
     SHAPES,
     SPRING,
-    WAVES,
     Model,
     Signals,
 )
@@ -65,19 +66,19 @@ def of_explanation(
     """
     usual = np.sqrt(np.mean(rows.motion[1] ** 2, axis=1))
     found = explanation.torques
-    slack = {(OFFSET, j) for name, j in found if name == SPRING and j not in constant}
-    waves = {
+    slack = {(OFFSET, j) for name, j in found if name in (SPRING, CABLE) and j not in constant}
+    parts = {
         (wave, j, float(cycles))
         for name, j in found
-        if name in WAVES
+        if name in PARTS
         for cycles in (explanation.cycles[:, j] if name == RIPPLE else [0.0])
         if cycles > 0.0 or name != RIPPLE
-        for wave in WAVES[name]
+        for wave in PARTS[name]
     }
-    plain = {(name, j, 0.0) for name, j in found | slack if name not in WAVES}
+    plain = {(name, j, 0.0) for name, j in found | slack if name not in PARTS}
     return tuple(
         Addition(name, j, float(usual[j]), cycles=cycles)
-        for name, j, cycles in sorted(plain | waves)
+        for name, j, cycles in sorted(plain | parts)
     )
 
 

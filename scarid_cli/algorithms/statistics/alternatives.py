@@ -32,6 +32,10 @@ UNEVEN, UNEVEN_SINE, UNEVEN_COSINE = (
 )
 # Alternatives that are a sine and a cosine of each joint, whose phase is not known.
 WAVES = {RIPPLE: (SINE, COSINE), UNEVEN: (UNEVEN_SINE, UNEVEN_COSINE)}
+# A cable pulls as a spring does, and more than in proportion where it is bent far.
+CABLE, CUBE = "cable", "cable as a cube"
+# Alternatives that are fitted as several shapes.
+PARTS = {**WAVES, CABLE: (SPRING, CUBE)}
 SLOW, STRIBECK, CURVATURE = "slow friction", "Stribeck", "curvature"
 # Of the root-mean-square velocity: where the friction of slow motion has decayed. Together the
 # three are a curve of friction over the speed.
@@ -42,6 +46,7 @@ TORQUES = (
     *DECAYED,
     LOAD,
     SPRING,
+    CABLE,
     SATURATION,
     DRIFT,
     TILT,
@@ -197,6 +202,7 @@ SHAPES: dict[str, Callable[[Signals], Array]] = {
     STRIBECK: lambda x: x.friction(DECAYED[STRIBECK]),
     CURVATURE: lambda x: x.friction(DECAYED[CURVATURE]),
     SPRING: lambda x: x.q,
+    CUBE: lambda x: x.q**3,
     SATURATION: lambda x: x.predicted * np.abs(x.predicted),
     DRIFT: lambda x: x.time - x.time.mean(axis=0),
     GAIN: lambda x: x.predicted,  # what joints have in common says how their torques fit together
@@ -224,6 +230,7 @@ def torque_columns(
     columns = {name: diagonal(shape(signals)) for name, shape in shapes.items()}
     columns[GAIN] *= compared(rows, estimates)
     columns[SPRING] = np.concatenate((columns[OFFSET], columns[SPRING]), axis=2)
+    columns[CABLE] = np.concatenate((columns[SPRING], columns.pop(CUBE)), axis=2)
     ripples = [replace(signals, cycles=own) for own in cycles]
     if ripples:
         parts = [diagonal(wave(ripple)) for ripple in ripples for wave in waves]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, RIPPLE, SHAPES, WAVES
+from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, PARTS, RIPPLE, SHAPES
 from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial, clear, level_among
 from scarid_cli.arrays import Array
 
@@ -17,7 +17,7 @@ from scarid_cli.arrays import Array
 Torques = frozenset[tuple[str, int]]
 RARE = 0.001  # probability of fitting what is not there
 LEFT = 0.25  # times as clear as the alternative itself: what it may leave unexplained
-FITTED = {*SHAPES.keys(), *WAVES} - {OFFSET}  # which offsets.py looks for
+FITTED = {*SHAPES.keys(), *PARTS} - {OFFSET}  # which offsets.py looks for
 
 
 @dataclass(frozen=True)

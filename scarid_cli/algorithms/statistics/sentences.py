@@ -11,6 +11,8 @@ from scarid_cli.algorithms.robots.joints import Joint
 from scarid_cli.algorithms.statistics.additions import Addition
 from scarid_cli.algorithms.statistics.alternatives import (
     ASYMMETRY,
+    CABLE,
+    CUBE,
     CURVATURE,
     DECAYED,
     DRIFT,
@@ -36,9 +38,8 @@ from scarid_cli.arrays import Array, Marks
 from scarid_cli.interval import plus_minus
 
 # The alternatives whose shapes have names of their own.
-KINDS = dict.fromkeys(DECAYED, CURVATURE) | {
-    wave: name for name, waves in WAVES.items() for wave in waves
-}
+KINDS = dict.fromkeys(DECAYED, CURVATURE) | {CUBE: CABLE}
+KINDS |= {wave: name for name, waves in WAVES.items() for wave in waves}
 EACH = 3  # joints, of which each figure has its own label at most
 NAMED = 2  # estimates whose change is written out
 DECREASES = (
@@ -54,6 +55,8 @@ ADVICE = {
     CURVATURE: "friction of {joints} is not the sum of Coulomb and viscous friction",
     LOAD: "friction of {joints} grows with the transmitted torque, for which there is no term",
     SPRING: "something pulls on {joints} as a spring or a cable does, for which there is no term",
+    CABLE: "something pulls on {joints} more than in proportion to the position, as a bent cable "
+    "does, for which there is no term",
     SATURATION: "the logged torque of {joints} is not proportional to the real one, as when a "
     "motor saturates",
     DRIFT: "the torque of {joints} drifts during the log",
@@ -213,6 +216,7 @@ def _unit(name: str, joint: Joint) -> str:
         ASYMMETRY: f"{torque} s/{joint.unit}",
         LOAD: "of this torque",
         SPRING: f"{torque}/{joint.unit}",
+        CUBE: f"{torque}/{joint.unit}3",
         SATURATION: f"per {torque}",
         DRIFT: f"{torque}/s",
     }[name]
