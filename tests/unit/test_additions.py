@@ -213,6 +213,17 @@ def test_a_spring_is_slack_somewhere_unless_the_joint_has_an_offset() -> None:
     assert found == [(OFFSET, 1), (SPRING, 0), (SPRING, 1)]
 
 
+def test_a_bent_cable_is_told_once_for_each_joint() -> None:
+    _, found = explained(rows := log(bent), diagnosed(rows))
+    parts = (Addition(CUBE, 1, 1.0, 0.1), Addition(SPRING, 1, 1.0, -0.02), Addition(SPRING, 0, 1.0))
+    cable, spring = additions_of(
+        dict.fromkeys(ARM.names, 1.0), replace(found, additions=parts), ARM
+    )
+    assert cable.startswith("something pulls on joint 2 more than in proportion to the position")
+    assert "; fitted as well: -0.02 N m/rad and 0.1 N m/rad3 at joint 2" in cable
+    assert spring.startswith("something pulls on joint 1 as a spring")
+
+
 def test_the_torques_are_those_of_the_robot_and_not_of_the_log() -> None:
     rows = log(nothing)
     additions = [

@@ -6,7 +6,7 @@ everything else from a subsample if the record is long.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Set
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -95,7 +95,7 @@ def diagnose(
     doubt: Array | None = None,
     gain_errors: GainErrors = 0.0,
     suspected: frozenset[str] = frozenset(),
-    shared: frozenset[str] = frozenset(),
+    shared: Set[str] = frozenset(),
     curves: Collection[int] = (),
 ) -> Diagnostics:
     """Diagnose an estimation from its rows.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -175,7 +175,7 @@ class Trial:
     noise: ColouredNoise | None
     places: Numbers
     suspected: frozenset[str] = frozenset()
-    shared: frozenset[str] = frozenset()
+    shared: Set[str] = frozenset()
 
     @classmethod
     def of(
@@ -188,7 +188,7 @@ class Trial:
         model: Model | None = None,
         noise: ColouredNoise | None = None,
         suspected: frozenset[str] = frozenset(),
-        shared: frozenset[str] = frozenset(),
+        shared: Set[str] = frozenset(),
     ) -> Trial:
         """From the rows of an estimation, and its estimates."""
         few = thinned(rows)

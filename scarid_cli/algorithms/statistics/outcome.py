@@ -16,7 +16,9 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
 from scarid_cli.algorithms.statistics.alternatives import (
+    CABLE,
     COSINE,
+    CUBE,
     DECAYED,
     GAIN,
     OFFSET,
@@ -93,7 +95,7 @@ class Problem:
             doubt=None if doubt is None else doubt[: self.own],
             gain_errors=gain_errors,
             suspected=suspected,
-            shared=frozenset(x.name for x in self.additions) - {OFFSET},
+            shared={CABLE if x.name == CUBE else x.name for x in self.additions} - {OFFSET},
             curves={x.joint for x in self.additions if x.name in DECAYED},
         )
         sizes = self.found.fit.estimates[self.own + len(self.additions) :].tolist()

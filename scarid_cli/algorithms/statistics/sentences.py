@@ -127,7 +127,7 @@ def additions_of(
     # where a spring is slack goes without saying
     own = [x for x in diagnostics.additions if x.name not in (OFFSET, GAIN)]
     added = sorted(own, key=lambda x: x.joint)
-    kinds = [KINDS.get(addition.name, addition.name) for addition in added]
+    kinds = _kinds(added)
     for kind in sorted(set(kinds)):
         own = [addition for addition, of in zip(added, kinds, strict=True) if of == kind]
         joints = joints_named(dict.fromkeys(x.joint + 1 for x in own))
@@ -137,6 +137,15 @@ def additions_of(
             advice = f"{advice}: {laws(own, estimates, robot)}"
         notes.append(f"{advice}; {_fitted(kind, own, robot)}{elsewhere}")
     return notes
+
+
+def _kinds(added: Sequence[Addition]) -> list[str]:
+    """What each addition belongs to: of a cable the part in proportion to the position as well."""
+    cables = {x.joint for x in added if x.name == CUBE}
+    return [
+        CABLE if x.name == SPRING and x.joint in cables else KINDS.get(x.name, x.name)
+        for x in added
+    ]
 
 
 def _elsewhere(names: Sequence[str], diagnostics: Diagnostics, kind: str, joints: set[int]) -> str:
@@ -166,6 +175,8 @@ def _fitted(kind: str, added: Sequence[Addition], robot: Robot) -> str:
         return "a curve over the speed was fitted as well"
     if kind in WAVES:
         return f"fitted as well, with {_amplitudes(added, robot)}"
+    if kind == CABLE:
+        return f"fitted as well: {_cables(added, robot)}"
     return f"fitted as well: {_sizes(added, robot)}"
 
 
@@ -176,6 +187,14 @@ def _sizes(added: Sequence[Addition], robot: Robot) -> str:
     if len(set(units)) == 1:
         return f"{listed(sizes)} {units[0]}"
     return listed([f"{size} {unit}" for size, unit in zip(sizes, units, strict=True)])
+
+
+def _cables(added: Sequence[Addition], robot: Robot) -> str:
+    """`0.02 N m/rad and 0.1 N m/rad3 at joint 1`, and so on."""
+    own: dict[int, list[str]] = {}
+    for x in sorted(added, key=lambda x: x.name, reverse=True):  # the spring first
+        own.setdefault(x.joint, []).append(f"{x.size:.3g} {_unit(x.name, robot.joints[x.joint])}")
+    return ", ".join(f"{listed(own[j])} at joint {j + 1}" for j in sorted(own))
 
 
 Ripple = tuple[int, float]  # the joint (from 0) and the periods per rad or m
