@@ -48,7 +48,8 @@ def test_no_body_is_nearer(seed: int) -> None:
     phi, factor = drawn(seed)
     body, away = nearest(phi, factor)
     assert np.linalg.eigvalsh(pseudo_inertia(body))[0] >= -1e-12
-    assert away == pytest.approx(by_programme(phi, factor), abs=1e-4)
+    # The barrier's last weight leaves 8e-7 of the squared distance, and the programme as much.
+    assert away**2 == pytest.approx(by_programme(phi, factor) ** 2, rel=1e-4, abs=2e-6)
 
 
 @settings(max_examples=40, deadline=None)

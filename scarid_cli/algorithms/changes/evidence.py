@@ -92,7 +92,7 @@ class Products:
         """
         p = len(theta)
         nuisances = rows.W[:, :, p:]
-        rows = replace(rows, W=np.ascontiguousarray(rows.W[:, :, :p]))
+        rows = replace(rows, W=rows.W[:, :, :p])
         counts = np.maximum(np.count_nonzero(rows.scales, axis=0), 1)
         powers = np.sum((rows.y * (rows.scales > 0.0)) ** 2, axis=0) / counts
         further = _further(rows, theta, model)
@@ -105,8 +105,8 @@ class Products:
         """
         columns = self.values.shape[2] - 1
         first = [*range(Columns.among(columns, len(self.values)).usual), *further]
-        alone = self.values[:, :, [*first, columns]][:, :, :, [*first, columns]]
-        whole = alone.sum(axis=1)
+        sums, chosen = self.values.sum(axis=1), [*first, columns]
+        whole = sums[:, chosen][:, :, chosen]
         least = LEAST**2 * self.powers + TINY
         variances = np.maximum(whole[:, -1, -1] / self.counts, least)
         for _ in range(REFITS):
@@ -114,11 +114,18 @@ class Products:
             along = np.append(-solved(weighted[:-1, :-1], weighted[:-1, -1]), 1.0)
             squares = np.einsum("i,jik,k->j", along, whole, along)
             variances = np.maximum(squares / self.counts, least)
-        scores = np.einsum("jbik,k->jbi", self.values[:, :, :-1, [*first, columns]], along)
-        grams = alone[:, :, :-1, :-1] / variances[:, None, None, None]
-        weights = 1.0 / (variances * _inflations(scores[:, :, first], grams, variances))
-        scores[:, :, first] = _without_leverage(scores[:, :, first], grams.sum(axis=0))
-        total = np.tensordot(weights, self.values.sum(axis=1), 1)
+        spread = np.zeros(columns + 1)
+        spread[chosen] = along
+        scores = self.values[:, :, :-1] @ spread
+        total = np.tensordot(1.0 / variances, whole[:, :-1, :-1], 1)
+        grams, inflations = np.zeros((self.values.shape[1], *total.shape)), []
+        for j, variance in enumerate(variances.tolist()):  # one joint at a time, for they are large
+            own = self.values[j][:, first][:, :, first] / variance
+            inflations.append(_inflation(scores[j][:, first], own, variance, total))
+            grams += own
+        weights = 1.0 / (variances * inflations)
+        scores[:, :, first] = _without_leverage(scores[:, :, first], grams)
+        total = np.tensordot(weights, sums, 1)
         return LogEvidence(
             information=total[:-1, :-1],
             score=total[:-1, -1],
@@ -157,22 +164,21 @@ def _without_leverage(scores: Array, grams: Array) -> Array:
     return larger
 
 
-def _inflations(scores: Array, grams: Array, variances: Array) -> Array:
-    """By how much autocorrelation increases the variance of the scores of each joint (joints).
+def _inflation(scores: Array, grams: Array, variance: float, total: Array) -> float:
+    """By how much autocorrelation increases the variance of the scores of a joint.
 
-    The squares of the scores (joints, blocks, columns) of blocks are compared with those that white
-    noise leaves behind the fit of all joints: with G of a block and joint among the `grams`, and N
-    the sum of all, G - G N^-1 G. So a short log, whose every block the fit follows, is not taken
-    for a noisy one. The mean is over the columns, which count by their information; at least 1.
+    The squares of the scores (blocks, columns) are compared with those that white noise leaves
+    behind the fit of all joints: with G of a block among the `grams`, and N the `total` of all
+    joints, G - G N^-1 G. So a short log, whose every block the fit follows, is not taken for a
+    noisy one. The mean is over the columns, which count by their information; at least 1.
     """
-    sizes = np.einsum("jbkk->jk", grams)
-    spent = np.einsum("jbik,kl,jbli->ji", grams, inverse(grams.sum(axis=(0, 1))), grams)
-    there = sizes > 1e-12 * sizes.max(axis=1, keepdims=True)
+    sizes = np.einsum("bkk->k", grams)
+    spent = np.einsum("bik,bki->i", grams @ inverse(total), grams)
+    there = sizes > 1e-12 * sizes.max()
     parts = np.divide(1.0, sizes, out=np.zeros_like(sizes), where=there)
-    squares = (scores**2).sum(axis=1) / variances[:, None] ** 2
-    white = np.sum((sizes - spent) * parts, axis=1)
-    found = np.sum(squares * parts, axis=1) / np.maximum(white, TINY)
-    return np.asarray(np.maximum(found, 1.0))
+    squares = (scores**2).sum(axis=0) / variance**2
+    white = np.sum((sizes - spent) * parts)
+    return max(float(np.sum(squares * parts) / max(white, TINY)), 1.0)
 
 
 def _further(rows: Rows, theta: Array, model: Model | None) -> Array:

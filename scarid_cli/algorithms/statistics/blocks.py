@@ -81,7 +81,7 @@ class Blocks:
     @property
     def total(self) -> Array:
         """The products of all rows (joints, parameters + 2, parameters + 2)."""
-        return np.asarray(np.sum(self.products, axis=0), dtype=np.float64)
+        return np.asarray(sum(self.products), dtype=np.float64)  # without a copy of them all
 
     def columns(self, kept: list[int]) -> Blocks:
         """The blocks of a regression with only these columns of W."""

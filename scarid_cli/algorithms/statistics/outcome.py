@@ -145,11 +145,11 @@ class Problem:
         start = self.own + len(self.additions)
         dropped = range(start, start + len(self.offsets))
         kept = [k for k in range(self.rows.W.shape[2] - self.delayed) if k not in dropped]
-        return replace(self.rows, W=np.ascontiguousarray(self.rows.W[:, :, kept]))
+        return replace(self.rows, W=self.rows.W.take(kept, axis=2))
 
     def reduced(self, to: Essential) -> Problem:
         """The problem with only the essential parameters."""
-        rows = replace(self.rows, W=np.ascontiguousarray(self.rows.W[:, :, to.kept]))
+        rows = replace(self.rows, W=self.rows.W.take(to.kept, axis=2))
         scores = self.found.scores
         if scores and scores.instruments is not None:
             scores = replace(scores, instruments=scores.instruments[:, :, to.kept])

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 
@@ -71,17 +72,16 @@ class Products:
     @cached_property
     def eliminated(self) -> Eliminated | None:
         """The products without W; None if the rows do not determine its parameters."""
-        p, scaled = self.parameters, self.blocks * self.scale[:, None] * self.scale
-        total = scaled.sum(axis=0)
+        p, scales = self.parameters, self.scale[:, None] * self.scale
+        total = self.blocks.sum(axis=0) * scales
         if not self.scale[:p].all() or not np.linalg.cond(total[:p, :p]) < SINGULAR:
             return None
-        systems = np.concatenate((total[None], total - scaled))
-        try:
-            fits = np.linalg.solve(systems[:, :p, :p], systems[:, :p, p:])
+        try:  # one block after another, for the systems of all are large
+            systems = chain([total], (total - own * scales for own in self.blocks))
+            fits, rest = zip(*(_without_first(system, p) for system in systems), strict=True)
         except np.linalg.LinAlgError:
             return None
-        rest = systems[:, p:, p:] - systems[:, p:, :p] @ fits
-        return Eliminated(fits, rest)
+        return Eliminated(np.array(fits), np.array(rest))
 
     @cached_property
     def spread(self) -> Array:
@@ -117,6 +117,12 @@ class Products:
         found = np.concatenate((of_W, own), axis=1)[:, :, 0]
         found *= self.scale[[*range(self.parameters), *further]]
         return Solved(found[0], found[1:])
+
+
+def _without_first(system: Array, p: int) -> tuple[Array, Array]:
+    """The fits of the further columns by the first p, and the products of their residuals."""
+    fits = np.asarray(np.linalg.solve(system[:p, :p], system[:p, p:]), dtype=np.float64)
+    return fits, system[p:, p:] - system[p:, :p] @ fits
 
 
 def jackknifed(deviations: Array) -> Array:

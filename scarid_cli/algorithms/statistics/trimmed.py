@@ -8,6 +8,8 @@ squares of the residual are fitted again, until they are the same.
 
 from __future__ import annotations
 
+from itertools import compress
+
 import numpy as np
 
 from scarid_cli.algorithms.regression.normal_equations import solved
@@ -24,15 +26,16 @@ def trimmed(blocks: Blocks) -> Array:
     A joint counts by the inverse of its median mean square residual over the blocks. Directions
     that the blocks do not determine are 0.
     """
-    whole = np.array(blocks.products)
-    products, rows = whole[:, :, :-1, :-1], whole[:, :, -1, -1]
-    variances = np.mean(products[:, :, -1, -1], axis=0)
+    products = [product[:, :-1, :-1] for product in blocks.products]
+    rows = np.array([product[:, -1, -1] for product in blocks.products])
+    variances = np.mean([product[:, -1, -1] for product in products], axis=0)
     kept = np.ones(len(rows), dtype=np.bool_)
     for _ in range(STEPS):
-        weighted = np.tensordot(_inverse(variances), products[kept].sum(axis=0), 1)
+        total = np.asarray(sum(compress(products, kept)))
+        weighted = np.tensordot(_inverse(variances), total, 1)
         estimates = solved(weighted[:-1, :-1], weighted[:-1, -1])
         along = np.append(estimates, -1.0)
-        squares = np.einsum("i,bjik,k->bj", along, products, along).clip(min=0.0)
+        squares = np.array([product @ along @ along for product in products]).clip(min=0.0)
         means = squares / np.maximum(rows, 1.0)
         variances = np.array([median(x[n > 0.0]) for x, n in zip(means.T, rows.T, strict=True)])
         before, kept = kept, _least(squares @ _inverse(variances), rows.sum(axis=1))
