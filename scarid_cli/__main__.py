@@ -50,7 +50,7 @@ def main(arguments: list[str] | None = None) -> int:
         return USAGE
     except click.UsageError as error:
         path = error.ctx.command_path if error.ctx else "scarid"
-        return _reported(path, f"{error.format_message().rstrip('.')} (see `{path} --help`)", USAGE)
+        return _reported(path, f"{_usage(error)} (see `{path} --help`)", USAGE)
     except (KeyboardInterrupt, click.Abort):
         return INTERRUPTED
     except Terminated:
@@ -64,6 +64,15 @@ def main(arguments: list[str] | None = None) -> int:
     except OSError as error:  # of standard output
         return _failed("scarid", error)
     return status
+
+
+def _usage(error: click.UsageError) -> str:
+    """What is wrong with the command line."""
+    if isinstance(error, click.NoSuchOption):
+        from scarid_cli.cli import unknown
+
+        return unknown.told(error)
+    return error.format_message().rstrip(".")
 
 
 def _failed(where: str, error: Exception) -> int:

@@ -92,3 +92,22 @@ def test_a_wrong_command_line_is_reported_in_one_line(
         assert gapped.status == 0
     files = {"GAPPED": "gapped.csv", "LOG": str(samples / "scara2.csv"), "REF": "ref.csv"}
     refused(scarid(*(files.get(word, word) for word in words)), 2, message)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["differentiate", "--estimator", "wls"], "no such option: --estimator; identify has it"),
+        (["identify", "--method", "p2smd"], "--method; tune and differentiate have it"),
+        (["filter", "--robot", "arm.toml"], "no such option: --robot; trajgen, simulate and "),
+        (["filter", "--rowz", "1:2"], "Did you mean '--rows'?"),
+        (["identify", "-z"], "No such option '-z' "),
+    ],
+)
+def test_an_option_of_another_command_is_named_as_such(
+    scarid: Run, words: list[str], said: str
+) -> None:
+    found = scarid(*words)
+    assert (found.status, found.out) == (2, "")
+    assert said in found.err
+    assert len(found.err.splitlines()) == 1
