@@ -20,7 +20,7 @@ def _payload(one: Hung, name: str) -> Section:
     )
     note = (
         f"What hangs on the flange, in the frame of {one.frame}: mass, centre, and inertia about "
-        "the centre. A value without an interval is one that the motion does not tell."
+        "the centre. An empty value is one that the motion does not tell."
     )
     rows = zip(one.quantities, one.units, one.values, one.low, one.high, one.body, strict=True)
     return Section(

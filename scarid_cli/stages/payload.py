@@ -49,11 +49,10 @@ def frame_of(robot: Robot, link: str | None, who: str) -> tuple[Frame, str]:
 
 def table(found: Payload, of: Table, link: str) -> Table:
     """A row for each of the ten values, with its 95 % interval."""
-    half = HALF * found.errors
+    half, values = HALF * found.errors, np.where(np.isnan(found.errors), np.nan, found.values)
     rows = zip(
-        NAMES, UNITS, found.values, found.errors, found.values - half, found.values + half,
-        found.told, strict=True,
-    )  # fmt: skip
+        NAMES, UNITS, values, found.errors, values - half, values + half, found.told, strict=True
+    )
     extra = {"frame": link, "possible": found.possible, "away": found.away}
     meta = replace(of.meta, kind="payload", extra=extra)
     return table_of("payload", schemas.load("payload").arrow(), list(rows), meta)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio
+import pyarrow as pa
 import pytest
 from cli.test_gates import document
 from conftest import Shell, refused
@@ -14,10 +15,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from unit.arms import seven_axes
 
-from scarid_cli.algorithms.changes.payload import Standard, directions, in_frame, standard
+from scarid_cli.algorithms.changes.payload import Payload, Standard, directions, in_frame, standard
 from scarid_cli.algorithms.robots.physical import inertia_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.rigid import PINOCCHIO, Frame
+from scarid_cli.io.table import Metadata, Table
+from scarid_cli.stages.payload import table
 
 
 @pytest.fixture(scope="module")
@@ -181,3 +184,13 @@ def test_the_bare_robot_twice_has_no_payload(arm: Path, shell: Shell, tmp_path: 
     assert made.status == 0, made.err
     done = shell("scarid payload --parameters bare.parquet bare.parquet")
     refused(done, 65, "both identifications are the same; give a log with the payload")
+
+
+def test_what_a_motion_does_not_tell_has_no_value() -> None:
+    errors = np.array([0.1, 0.1, np.nan, 0.1, *[np.nan] * 6])
+    found = Payload(np.arange(1.0, 11.0), errors, body=np.ones(10), away=0.0)
+    bare = Table("bare", pa.schema([]), Metadata(kind="parameters"), iter(()))
+    (batch,) = table(found, bare, "tool").batches
+    known = ~np.isnan(errors)
+    for name in ("estimate", "robust_error", "low", "high"):
+        assert [x is not None for x in batch[name].to_pylist()] == known.tolist()
