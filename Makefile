@@ -26,6 +26,7 @@
 # make bench-coarse   the choice of a bandwidth where positions are coarse
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
 # make bench-checks    what check says of logs with known faults
+# make bench-within   is the torque that another motion needs within what identify states?
 # make bench-changed   how often validate calls a change between two logs by its name
 # make emps EMPS=emps_train.csv   every differentiator on the real EMPS log
 # make batch CONFIG=fleet.toml   many logs of several robots, restartable; PROFILE=slurm on a cluster
@@ -48,7 +49,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -174,6 +175,9 @@ bench-mujoco: $(VENV)/tested
 
 bench-checks: $(VENV)/tested
 	$(BIN)/python benchmarks/checks.py
+
+bench-within: $(VENV)/tested
+	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/within.py --seeds 3 --seed 70000
 
 bench-changed: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/changed.py

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 KNOWN = 30.0  # percent: a parameter is known if its error is at most this part of it
 NARROW, WIDE = 10.0, 30.0  # percent: half the interval of the torque of a good and a rough model
 NUMBER = r"(\d+\.?\d*) %"
-PARTS = ("model torque within", "residual", "inertia within")
+PARTS = ("model torque within", "needed torque within", "residual", "inertia within")
 
 
 def data() -> Data:
@@ -72,17 +72,23 @@ def _errors(axes: Axes, errors: dict[str, float]) -> None:
 
 def _joints(axes: Axes, found: Data) -> None:
     place, names = 0, []
-    for colour, part in zip((PALETTE[0], GREY, PALETTE[2]), PARTS, strict=True):
+    for colour, part in zip((PALETTE[0], PALETTE[3], GREY, PALETTE[2]), PARTS, strict=True):
         for joint, value in enumerate(found[part], start=1):
             axes.barh(place, value, height=0.6, color=colour)
             axes.annotate(f"{value:g} %", (value, place), (3, 0), textcoords="offset points",
                           va="center")  # fmt: skip
-            names.append(f"{part.replace('model torque', 'torque')}, {joint}")
+            names.append(f"{part.removesuffix(' within')}, {joint}")
             place += 1
     axes.set_yticks(range(place), names)
     axes.set(xscale="log", xlim=(0.1, 100.0), ylim=(place - 0.5, -1.4))
     for limit, text, side in ((NARROW, "rough above", "right"), (WIDE, "doubtful above", "left")):
-        axes.plot([limit, limit], [-0.5, 1.5], color=INK, linestyle="--", linewidth=0.9)
+        axes.plot(
+            [limit, limit],
+            [-0.5, 3.5 if limit == NARROW else 1.5],
+            color=INK,
+            linestyle="--",
+            linewidth=0.9,
+        )
         axes.text(limit, -0.75, text, fontsize=7, ha=side)
     axes.set_xlabel("[%]")
     common.plain_powers(axes)

@@ -54,6 +54,7 @@ def identification(table: Table, estimator: str) -> Document:
 OF_A_JOINT = {
     "r2": "r2",
     "relative_error": "relative_error",
+    "needed_half_interval": "needed",
 }
 # Those with standard errors in the metadata.
 INTERVALS = {"torque_half_interval": "torque_error", "inertia_half_interval": "inertia_error"}

@@ -277,6 +277,7 @@ def _joints(diagnostics: Diagnostics) -> list[dict[str, Any]]:
             "held_out": _or_none(found["held_out"][i]),
             "torque_error": _or_none(found["torque"][i]),
             "inertia_error": _or_none(found["inertia"][i]),
+            "needed": _or_none(diagnostics.needed[i]),
         }
         for i, residual in enumerate(facts)
     ]

@@ -173,6 +173,21 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             "the torque of joint 2 is known within 20 % only",
         ),
         (
+            {"joints": (replace(GOOD, lasting=0.0), replace(GOOD, lasting=0.2))},
+            "good",
+            "; needed torque within joint 1 0.2 %, joint 2 8 %; ",
+        ),
+        (
+            {"joints": (GOOD, replace(GOOD, lasting=0.3))},
+            "rough",
+            "the torque that joint 2 needs on other motions is known within 12 % only, because",
+        ),
+        (
+            {"joints": (replace(GOOD, lasting=0.0),) * 2, "offsets": {1: 0.75}},
+            "good",
+            "; needed torque within joint 1 0.2 %, joint 2 15 %; ",
+        ),
+        (
             consequence(torque=np.array([0.1, 0.2])),
             "doubtful",
             "torque of joint 2 is known only within 40 %",

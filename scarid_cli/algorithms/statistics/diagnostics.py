@@ -34,11 +34,16 @@ from scarid_cli.algorithms.statistics.jackknife import (
     interval_quantiles,
     jackknife,
     jackknife_of_blocks,
+    quantile,
 )
 from scarid_cli.algorithms.statistics.parallel import ENCODERS, ZEROS
 from scarid_cli.algorithms.statistics.residuals import JointResidual, residuals
 from scarid_cli.algorithms.statistics.trimmed import trimmed
 from scarid_cli.arrays import Array, median
+
+# Times what lasts in the residual: the fit has taken up a part of what the model lacks, and another
+# motion has it elsewhere (benchmarks/within.py, docs/design/verdict.md).
+LACKING = 2.0
 
 
 @dataclass(frozen=True)
@@ -82,6 +87,30 @@ class Diagnostics:
     cycles: Array = field(default_factory=lambda: np.zeros((0, 0)))
     offsets: dict[int, float] = field(default_factory=dict)
     additions: tuple[Addition, ...] = ()
+
+    @property
+    def width(self) -> float:
+        """Half the width of a 95 % interval, in standard errors."""
+        return quantile(0.975, self.blocks - 1.0)
+
+    @property
+    def lacking(self) -> Array:
+        """Half the 95 % interval of the torque by the parameters and what the model lacks (joints).
+
+        Of the torque that another motion needs, relative to it; nan if that is not known.
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            lasting = np.array([joint.lasting / joint.torque for joint in self.joints])
+        known = self.width * self.consequences.torque
+        return np.asarray(np.hypot(known, LACKING * lasting))
+
+    @property
+    def needed(self) -> Array:
+        """The same with an offset, of which no log tells whether it is the sensor's (joints)."""
+        offsets = np.zeros(len(self.joints))
+        for j, size in self.offsets.items():
+            offsets[j] = size / self.joints[j].torque
+        return np.asarray(np.hypot(self.lacking, offsets))
 
 
 def diagnose(
@@ -144,7 +173,7 @@ def diagnose(
         errors=stated.errors,
         quantiles=interval_quantiles(blocks, longer[:own]),
         matrix=stated.matrix,
-        joints=residuals(rows, estimates if modelled is None else modelled, record),
+        joints=residuals(rows, estimates if modelled is None else modelled, record, estimates),
         effects=effects,
         gains=gains,
         consequences=consequences(

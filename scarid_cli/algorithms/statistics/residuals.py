@@ -8,6 +8,7 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.blocks import Blocks
+from scarid_cli.algorithms.statistics.lasting import lasting
 from scarid_cli.algorithms.statistics.peaks import peaks_of
 from scarid_cli.arrays import Array, Marks, varies
 
@@ -20,7 +21,7 @@ class JointResidual:
     root-mean-square torque) are in N m or N; `relative_error` is 100 |rho| / |tau| [%]. The
     `autocorrelation` from one sample to the next and the excess `kurtosis` are 0 for white normal
     noise. `peak` and `peak_scale` [N m or N] are the mode and the scale of its largest values in
-    half a second (peaks.py).
+    half a second (peaks.py). `lasting` [N m or N] is what the model lacks in it (lasting.py).
     """
 
     rows: int
@@ -32,19 +33,21 @@ class JointResidual:
     torque: float
     peak: float = float("nan")
     peak_scale: float = float("nan")
+    lasting: float = float("nan")
 
 
 def residuals(
-    rows: Rows, estimates: Array, record: Blocks | None = None
+    rows: Rows, estimates: Array, record: Blocks | None = None, fitted: Array | None = None
 ) -> tuple[JointResidual, ...]:
-    """The residual of each joint.
+    """The residual of each joint behind these estimates; what lasts is that behind those `fitted`.
 
     If `rows` are a subsample of a longer `record`, sums of squares are those of the whole record.
     """
     left = rows.y - rows.W @ estimates
+    lasts = lasting(left if fitted is None else rows.y - rows.W @ fitted, rows)
     joints = [
-        _joint(rows.y[:, j], left[:, j], rows.scales[:, j] > 0.0, rows)
-        for j in range(rows.y.shape[1])
+        replace(_joint(rows.y[:, j], left[:, j], rows.scales[:, j] > 0.0, rows), lasting=x)
+        for j, x in enumerate(lasts.tolist())
     ]
     if record is None:
         return tuple(joints)

@@ -15,7 +15,6 @@ from scarid_cli.algorithms.statistics.alternatives import transmitted
 from scarid_cli.algorithms.statistics.cuts import Cut
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
-from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.parallel import SIGNALS
 from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.algorithms.statistics.sentences import (
@@ -137,13 +136,20 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
 
 def _rough(evidence: Evidence) -> list[str]:
     """Why estimates that are right within their intervals are of little use: these are wide."""
-    torque = _width(evidence) * evidence.diagnostics.consequences.torque
+    torque = evidence.diagnostics.width * evidence.diagnostics.consequences.torque
     reasons = [
         f"the torque of joint {i} is known within {percents([x])} only"
         for i, x in enumerate(torque, start=1)
         if x > VAGUE
     ]
-    return [*reasons, "take a longer log, or one that moves more"] if reasons else []
+    if reasons:
+        return [*reasons, "take a longer log, or one that moves more"]
+    return [
+        f"the torque that joint {i} needs on other motions is known within {percents([x])} only, "
+        "because the model lacks something"
+        for i, x in enumerate(evidence.diagnostics.lacking, start=1)
+        if x > VAGUE
+    ]
 
 
 def _idle(joints: Sequence[JointResidual], robot: Robot) -> list[str]:
@@ -247,7 +253,7 @@ def _farthest(evidence: Evidence, cut: Cut, links: Marks) -> tuple[float, int]:
 
 def _vague(evidence: Evidence) -> list[str]:
     """Joints whose torque is not known, or not predicted within its noise."""
-    found, width = evidence.diagnostics.consequences, _width(evidence)
+    found, width = evidence.diagnostics.consequences, evidence.diagnostics.width
     intervals = zip(width * found.noise, width * found.torque, strict=True)
     reasons = [
         f"the torque of joint {i} is known only within {percents([max(noise, whole)])}"
@@ -289,7 +295,7 @@ def _unpredicted(evidence: Evidence) -> list[str]:
 
 def _inertia_unknown(evidence: Evidence) -> list[str]:
     """A note on joints whose inertia may be zero: friction or gravity makes their torque."""
-    within = _width(evidence) * evidence.diagnostics.consequences.inertia
+    within = evidence.diagnostics.width * evidence.diagnostics.consequences.inertia
     unknown = [i for i, part in enumerate(within, start=1) if part > 1.0]
     if not unknown:
         return []
@@ -297,11 +303,6 @@ def _inertia_unknown(evidence: Evidence) -> list[str]:
         f"the inertia of {joints_named(unknown)} is not known: do not predict the torques of "
         "faster motions"
     ]
-
-
-def _width(evidence: Evidence) -> float:
-    """Half the width of a 95 % interval, in standard errors."""
-    return quantile(0.975, evidence.diagnostics.blocks - 1.0)
 
 
 def _poor(joints: Sequence[JointResidual]) -> list[str]:
@@ -356,7 +357,7 @@ def _no_bodies(evidence: Evidence, found: Possible) -> list[str]:
             f"the free estimates are {found.distance:.2g} standard errors away from what any rigid "
             f"bodies have, and their errors explain {found.explained:.2g}: {CAUSE}"
         ]
-    within = _width(evidence) * evidence.diagnostics.consequences.torque
+    within = evidence.diagnostics.width * evidence.diagnostics.consequences.torque
     far = np.flatnonzero(found.moved > within)
     if not len(far):
         return []
@@ -397,11 +398,14 @@ def _summary(evidence: Evidence) -> str:
     known = f"{count - len(unknown)} of {count} parameters known within {DOUBT:g} %"
     if 0 < len(unknown) <= FEW:
         known += f" (all but {listed(unknown)})"
-    found, width = evidence.diagnostics.consequences, _width(evidence)
+    found, width = evidence.diagnostics.consequences, evidence.diagnostics.width
     parts = [known]
     if np.isfinite(found.torque).all():
         torques = percents_of_joints(width * found.torque)
         parts.append(f"model torque within {torques} on motions like this one")
+    needed = evidence.diagnostics.needed
+    if np.isfinite(needed).all():
+        parts.append(f"needed torque within {percents_of_joints(needed)}")
     residuals = np.array([joint.relative_error for joint in evidence.diagnostics.joints])
     if np.isfinite(residuals).all():
         parts.append(f"residual {percents_of_joints(0.01 * residuals)}")

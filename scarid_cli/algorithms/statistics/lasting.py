@@ -1,0 +1,57 @@
+"""What lasts in the residual of a torque: not noise, but what the model lacks.
+
+White noise behind a low-pass is uncorrelated after half a period of its bandwidth: there the
+autocovariance of a Butterworth filter, forwards and backwards, has its first zero, whatever its
+order. What the model lacks follows the motion, which is slower. So the autocovariance after that
+is the power of what lacks. Oscillations count as well, for the mean of its squares is taken, less
+that which noise alone gives it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.statistics.alternatives import away_from_reversals
+from scarid_cli.arrays import Array, Marks
+
+# Periods of the bandwidth, from beyond the first zero to before the motion has changed.
+FIRST, LAST = 2.0 / 3.0, 4.0 / 3.0
+LAGS = 32  # in a period: between them it hardly changes
+FEWEST = 10  # independent values, of which there is a mean
+
+
+def lasting(residual: Array, rows: Rows) -> Array:
+    """The root mean square [N m or N] of what lasts in a residual (samples, joints), of each joint.
+
+    Rows near reversals do not count, where sign(dq) is not the friction. It is nan of a joint of
+    which too few rows are left.
+    """
+    period = 1.0 / (rows.bandwidth * rows.h) if rows.bandwidth and rows.h > 0.0 else 1.0
+    first, last = (max(1, round(part * period)) for part in (FIRST, LAST))
+    lags = range(first, last + 1, max(1, round(period / LAGS)))
+    counts = away_from_reversals(rows) > 0.0
+    values, there = _evenly(np.where(counts, residual, 0.0), counts, rows)
+    power = _autocovariance(values, there, 0)
+    later = np.array([_autocovariance(values, there, lag) for lag in lags])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        independent = np.count_nonzero(there, axis=0) * min(1.0, 2.0 / period)
+        squares = np.mean(later**2, axis=0) - power**2 / independent
+        found = np.maximum(squares, 0.0) ** 0.25
+    return np.where(independent >= FEWEST, found, np.nan)
+
+
+def _evenly(values: Array, counts: Marks, rows: Rows) -> tuple[Array, Marks]:
+    """Values and marks (samples, joints) with a place for each sample that is left out."""
+    samples, joints = int(rows.at[-1] - rows.at[0]) + 1, values.shape[1]
+    filled, there = np.zeros((samples, joints)), np.zeros((samples, joints), dtype=np.bool_)
+    filled[rows.at - rows.at[0]], there[rows.at - rows.at[0]] = values, counts
+    return filled, there
+
+
+def _autocovariance(values: Array, there: Marks, lag: int) -> Array:
+    """The mean product (joints) of values this many samples apart; 0 where there are none."""
+    end = len(values) - lag
+    pairs = np.count_nonzero(there[lag:] & there[: max(end, 0)], axis=0) if end > 0 else 0
+    sums = np.sum(values[lag:] * values[: max(end, 0)], axis=0) if end > 0 else 0.0
+    return np.asarray(sums / np.maximum(pairs, 1))
