@@ -25,7 +25,7 @@ UR10E = ROOT / "samples" / "robots"
 
 def verdict(result: Result) -> str:
     found = re.search(
-        r"^scarid identify: ((?:good|doubtful|not identifiable): .*)$", result.err, re.M
+        r"^scarid identify: ((?:good|rough|doubtful|not identifiable): .*)$", result.err, re.M
     )
     assert found, result.err
     return found[1]

@@ -245,7 +245,7 @@ def test_bad_data_are_reported_by_the_stage_that_read_them(scarid: Run, tmp_path
         ("then filter LOG", "a command is missing before or after `then`"),
         ("filter LOG then then info", "a command is missing before or after `then`"),
         ("filter LOG then differentiat", "did you mean differentiate?"),
-        ("filter LOG then differentiate --cutoff 3", "scarid differentiate: No such option"),
+        ("filter LOG then differentiate --cutoff 3", "no such option: --cutoff; filter has it"),
         ("identify LOG --robot scara2 --trace - then info", "two outputs cannot share it"),
     ],
 )  # fmt: skip

@@ -99,17 +99,17 @@ class Diagnostics:
 
         Of the torque that another motion needs, relative to it; nan if that is not known.
         """
+        lasting, torques = np.transpose([[x.lasting, x.torque] for x in self.joints])
         with np.errstate(divide="ignore", invalid="ignore"):
-            lasting = np.array([joint.lasting / joint.torque for joint in self.joints])
-        known = self.width * self.consequences.torque
-        return np.asarray(np.hypot(known, LACKING * lasting))
+            lacks = LACKING * lasting / torques
+        return np.asarray(np.hypot(self.width * self.consequences.torque, lacks))
 
     @property
     def needed(self) -> Array:
         """The same with an offset, of which no log tells whether it is the sensor's (joints)."""
         offsets = np.zeros(len(self.joints))
         for j, size in self.offsets.items():
-            offsets[j] = size / self.joints[j].torque
+            offsets[j] = size / (self.joints[j].torque or np.nan)
         return np.asarray(np.hypot(self.lacking, offsets))
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.alternatives import away_from_reversals
-from scarid_cli.arrays import Array, Marks
+from scarid_cli.arrays import Array, Marks, Numbers
 
 # Periods of the bandwidth, from beyond the first zero to before the motion has changed.
 FIRST, LAST = 2.0 / 3.0, 4.0 / 3.0
@@ -31,27 +31,20 @@ def lasting(residual: Array, rows: Rows) -> Array:
     first, last = (max(1, round(part * period)) for part in (FIRST, LAST))
     lags = range(first, last + 1, max(1, round(period / LAGS)))
     counts = away_from_reversals(rows) > 0.0
-    values, there = _evenly(np.where(counts, residual, 0.0), counts, rows)
-    power = _autocovariance(values, there, 0)
-    later = np.array([_autocovariance(values, there, lag) for lag in lags])
+    values = np.where(counts, residual, 0.0)
+    power = _autocovariance(values, counts, rows.at, 0)
+    later = np.array([_autocovariance(values, counts, rows.at, lag) for lag in lags])
     with np.errstate(divide="ignore", invalid="ignore"):
-        independent = np.count_nonzero(there, axis=0) * min(1.0, 2.0 / period)
+        independent = np.count_nonzero(counts, axis=0) * min(1.0, 2.0 / period)
         squares = np.mean(later**2, axis=0) - power**2 / independent
         found = np.maximum(squares, 0.0) ** 0.25
     return np.where(independent >= FEWEST, found, np.nan)
 
 
-def _evenly(values: Array, counts: Marks, rows: Rows) -> tuple[Array, Marks]:
-    """Values and marks (samples, joints) with a place for each sample that is left out."""
-    samples, joints = int(rows.at[-1] - rows.at[0]) + 1, values.shape[1]
-    filled, there = np.zeros((samples, joints)), np.zeros((samples, joints), dtype=np.bool_)
-    filled[rows.at - rows.at[0]], there[rows.at - rows.at[0]] = values, counts
-    return filled, there
-
-
-def _autocovariance(values: Array, there: Marks, lag: int) -> Array:
+def _autocovariance(values: Array, counts: Marks, at: Numbers, lag: int) -> Array:
     """The mean product (joints) of values this many samples apart; 0 where there are none."""
-    end = len(values) - lag
-    pairs = np.count_nonzero(there[lag:] & there[: max(end, 0)], axis=0) if end > 0 else 0
-    sums = np.sum(values[lag:] * values[: max(end, 0)], axis=0) if end > 0 else 0.0
-    return np.asarray(sums / np.maximum(pairs, 1))
+    later = np.searchsorted(at, at + lag)
+    first = np.flatnonzero(at[np.minimum(later, len(at) - 1)] == at + lag)
+    then = later[first]
+    pairs = np.count_nonzero(counts[then] & counts[first], axis=0)
+    return np.asarray(np.sum(values[then] * values[first], axis=0) / np.maximum(pairs, 1))
