@@ -136,6 +136,7 @@ def trajgen(
       scarid trajgen --robot arm.toml --optimise -o reference.parquet
       scarid trajgen --robot scara2 --seed 1 --expected errors.csv -o reference.parquet
       scarid trajgen --robot arm.toml --optimise --after parameters.parquet -o next.parquet
+      scarid trajgen --robot arm.urdf --optimise --for payload -o weigh.parquet
 
     The motion starts and ends at rest at the home position and stays within the limits on position,
     velocity and acceleration, which are those of the robot's description unless an option narrows
@@ -156,7 +157,7 @@ def trajgen(
         segment: Shortest and longest time between via points [s]; short for --set shortest=SHORTEST --set longest=LONGEST. [default: 0.8 2.0]
         sequential: Move one joint at a time, as in the paper; short for --excitation sequential.
         via: Take the via points from a table with columns t, q1, q2, ... instead of random ones.
-        home: Position at which the motion starts and ends [rad or m]. [default: zero where the limits allow it, else the middle between them]
+        home: Position at which the motion starts and ends [rad or m]. [default: zero in the middle half of the limits, else their middle]
         approach: Begin with a slow motion from this posture to the home position [rad or m].
         repeat: How often the motion is repeated.
         rate: Rows per second [Hz].
@@ -167,7 +168,7 @@ def trajgen(
         workspace: Box that the tool must not leave, in the frame of the base [m]. Needs --optimise.
         optimise: Find the best motion; see --criterion.
         criterion: What makes a motion the best: a small volume of the error ellipsoid (d), small errors of the torques that parameters stand for (a), a small condition number of W (c) or of its scaled columns (scaled-c), or d and c in equal parts (balanced). Needs --optimise. [default: balanced; d with --for]
-        for_: Optimise the errors of these parameters alone, the others being nuisance parameters. Needs --optimise.
+        for_: Optimise the errors of these parameters alone, the others being nuisance parameters; or those of the gains of the torques beside one another (`identify --free-gains`); or those of a payload (`payload`). Needs --optimise.
         after: A parameter table of earlier experiments, which the motion is to complement.
         budget: Time for the random starts of --optimise. Needs --optimise. [default: 10]
         starts: Number of random starts instead of a time, which gives the same motion each time. Needs --optimise. [default: as many as --budget allows]

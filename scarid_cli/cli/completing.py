@@ -118,6 +118,14 @@ def parameters(context: click.Context, parameter: click.Parameter, incomplete: s
     return _listed(names, incomplete)
 
 
+def aims(context: click.Context, parameter: click.Parameter, incomplete: str) -> Items:
+    """What a motion can be planned for: parameters of the robot, or one of the two words."""
+    from scarid_cli.algorithms.design.aims import AIMS
+
+    words = matching(list(AIMS), incomplete)
+    return [*words, *parameters(context, parameter, incomplete)]
+
+
 def columns(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> Items:
     """The columns of the first table that the line names."""
     return _listed(_columns_of_line(), incomplete)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from scarid_cli.cli.job import Job, per_joint
 from scarid_cli.cli.progress import steps
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import design as stage
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.design.aims import Aim
 
 BALANCED, DEFAULT_BUDGET = "balanced", 10.0
 ONLY_OPTIMISED = ("criterion", "wanted", "budget", "starts", "workspace")
@@ -78,16 +81,16 @@ def optimised(
     if not hasattr(excitation, "basis"):
         raise UsageFault("--optimise: the excitation must be spline or fourier")
     from scarid_cli.algorithms.design.criteria import goal
-    from scarid_cli.algorithms.design.model import Model
     from scarid_cli.algorithms.design.problem import Wanted, margins
     from scarid_cli.algorithms.design.search import search
 
-    some = _indices(robot, given["wanted"])
+    aim, some = _wanted(robot, given)
     criterion = given["criterion"] or ("d" if some else BALANCED)
-    goal(criterion, np.eye(len(robot.parameters)), some)  # refused before other processes start
+    limits.require_room(home)
+    goal(criterion, np.eye(aim.columns), some)  # refused before other processes start
     laws = stage.laws(robot, home, _box(given["workspace"]))
     wanted = Wanted(
-        Model.of(robot),
+        aim.model,
         excitation.basis(limits, given["duration"]),
         home,
         limits,
@@ -95,7 +98,7 @@ def optimised(
         criterion,
         np.ones(len(home)) if wish.noise is None else wish.noise,
         given["rate"] * given["repeat"],
-        wish.known,
+        np.zeros((aim.columns, aim.columns)) if aim.wanted else wish.known,
         some,
     )
     budget = given["budget"] or DEFAULT_BUDGET
@@ -107,12 +110,26 @@ def optimised(
     return Found(best.curve, best.starts, limited)
 
 
-def _indices(robot: Robot, names: str | None) -> tuple[int, ...]:
-    wanted: Sequence[str] = [name.strip() for name in names.split(",")] if names else []
-    for name in wanted:
+def _wanted(robot: Robot, given: dict[str, Any]) -> tuple[Aim, tuple[int, ...]]:
+    """What --for names: the columns of a motion's information, and which of them are wanted."""
+    from scarid_cli.algorithms.design.aims import AIMS, Aim
+    from scarid_cli.algorithms.design.model import Model
+
+    wish = given["wanted"]
+    if wish in AIMS:
+        if given["after"]:
+            raise UsageFault(f"--for {wish}: --after complements parameters; leave it out")
+        aim = AIMS[wish](robot)
+        return aim, tuple(range(aim.wanted))
+    names: Sequence[str] = [name.strip() for name in wish.split(",")] if wish else []
+    for name in names:
         if name not in robot.names:
-            raise UsageFault(f"--for: no parameter {name!r}; there are {', '.join(robot.names)}")
-    return tuple(robot.names.index(name) for name in wanted)
+            raise UsageFault(
+                f"--for: no parameter {name!r}; there are {', '.join(robot.names)}, and alone "
+                f"{' or '.join(AIMS)}"
+            )
+    parameters = Aim(Model.of(robot), len(robot.parameters), 0)
+    return parameters, tuple(robot.names.index(name) for name in names)
 
 
 def _box(numbers: tuple[float, ...] | None) -> tuple[float, ...] | None:

@@ -57,8 +57,8 @@ from scarid_cli.cli.options import NUMBERS
 @click.option(
     "--home",
     type=NUMBERS,
-    help="Position at which the motion starts and ends [rad or m].  [default: zero where the "
-    "limits allow it, else the middle between them]",
+    help="Position at which the motion starts and ends [rad or m].  [default: zero in the "
+    "middle half of the limits, else their middle]",
 )
 @click.option(
     "--approach",
@@ -106,10 +106,11 @@ from scarid_cli.cli.options import NUMBERS
 @click.option(
     "--for",
     "wanted",
-    metavar="NAME,...",
-    shell_complete=options.offered("parameters"),
-    help="Optimise the errors of these parameters alone, the others being nuisance parameters.  "
-    "Needs --optimise.",
+    metavar="NAME,...|gains|payload",
+    shell_complete=options.offered("aims"),
+    help="Optimise the errors of these parameters alone, the others being nuisance parameters; or "
+    "those of the gains of the torques beside one another (`identify --free-gains`); or those of a "
+    "payload (`payload`).  Needs --optimise.",
 )
 @click.option(
     "--after",
@@ -162,6 +163,7 @@ def command() -> None:
       scarid trajgen --robot arm.toml --optimise -o reference.parquet
       scarid trajgen --robot scara2 --seed 1 --expected errors.csv -o reference.parquet
       scarid trajgen --robot arm.toml --optimise --after parameters.parquet -o next.parquet
+      scarid trajgen --robot arm.urdf --optimise --for payload -o weigh.parquet
 
     The motion starts and ends at rest at the home position and stays within the limits on position,
     velocity and acceleration, which are those of the robot's description unless an option narrows

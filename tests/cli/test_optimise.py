@@ -177,6 +177,11 @@ def test_expected_errors_of_a_random_motion(scarid: Run, tmp_path: Path) -> None
         (("--optimise", "--excitation", "quintic"), "the excitation must be spline or fourier"),
         (("--optimise", "--for", "ZZ9"), "--for: no parameter 'ZZ9'; there are ZZ1R, Fv1"),
         (("--optimise", "--for", "ZZ2", "--criterion", "c"), "has no form for some parameters"),
+        (("--optimise", "--for", "gains", "--criterion", "c"), "has no form for some parameters"),
+        (("--optimise", "--for", "payload"), "has no URDF, so its flange is not known"),
+        (("--optimise", "--for", "ZZ2,gains"), "and alone gains or payload"),
+        (("--optimise", "--for", "gains", "--robot", "emps"), "the gain of its only joint"),
+        (("--optimise", "--home", "0,1.5"), "--home: joint 2 stands at a limit of -1.5 to 1.5"),
         (("--optimise", "--workspace", "0,1,0,1"), "--workspace: give XMIN,XMAX,YMIN,YMAX"),
         (("--optimise", "--workspace", "0,1,0,1,0,1"), "has no URDF, so its tool is not known"),
         (("--torque-noise", "0"), "--torque-noise must be positive"),
@@ -189,7 +194,58 @@ def test_what_cannot_be_optimised_is_refused(
     refused(scarid("trajgen", *words), 2, message)
 
 
+def test_an_aim_has_no_earlier_experiments(before: Path, scarid: Run) -> None:
+    result = scarid(*SHORT, "--for", "gains", "--after", before)
+    refused(result, 2, "--for gains: --after complements parameters; leave it out")
+
+
 def test_a_table_without_covariance_is_refused(before: Path, scarid: Run, tmp_path: Path) -> None:
     assert scarid("convert", before, "-o", tmp_path / "before.csv").status == 0
     result = scarid(*SHORT, "--after", tmp_path / "before.csv")
     refused(result, 65, "no covariance of the estimates", "identify -o parameters.parquet")
+
+
+GAIN = re.compile(r"joint (\d) \+-([\d.]+) %")
+
+
+def test_a_motion_for_the_gains_tells_them_better_than_another(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    """The half intervals that `identify --free-gains` states, beside those that are predicted."""
+
+    def stated(name: str, *words: str) -> tuple[float, float]:
+        """Of one joint beside the other [%]: predicted (or nan), and of a simulated log."""
+        out, log, found = (tmp_path / f"{name}-{x}.parquet" for x in ("motion", "log", "found"))
+        planned = scarid("trajgen", *words, "--duration", 5, "-o", out)
+        assert planned.status == 0, planned.err
+        assert scarid("simulate", "-q", "--seed", 1, out, "-o", log).status == 0
+        result = scarid("identify", "-q", "--free-gains", 2, log, "-o", found)
+        assert result.status == 0, result.err
+        extra = json.loads(pq.read_schema(found).metadata[b"scarid"])["extra"]
+        ((_, error),) = extra["relative_gains"].values()
+        told = GAIN.search(planned.err)
+        return float(told[2]) if told else float("nan"), 196.0 * error
+
+    aimed = ("--optimise", "--starts", "2", "--for", "gains")
+    predicted, half = stated("aimed", *aimed)
+    assert 0.8 < half / predicted < 3.0  # accelerations from encoders are noisy too
+    assert half < 0.75 * stated("random", "--seed", "3")[1]
+
+
+def test_a_motion_for_a_payload_says_how_well_it_will_weigh(
+    scarid: Run, samples: Path, tmp_path: Path
+) -> None:
+    pytest.importorskip("pinocchio")
+    words = ("--robot", samples / "robots/ur10e.toml", "-o", tmp_path / "motion.parquet")
+    result = scarid(*SHORT, *words, "--for", "payload")
+    assert result.status == 0, result.err
+    found = re.search(
+        r"predicted for 1 kg in the origin of tool, and the bare robot moved alike: "
+        r"mass \+-([\d.]+) kg, centre \+-([\d.]+) m, inertia \+-([\d.]+) kg m2",
+        result.err,
+    )
+    assert found, result.err
+    mass, centre, inertia = (float(x) for x in found.groups())
+    assert 1e-3 < mass < 0.1
+    assert centre < 0.05
+    assert inertia < 0.1

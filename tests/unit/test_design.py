@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
+from scarid_cli.algorithms.changes.payload import directions
 from scarid_cli.algorithms.design import criteria
+from scarid_cli.algorithms.design.aims import AIMS
 from scarid_cli.algorithms.design.constraints import Along, Constraint, Kinematic, Law, Torque
 from scarid_cli.algorithms.design.geometry import Apart, Workspace
 from scarid_cli.algorithms.design.information import Samples
@@ -291,3 +293,49 @@ def test_a_parameter_that_no_row_depends_on_is_unknown() -> None:
     assert set(unknown(errors, robot.parameters)) >= {"ZZ1R", "Fv1", "Fs1"}
     assert np.isinf(errors[[0, 1, 2]]).all()
     assert np.isfinite(errors[robot.names.index("Fs2")])
+
+
+AIMED = [
+    *((name, "gains") for name in ROBOTS if len(load(name).joints) > 1),
+    (UR10E, "payload"),
+]
+
+
+@pytest.mark.parametrize(("name", "aim"), AIMED)
+def test_the_gradient_of_an_aim_is_its_slope(name: str, aim: str) -> None:
+    robot = load(name)
+    found = AIMS[aim](robot)
+    motion = np.array(motion_of(len(robot.joints), 0.3, 6))
+    columns = found.model.regressor(tuple(motion))  # type: ignore[arg-type]
+    assert columns.shape[2] == found.columns
+    G = np.random.default_rng(0).standard_normal(columns.shape)
+    pulled = found.model.gradient(tuple(motion), G)  # type: ignore[arg-type]
+    for signal in range(3):
+        for joint in range(len(robot.joints)):
+            step = np.zeros_like(motion)
+            step[signal, joint] = STEP
+            ahead, behind = (found.model.regressor(tuple(motion + s * step)) for s in (1.0, -1.0))  # type: ignore[arg-type]
+            slope = ((ahead - behind) * G).sum(axis=(1, 2)) / (2.0 * STEP)
+            np.testing.assert_allclose(pulled[signal][joint], slope, rtol=1e-5, atol=1e-3)
+
+
+def test_the_gains_are_those_of_joints_whose_torques_are_scaled() -> None:
+    """A small gain of joint 2 moves the torques along its column, and no other."""
+    robot = load("planar2-gravity")
+    q, dq, ddq = motion_of(2, 1.0)
+    found = AIMS["gains"](robot).model.regressor((q, dq, ddq))
+    torques = Model.of(robot).regressor((q, dq, ddq)) @ robot.apriori
+    np.testing.assert_allclose(found[:, 1, 0], torques[:, 1])
+    np.testing.assert_array_equal(found[:, 0, 0], 0.0)
+
+
+def test_a_payload_moves_the_torques_along_its_wanted_columns() -> None:
+    """Whatever the body: the columns that are wanted span what it adds to the torques."""
+    robot = load(UR10E)
+    aim = AIMS["payload"](robot)
+    motion = motion_of(6, 0.5)
+    columns = aim.model.regressor(motion)[:, :, : aim.wanted].reshape(-1, aim.wanted)
+    body = np.array([0.3, 0.01, -0.02, 0.25, 0.03, 0.2, 0.1, -0.2, 0.15, 2.0])
+    more = robot.regressor(*motion) @ (directions(robot) @ body)
+    left = np.linalg.lstsq(columns, np.ravel(more), rcond=None)[0]
+    np.testing.assert_allclose(columns @ left, np.ravel(more), atol=1e-9 * np.abs(more).max())

@@ -125,11 +125,17 @@ def test_a_quintic_is_at_rest_at_every_via_point(box: Limits, seed: int) -> None
 
 @pytest.mark.parametrize(
     ("lower", "upper", "home"),
-    [(-1.0, 2.0, 0.0), (0.0, 0.04, 0.0), (-3.0, -1.0, -2.0), (1.0, 1.5, 1.25)],
+    [
+        (-1.0, 2.0, 0.0),
+        (-3.2, 1.0, -1.1),  # zero is nearer to a limit than a quarter of the interval
+        (0.0, 0.04, 0.02),
+        (-3.0, -1.0, -2.0),
+        (1.0, 1.5, 1.25),
+        (-np.inf, np.inf, 0.0),
+        (0.0, np.inf, 0.0),
+    ],
 )
-def test_home_is_zero_where_it_is_allowed_and_else_the_middle(
-    lower: float, upper: float, home: float
-) -> None:
+def test_home_is_zero_or_the_middle(lower: float, upper: float, home: float) -> None:
     joint = Joint("revolute", lower, upper, velocity_limit=1.0, acceleration_limit=1.0)
     assert Limits.of([joint]).home.tolist() == [home]
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.design.aims import Columns
 from scarid_cli.algorithms.design.criteria import Goal
-from scarid_cli.algorithms.design.model import Model, Motion
+from scarid_cli.algorithms.design.model import Motion
 from scarid_cli.algorithms.trajectories.curve import Basis
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.arrays import Array
@@ -39,14 +40,14 @@ class Samples:
 
 @dataclass(frozen=True)
 class Experiment:
-    """What is to be known: the model, the noise of its torques, and what is known already.
+    """What is to be known: columns, the noise of torques, and what is known already.
 
     `weights` (joints) are the information of one sample, 1 / variance, times the samples of the
     log for each one that is computed here. `known` and `known_moments` (parameters, parameters)
     are the information from earlier experiments, and the same for torques of unit noise.
     """
 
-    model: Model
+    model: Columns
     goal: Goal
     weights: Array
     known: Array
@@ -66,8 +67,8 @@ class Experiment:
         return value, samples.pulled(self.model.gradient(motion, G.reshape(W.shape)))
 
 
-def typical_moments(model: Model, limits: Limits) -> Array:
-    """The mean of W'W over random states within the limits (parameters, parameters).
+def typical_moments(model: Columns, limits: Limits) -> Array:
+    """The mean of W'W over random states within the limits (columns, columns).
 
     The states are always the same.
     """

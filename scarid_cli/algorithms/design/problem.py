@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.design.aims import Columns
 from scarid_cli.algorithms.design.constraints import Along, Constraint, Kinematic, Law
 from scarid_cli.algorithms.design.criteria import NEGLIGIBLE, TINY, goal
 from scarid_cli.algorithms.design.information import Experiment, Samples, typical_moments
 from scarid_cli.algorithms.design.lagrangian import minimised
-from scarid_cli.algorithms.design.model import Model
 from scarid_cli.algorithms.trajectories.curve import Basis, Curve, instants, random_curve, room
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.arrays import Array
@@ -35,7 +35,7 @@ class Wanted:
     indices of the parameters that are wanted, all others being nuisance parameters.
     """
 
-    model: Model
+    model: Columns
     basis: Basis
     home: Array
     limits: Limits

@@ -34,11 +34,24 @@ class Limits:
 
     @property
     def home(self) -> Array:
-        """Zero where it lies within the limits, else the middle of the interval (joints)."""
-        has_zero = (self.lower <= 0.0) & (self.upper >= 0.0)
-        lower, upper = (np.where(has_zero, 0.0, x) for x in (self.lower, self.upper))
-        home: Array = 0.5 * (lower + upper)
+        """Zero where it lies in the middle half of the interval, else the middle (joints).
+
+        At zero near a limit, as that of a joint which folds to one side, there would be no room.
+        """
+        with np.errstate(invalid="ignore"):  # there may be no limits
+            middle, length = 0.5 * (self.lower + self.upper), self.upper - self.lower
+        aside = np.isfinite(middle) & (np.abs(middle) > 0.25 * length)
+        home: Array = np.where(aside, middle, 0.0)
         return home
+
+    def require_room(self, home: Array) -> None:
+        """Refuse a home position at a limit, from which a joint could move to one side only."""
+        room = np.minimum(np.abs(home - self.lower), np.abs(self.upper - home))
+        for joint in np.flatnonzero(room <= TOLERANCE).tolist():
+            raise UsageFault(
+                f"--home: joint {joint + 1} stands at a limit of {self.interval(joint)}; give a "
+                "position with room on both sides"
+            )
 
     def within(self, other: Limits) -> Limits:
         """The limits that keep both."""

@@ -55,6 +55,7 @@ def run(
         return
     prediction = Prediction.of(trajectory, arm, rate, wish.noise, wish.known, treatment)
     _tell(job, _about(arm, trajectory), found, prediction)
+    _tell_aim(job, prediction, given)
     if side:
         job.write(job.recorded(prediction.table(replace(meta, period=None))), side)
 
@@ -70,6 +71,16 @@ def _tell(job: Job, about: str, found: Found | None, prediction: Prediction) -> 
     if found:
         job.say(f"limited by: {found.limited}")
     job.say(prediction.summary)
+
+
+def _tell_aim(job: Job, prediction: Prediction, given: dict[str, Any]) -> None:
+    """Say what the motion will tell about the gains or a payload, if that was asked for."""
+    if given["wanted"] and prediction.noise is not None:
+        from scarid_cli.stages.aims import PREDICTED
+
+        if given["wanted"] in PREDICTED:
+            tell = PREDICTED[given["wanted"]]
+            job.say(tell(prediction.robot, prediction.fitted, prediction.noise))
 
 
 def _require_moderate(rate: float, duration: float, times: int) -> None:
