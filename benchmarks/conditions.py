@@ -210,8 +210,13 @@ def trajectory(robot: Robot, seed: int, condition: Condition) -> Table:
     return tabulate(motion, robot, REFERENCE, meta)
 
 
-def log(robot: Robot, condition: Condition, seed: int, *, truth: bool = False) -> Table:
-    """The simulated measurement, at a constant rate, with the true signals if asked for."""
+def log(
+    robot: Robot, condition: Condition, seed: int, *, truth: bool = False, noise: int | None = None
+) -> Table:
+    """The simulated measurement, at a constant rate, with the true signals if asked for.
+
+    `seed` is that of the motion, and of the noise if `noise` gives no other.
+    """
     joints = len(robot.joints)
     sizes = {
         "coulomb": tuple(abs(robot.value("coulomb", i + 1)) for i in range(joints)),
@@ -230,7 +235,7 @@ def log(robot: Robot, condition: Condition, seed: int, *, truth: bool = False) -
     loop = ClosedLoop(
         robot=condition.built(robot) if condition.built else robot,
         law=law(robot, None, None, kp=None, kd=None, ki=None),
-        seed=seed,
+        seed=seed if noise is None else noise,
         control_rate=CONTROL,
         substeps=2,
         **building.in_the_loop(known, robot.joints, CONTROL),

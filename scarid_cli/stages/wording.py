@@ -216,6 +216,8 @@ def _order(found: Sequence[dict[Key, _Column]], joints: Sequence[str]) -> list[K
         first, second = (next(iter(own.values())).name for own in found)
         raise Unclear(f"{first} and {second} seem to be of different joints")
     wanted = [tuple(word for word in _read(joint).words if word not in PLAIN) for joint in joints]
+    if moved := _counted_otherwise(common, wanted):
+        return moved
     for own in found:
         lacking = [joint for joint, key in zip(joints, wanted, strict=True) if key not in own]
         if len(lacking) < len(joints) and lacking:
@@ -230,6 +232,25 @@ def _order(found: Sequence[dict[Key, _Column]], joints: Sequence[str]) -> list[K
     if common and wanted and not numbers:
         raise Unclear(f"they have none of the joints {', '.join(joints)}")
     return [numbers[number] for number in order] or common
+
+
+def _counted_otherwise(common: Sequence[Key], wanted: Sequence[Key]) -> list[Key]:
+    """All joints in order, where columns count them from 0 and the robot from 1, or reversely.
+
+    Unclear if columns from 0 are more than the joints from 1: the first may be another axis.
+    """
+    columns, own = _numbers(common), _numbers(wanted)
+    first, base = min(columns, default=None), min(own, default=None)
+    in_order = [*own] == sorted(own) and {first, base} == {0, 1}
+    if not in_order or sorted(columns) != [*range(min(columns), min(columns) + len(columns))]:
+        return []
+    if first == 0 and len(columns) > len(own):
+        first_ones = ",".join(str(number) for number in range(len(own)))
+        raise Unclear(
+            f"{len(columns)} joints are numbered from 0, and those of the robot from 1 to "
+            f"{max(own)} (--joints {first_ones} takes the first ones)"
+        )
+    return [columns[number] for number in sorted(columns)] if len(columns) == len(own) else []
 
 
 def _numbers(keys: Sequence[Key]) -> dict[int, Key]:

@@ -115,6 +115,11 @@ def test_joints_with_names_are_in_the_order_of_the_robot() -> None:
             ("rail", "a", "b"),
             "there is a_tau, b_tau, but none of rail",
         ),
+        (
+            "t pos_0 pos_1 pos_2 tau_0 tau_1 tau_2",
+            ("joint1", "joint2"),
+            r"from 0, and those of the robot from 1 to 2 \(--joints 0,1 takes the first ones\)",
+        ),
     ],
 )
 def test_what_is_unclear_is_not_guessed(header: str, joints: tuple[str, ...], why: str) -> None:
@@ -163,16 +168,24 @@ def test_many_columns_are_told_in_short() -> None:
         *(st.sampled_from(["{}_{{}}", "joint{{}}_{}", "{}[{{}}]", "/state/{}{{}}"]),) * 2
     ),
     words=st.tuples(st.sampled_from(["position", "Pos", "q"]), st.sampled_from(["effort", "Tau"])),
+    named=st.sampled_from([None, 0, 1]),
     order=st.randoms(use_true_random=False),
 )
 def test_numbered_joints_keep_their_order_however_the_columns_lie(
-    joints: int, first: int, forms: tuple[str, str], words: tuple[str, str], order: object
+    joints: int,
+    first: int,
+    forms: tuple[str, str],
+    words: tuple[str, str],
+    named: int | None,
+    order: object,
 ) -> None:
+    """Whether the robot's joints have no names, or are counted from 0 or 1."""
     numbers = range(first, first + joints)
     own = [[f.format(w).format(k) for k in numbers] for f, w in zip(forms, words, strict=True)]
     columns = ["time", *own[0], *own[1]]
     order.shuffle(columns)  # type: ignore[attr-defined]
-    found = in_words(columns, (), ())
+    robot = [] if named is None else [f"arm_joint{named + k}" for k in range(joints)]
+    found = in_words(columns, (), robot)
     assert isinstance(found, Recognised)
     for name, expected in zip(("q", "tau"), own, strict=True):
         assert [found.columns[f"{name}{i}"] for i in range(1, joints + 1)] == expected

@@ -71,6 +71,7 @@ def run(
 
         read = _signals(table, columns, arm)
         table = without_leaps(table, read, unwrap=unwrap, despike=despike, report=job.notes)
+    job.say_notes()  # before a next command may end the pipe for what is noted
     job.write(job.recorded(job.within(_adapted(table, columns, rate, arm))))
 
 
