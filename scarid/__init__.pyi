@@ -780,6 +780,7 @@ def report(
 def urdf(
     *tables: TableLike,
     parameters: TableLike | None = None,
+    robot: TableLike | None = None,
     output: Values | None = None,
     base: Values | None = None,
     motion: TableLike | None = None,
@@ -796,12 +797,12 @@ def urdf(
       scarid urdf --parameters p.parquet --motion motion.parquet arm.toml -o identified.urdf
       scarid urdf --parameters p.parquet --base near.csv arm.toml -o identified.urdf
 
-    ROBOT is the URDF, or the TOML file that names it. Identified base parameters may belong to no
-    real robot: a mass may come out negative, for example. This command computes physically
-    consistent link inertias from them: positive masses and positive definite pseudo-inertias
-    (Wensing, Kim, Slotine 2018), at the smallest Mahalanobis distance from the estimates. Of all
-    such bodies it takes those closest to the bodies of the URDF. Parameters that `identify
-    --essential` dropped stay at zero where positive masses allow it.
+    ROBOT is the URDF, or the TOML file that names it, as with --robot. Identified base parameters
+    may belong to no real robot: a mass may come out negative, for example. This command computes
+    physically consistent link inertias from them: positive masses and positive definite
+    pseudo-inertias (Wensing, Kim, Slotine 2018), at the smallest Mahalanobis distance from the
+    estimates. Of all such bodies it takes those closest to the bodies of the URDF. Parameters that
+    `identify --essential` dropped stay at zero where positive masses allow it.
 
     The covariance of the estimates comes with a Parquet or Arrow table. CSV has none; the
     correlations are then neglected, which can ruin the prediction of torques: check with --motion.
@@ -812,6 +813,7 @@ def urdf(
 
     Options:
         parameters: The parameter table of `scarid identify --robot ROBOT`; in Parquet or Arrow it carries the covariance of the estimates.
+        robot: The robot: scara2, emps, planar2-gravity, or a .toml or .urdf file. [default: the robot named in the table's metadata, else $SCARID_ROBOT, else scara2]
         output: Write the URDF to FILE. [default: standard output]
         base: Write the base parameters of the new bodies as a table.
         motion: Report R2 per joint on this motion, of the identified and of the consistent parameters. Give the options below as they were given to identify.

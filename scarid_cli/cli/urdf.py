@@ -9,13 +9,14 @@ from scarid_cli.cli.declare import declare
 
 
 @declare("urdf")
-@click.argument("robot", metavar="ROBOT", type=options.ROBOT)
+@click.argument("description", metavar="[ROBOT]", required=False, type=options.ROBOT)
 @options.input_file(
     "--parameters",
     required=True,
     help="The parameter table of `scarid identify --robot ROBOT`; in Parquet or Arrow it carries "
     "the covariance of the estimates.",
 )
+@options.robot
 @click.option(
     "--output",
     "-o",
@@ -41,12 +42,12 @@ def command() -> None:
       scarid urdf --parameters p.parquet --motion motion.parquet arm.toml -o identified.urdf
       scarid urdf --parameters p.parquet --base near.csv arm.toml -o identified.urdf
 
-    ROBOT is the URDF, or the TOML file that names it. Identified base parameters may belong to no
-    real robot: a mass may come out negative, for example. This command computes physically
-    consistent link inertias from them: positive masses and positive definite pseudo-inertias
-    (Wensing, Kim, Slotine 2018), at the smallest Mahalanobis distance from the estimates. Of all
-    such bodies it takes those closest to the bodies of the URDF. Parameters that `identify
-    --essential` dropped stay at zero where positive masses allow it.
+    ROBOT is the URDF, or the TOML file that names it, as with --robot. Identified base parameters
+    may belong to no real robot: a mass may come out negative, for example. This command computes
+    physically consistent link inertias from them: positive masses and positive definite
+    pseudo-inertias (Wensing, Kim, Slotine 2018), at the smallest Mahalanobis distance from the
+    estimates. Of all such bodies it takes those closest to the bodies of the URDF. Parameters that
+    `identify --essential` dropped stay at zero where positive masses allow it.
 
     The covariance of the estimates comes with a Parquet or Arrow table. CSV has none; the
     correlations are then neglected, which can ruin the prediction of torques: check with --motion.

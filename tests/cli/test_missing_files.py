@@ -17,7 +17,7 @@ from scarid_cli.io.bytesource import ByteSource
 
 Run = Callable[..., Result]
 # What a command line needs besides the option that is tried.
-REQUIRED = {"validate": ["--parameters"], "urdf": ["ROBOT", "--parameters"], "resample": ["--rate"]}
+REQUIRED = {"validate": ["--parameters"], "urdf": ["--parameters"], "resample": ["--rate"]}
 
 
 def commands() -> Iterator[tuple[list[str], click.Command]]:
@@ -48,13 +48,13 @@ CASES = [
 def line(words: list[str], parameter: click.Parameter, path: Path, samples: Path) -> list[object]:
     """A command line with this path, and everything else that the command requires."""
     log = samples / "scara2.csv"
-    given = {"--parameters": samples / "scara2.parameters.csv", "--rate": 100, "ROBOT": "emps"}
+    given = {"--parameters": samples / "scara2.parameters.csv", "--rate": 100}
     option = [] if isinstance(parameter, click.Argument) else [max(parameter.opts, key=len)]
     own = option[0] if option else (parameter.metavar or "")
     more: list[object] = []
     for name in REQUIRED.get(words[0], []):
         if name != own:
-            more += [name, given[name]] if name.startswith("--") else [given[name]]
+            more += [name, given[name]]
     takes_log = words[0] not in ("trajgen", "urdf", "robot") and bool(option)
     return [*words, *more, *option, path, *([log] if takes_log else [])]
 

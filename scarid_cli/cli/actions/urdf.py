@@ -6,7 +6,6 @@ from typing import Any
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.files import text_of
-from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.treatment import for_motion, for_robot, treatment_of
@@ -18,8 +17,9 @@ from scarid_cli.stages.estimates import estimates_with_covariance
 def run(
     job: Job,
     *,
-    robot: str,
+    description: str | None,
     parameters: str,
+    robot: str | None,
     place: str,
     base: str | None,
     motion: str | None,
@@ -30,15 +30,17 @@ def run(
     rows = given["smooth_sign"] or given["all_rows"] or given["bandwidth"]
     if not motion and (treatment != Treatment() or rows):
         raise UsageFault("options for the rows of a motion need --motion FILE")
-    arm = load(job.described(robot))
-    if not arm.body:
-        raise UsageFault(f"{robot}: has no URDF to write parameters into")
-    text = text_of(arm.body.path)
-    arm, treatment = for_robot(arm, treatment, given)
+    if description and robot:
+        raise UsageFault("the robot is given twice; leave out --robot")
     out, side = job.text(place), job.side_table(base)
     table = job.read(parameters, "parameters")
+    whole = job.robot(description or robot, table)
+    if not whole.body:
+        raise UsageFault(f"{whole.name}: has no URDF to write parameters into")
+    text = text_of(whole.body.path)
+    arm, treatment = for_robot(whole, treatment, given)
     identified = estimates_with_covariance(table, arm)
-    log = job.read_for(motion, "motion", robot, torques=True)[0] if motion else None
+    log = job.read_for(motion, "motion", whole, torques=True)[0] if motion else None
     found = stage.physical(identified)
     for line in stage.consistency_report(identified, found):
         job.say(line)
