@@ -23,6 +23,7 @@
 # make bench-contacts   false alarms and pushes of `validate --residual`
 # make bench-carried  pick-ups in logs: found when, false alarms, errors of the payload
 # make bench-known-load   torque constants from a load whose mass is known: within their intervals?
+# make bench-payloads  payloads of arms that are not ideal: errors, and whether intervals contain the truth
 # make bench-aims   the errors of gains and payloads by motions that are planned for them
 # make bench-coarse   the choice of a bandwidth where positions are coarse
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
@@ -50,7 +51,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-aims bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
+.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -152,6 +153,9 @@ bench-carried: $(VENV)/tested
 bench-known-load: $(VENV)/tested
 	cd benchmarks && ../$(BIN)/python known_load.py
 	cd benchmarks && ../$(BIN)/python known_load.py --free
+
+bench-payloads: $(VENV)/tested
+	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/payloads.py --runs 66
 
 bench-aims: $(VENV)/tested
 	$(BIN)/python benchmarks/aims.py --seeds 6

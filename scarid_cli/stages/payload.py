@@ -20,6 +20,11 @@ from scarid_cli.io.table import Table, table_of
 from scarid_cli.stages.controllers import settings
 from scarid_cli.stages.estimates import Estimates
 
+OF_TORQUES = (
+    "the intervals take the logged torques for right: where they are 1 % too large, so is the mass "
+    "(`scarid gains` tells it by a load whose mass is known)"
+)
+
 
 def payload(bare: Estimates, loaded: Estimates, link: str | None) -> tuple[Payload, str]:
     """The payload in the frame of a link, by default the tool's; the name of the link."""

@@ -59,6 +59,8 @@ def run(
     job.write_or_print(result, of_payload if as_json else None)
     for line in lines:
         job.say(line)
+    if not gains_of(bare):
+        job.say(stage.OF_TORQUES)
 
 
 def _follow(
