@@ -161,3 +161,20 @@ def test_term_given_twice_is_refused(tmp_path: Path) -> None:
     path.write_text(good.replace('"coulomb"', '"viscous"'), "utf-8")
     with pytest.raises(UsageFault, match="appears twice"):
         load(str(path))
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("<mujoco model='arm'>", "a model of MuJoCo; make it a URDF first"),
+        ("<?xml version='1.0'?>\n<sdf version='1.9'>", "an SDF model; give the URDF"),
+        ("<?xml version='1.0'?>\n<robot name='arm'>", "let its name end in .urdf"),
+        ("<notes/>", "unknown robot .*or a .toml or .urdf file"),
+    ],
+)
+def test_a_model_of_another_program_is_told_for_what_it_is(
+    text: str, advice: str, tmp_path: Path
+) -> None:
+    (tmp_path / "arm.xml").write_text(text)
+    with pytest.raises(UsageFault, match=advice):
+        load(str(tmp_path / "arm.xml"))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 import tomllib
+from collections.abc import Sequence
 from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
@@ -24,6 +26,13 @@ from scarid_cli.errors import UsageFault
 ROBOTS = Path(__file__).parent
 NAMED_TERMS: dict[str, type[Term]] = {**AXIS_TERMS, **PLANAR_TERMS}  # that [[parameter]] may name
 DEFAULT_ROBOT = "scara2"
+XML, ROOT = (".xml", ".mjcf", ".sdf", ".world"), re.compile(r"<(mujoco|sdf|robot)\b")
+OTHER_MODELS = {
+    "mujoco": "a model of MuJoCo; make it a URDF first, as `pip install mjcf-urdf-simple-converter` "
+    "can",
+    "sdf": "an SDF model; give the URDF that it was made from",
+    "robot": "a URDF by another name; let its name end in .urdf",
+}
 KEYS = ("title", "joint", "parameter", "control", "coupling", "estimates", "log", "imperfections")
 
 
@@ -57,8 +66,7 @@ def _loaded(name: str) -> Robot:
         raise UsageFault(f"{name}: make it a URDF first: `xacro {shlex.quote(name)} > {urdf}`")
     known = built_in()
     if not name.endswith(".toml") and name not in known:
-        choice = ", ".join(known)
-        raise UsageFault(f"unknown robot {name!r}; choose {choice}, or a .toml or .urdf file")
+        raise UsageFault(_unknown(name, known))
     path = path_of(name)
     text = text_of(path)
     require_shallow(text)
@@ -71,6 +79,14 @@ def _loaded(name: str) -> Robot:
 def path_of(name: str) -> Path:
     """The file of a robot: that of a built-in one, or the one of this name."""
     return ROBOTS / f"{name}.toml" if name in built_in() else Path(name)
+
+
+def _unknown(name: str, known: Sequence[str]) -> str:
+    """What to do with a name that is no robot's, or with a file of another kind."""
+    root = ROOT.search(text_of(name)) if Path(name).suffix in XML and Path(name).exists() else None
+    if root:
+        return f"{name}: {OTHER_MODELS[root[1]]}"
+    return f"unknown robot {name!r}; choose {', '.join(known)}, or a .toml or .urdf file"
 
 
 def _arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
