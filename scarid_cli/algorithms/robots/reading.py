@@ -28,8 +28,7 @@ NAMED_TERMS: dict[str, type[Term]] = {**AXIS_TERMS, **PLANAR_TERMS}  # that [[pa
 DEFAULT_ROBOT = "scara2"
 XML, ROOT = (".xml", ".mjcf", ".sdf", ".world"), re.compile(r"<(mujoco|sdf|robot)\b")
 OTHER_MODELS = {
-    "mujoco": "a model of MuJoCo; make it a URDF first, as `pip install mjcf-urdf-simple-converter` "
-    "can",
+    "mujoco": "a model of MuJoCo; make it a URDF first, as mjcf-urdf-simple-converter of PyPI can",
     "sdf": "an SDF model; give the URDF that it was made from",
     "robot": "a URDF by another name; let its name end in .urdf",
 }
