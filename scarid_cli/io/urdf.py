@@ -43,7 +43,10 @@ def rewritten(
     motors: Mapping[str, tuple[float, float]] | None = None,
     table: Sequence[str] = (),
 ) -> str:
-    """The URDF with new inertias of `links` by name, None to remove one, and a comment (`remark`).
+    """The URDF with new inertias of `links` by name, and a comment (`remark`).
+
+    A link with None has no mass of its own: it is written as such, because a simulator may give a
+    link without <inertial> 1 kg, or what its volume would weigh.
 
     `friction` has the viscous [N m s/rad or N s/m] and the Coulomb friction [N m or N] by the name
     of the joint, `motors` the inertia that the joint feels [kg m2 or kg] and the gear ratio. The
@@ -122,10 +125,7 @@ def _append(robot: ElementTree.Element, element: Any) -> None:
 
 
 def _set_inertial(link: ElementTree.Element, inertial: Inertial | None) -> None:
-    if inertial is None:
-        for old in link.findall("inertial"):
-            link.remove(old)
-        return
+    inertial = inertial or Inertial(0.0, np.zeros(3), np.zeros((3, 3)))
     element = _child(link, "inertial")
     xyz = " ".join(_text(x) for x in inertial.centre)
     _child(element, "origin").attrib.update(xyz=xyz, rpy="0 0 0")
