@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from scarid_cli.cli.job import Job
-from scarid_cli.io.bytesource import ByteSource, unzipped
+from scarid_cli.io.bytesource import ByteSource, unpacked
 from scarid_cli.io.foreign import ARCHIVES, TranslatedCsv, read_archive
 from scarid_cli.io.jsonio import is_json, read_json
 from scarid_cli.io.notation import Notation, notation_of
@@ -57,7 +57,7 @@ def _read(
         if left_out:
             job.notes.append(f"{file}: left out {', '.join(left_out)}, which --map does not name")
         return table
-    source = unzipped(source)
+    source = unpacked(source)
     if source.peek(4).startswith(BINARY):
         return flattened(job.read_source(source))
     if is_json(source):

@@ -12,6 +12,7 @@ from scarid_cli.io.stop import STOP
 STDIN = "<stdin>"
 CHUNK = 1 << 20
 GZIP, GZIP_BITS = b"\x1f\x8b", 31  # its first bytes, and the format as zlib knows it
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")  # how such text begins
 MAX_BATCH = 1 << 29  # bytes
 ROWS = 8  # a single row may take this part of it
 
@@ -259,6 +260,29 @@ class Unzipped(Wrapped):
                 return found
 
 
-def unzipped(source: ByteSource) -> ByteSource:
-    """The source, or its contents if it is a gzip file."""
-    return Unzipped(source) if source.peek(2) == GZIP else source
+class Reencoded(Wrapped):
+    """Text in UTF-16, as Excel and PowerShell write it, in UTF-8."""
+
+    def __init__(self, source: ByteSource) -> None:
+        import codecs
+
+        super().__init__(source)
+        self._decoder = codecs.getincrementaldecoder("utf-16")()
+        self._ready = b""
+
+    def _fetch(self, size: int) -> bytes:
+        data = b"more"
+        while data and not self._ready:
+            data = self.source.read_some(size)
+            try:
+                self._ready = self._decoder.decode(data, final=not data).encode()
+            except UnicodeError:
+                raise BadData(f"{self.name}: broken text in UTF-16; copy it again") from None
+        found, self._ready = self._ready[:size], self._ready[size:]
+        return found
+
+
+def unpacked(source: ByteSource) -> ByteSource:
+    """The source, or its contents if it is a gzip file; text in UTF-8."""
+    source = Unzipped(source) if source.peek(2) == GZIP else source
+    return Reencoded(source) if source.peek(2) in UTF_16 else source

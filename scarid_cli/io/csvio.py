@@ -46,6 +46,9 @@ OTHERS = {
     b"PK\3\4": "a workbook or another archive: save the sheet as CSV, or unpack it",
     b"\xd0\xcf\x11\xe0": "a workbook of Excel: save the sheet as CSV",
     **{bytes((0x80, version)): PICKLE for version in range(2, 6)},
+    b"BZh": "compressed by bzip2: unpack it with `bunzip2`",
+    b"\xfd7zXZ": "compressed by xz: unpack it with `unxz`",
+    b"\x28\xb5\x2f\xfd": "compressed by zstd: unpack it with `unzstd`",
     b"TDSm": "a TDMS file of LabVIEW: export it as CSV",
     b"ULog": "a log of PX4: export its topics as CSV",
 }

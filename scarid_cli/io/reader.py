@@ -12,7 +12,7 @@ import pyarrow as pa
 
 from scarid_cli.errors import bad_data
 from scarid_cli.io import schemas
-from scarid_cli.io.bytesource import ByteSource, unzipped
+from scarid_cli.io.bytesource import ByteSource, unpacked
 from scarid_cli.io.clock import clocked
 from scarid_cli.io.remedies import Remedies, Remedy, read_on
 from scarid_cli.io.selection import Lacking
@@ -26,8 +26,8 @@ ROW_MARKS = ("t", SEGMENT, "settled")  # columns that every command reads
 
 
 def open_table(source: ByteSource) -> Table:
-    """Read a table, in the format that its first bytes indicate; unzip it first if need be."""
-    source = unzipped(source)
+    """Read a table, in the format that its first bytes indicate; unpack it first if need be."""
+    source = unpacked(source)
     start = source.peek(8)
     if not start.startswith((b"PAR1", b"ARROW1", b"\xff\xff\xff\xff")):
         from scarid_cli.io.csvio import read_csv

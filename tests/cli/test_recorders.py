@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gzip
+import importlib
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,8 +14,11 @@ import pyarrow.csv
 import pyarrow.parquet
 import pytest
 from conftest import Result, refused
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from scarid_cli.cli import convert
+from scarid_cli.io.bytesource import ByteSource, unpacked
 from scarid_cli.stages.recorders import OTHER_NAMES, RECORDERS
 
 Run = Callable[..., Result]
@@ -33,10 +38,12 @@ TEXTS = {
 
 
 @pytest.mark.parametrize("kind", TEXTS)
-@pytest.mark.parametrize("name", ["log.csv", "log.csv.gz"])
+@pytest.mark.parametrize("name", ["log.csv", "log.csv.gz", "log.utf-16", "log.utf-16-be.gz"])
 def test_the_notation_is_found_and_told(kind: str, name: str, scarid: Run, tmp_path: Path) -> None:
     path = tmp_path / name
     data = TEXTS[kind].encode()
+    if "utf-16" in name:  # as Excel and PowerShell write text
+        data = f"\ufeff{TEXTS[kind]}".encode("utf-16-be" if "be" in name else "utf-16-le")
     path.write_bytes(gzip.compress(data) if name.endswith(".gz") else data)
     result = scarid("convert", path)
     assert result.status == 0, result.err
@@ -58,6 +65,31 @@ def test_the_unit_in_a_renamed_column_counts_unless_another_is_given(
     assert result.out == "t,q1,q2,q3\n0,3.141592653589793,1,2\n0.01,1.5707963267948966,2,3\n"
     assert "column 'shoulder (deg)' becomes q1, from deg as its name says" in result.err
     assert scarid(*words, "--unit", "q1=rad").out.startswith("t,q1,q2,q3\n0,180,1,2\n")
+
+
+@pytest.mark.parametrize(("module", "tool"), [("bz2", "bunzip2"), ("lzma", "unxz")])
+def test_what_is_packed_otherwise_names_its_tool(
+    module: str, tool: str, scarid: Run, tmp_path: Path
+) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes(importlib.import_module(module).compress(b"t,q1\n0,1\n"))
+    refused(scarid("check", path), 65, f"unpack it with `{tool}`")
+
+
+@settings(max_examples=50)
+@given(text=st.text(max_size=200), order=st.sampled_from(["le", "be"]), most=st.integers(1, 9))
+def test_text_in_utf_16_is_the_same_however_it_arrives(text: str, order: str, most: int) -> None:
+    data = f"\ufeff{text}".encode(f"utf-16-{order}")
+    read, write = os.pipe()
+    with os.fdopen(write, "wb") as pipe:
+        pipe.write(data)
+    source = unpacked(ByteSource(read, "log"))
+    found = b""
+    while part := source.read_some(most):
+        assert len(part) <= most
+        found += part
+    source.close()
+    assert found.decode() == text
 
 
 def test_slow_bytes_of_white_space_make_the_same_table(shell: Run) -> None:
