@@ -17,9 +17,11 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow.parquet as pq
+from payloads import GROUPS, in_the_tool
 from shells import shell
 
-from scarid_cli.arrays import Array
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.interval import HALF
 
 ROOT = Path(__file__).parent.parent
 UR10E = ROOT / "samples/robots/ur10e.toml"
@@ -30,8 +32,7 @@ PLANS = {
     "payload": "--optimise --starts 4 --for payload",
 }
 BODY = "1,0,0,0,0.004,0,0,0.004,0,0.004,0"
-GROUPS = {"mass [g]": (0, 1, 1e3), "centre [mm]": (1, 4, 1e3), "inertia [g m2]": (4, 10, 1e3)}
-HALF = 1.96
+UNITS = {"mass": "g", "centre": "mm", "inertia": "g m2"}
 
 Cells = dict[str, tuple[float, float]]
 
@@ -60,23 +61,12 @@ def case(robot: str, plan: str, seed: int) -> Cells:
     }
     values = json.loads(text)["values"]
     found = np.array([(x["estimate"], x["half_interval"]) for x in values], dtype=float)
-    true = np.array([float(x) for x in BODY.split(",")[:10]])
-    true[1:4] = centre(robot)
-    for group, (start, end, scale) in GROUPS.items():
-        away = np.sqrt(np.mean((found[start:end, 0] - true[start:end]) ** 2))
-        half = np.sqrt(np.mean(found[start:end, 1] ** 2))
-        cells[group] = (scale * away, scale * half)
+    own = load(robot.removeprefix("--robot "))
+    found[:, 0] -= in_the_tool(own, 1.0, np.zeros(3), 0.004 * np.eye(3))
+    for group, rows in GROUPS.items():
+        away, half = 1e3 * np.sqrt(np.mean(found[rows] ** 2, axis=0))
+        cells[f"{group} [{UNITS[group]}]"] = (float(away), float(half))
     return cells
-
-
-def centre(robot: str) -> Array:
-    """The origin of the last link, where the load is, in the frame of the payload [m]."""
-    from scarid_cli.algorithms.robots.reading import load
-    from scarid_cli.stages.payload import frame_of
-
-    frame, _ = frame_of(load(robot.removeprefix("--robot ")), None, "")
-    place: Array = -np.asarray(frame.turn).T @ np.asarray(frame.origin)
-    return place
 
 
 def main() -> None:

@@ -8,8 +8,8 @@ whose inertia is that of a box of 5 to 20 cm. Both logs have the same motion, th
 and other noise; they are identified blindly, and `scarid payload` says the ten values. The columns
 are the median errors of mass [%] and centre [mm], beside the medians of half the intervals; the
 share of the told intervals that contain the truth, of mass, centre and inertia; the runs that say
-nothing; and those that are `wrong`: both verdicts are good, and a value is off by more than three
-stated errors, or by as many as are as unlikely for one of ten.
+nothing; and those that are `wrong`: both verdicts are good, and a value is off by as many stated
+errors as are as rare for one of ten values as three for a single one.
 """
 
 from __future__ import annotations
@@ -62,6 +62,13 @@ def body(rng: np.random.Generator) -> tuple[float, Array, Array]:
     return mass, centre, turn @ np.diag([y + z, x + z, x + y]) @ turn.T * mass / 12.0
 
 
+def in_the_tool(robot: Robot, mass: float, centre: Array, inertia: Array) -> Array:
+    """The ten values of a body, given in the frame of the last axis, in that of the tool."""
+    frame, _ = frame_of(robot, None, "")
+    own = frame.turn.T @ inertia @ frame.turn
+    return np.array([mass, *frame.turn.T @ (centre - frame.origin), *own[np.triu_indices(3)]])
+
+
 def written(robot: Robot, condition: Condition, seed: int, noise: int, path: Path) -> None:
     """A log as people have it: a clock, positions and torques."""
     table = log(robot, condition, seed, noise=noise)
@@ -76,9 +83,7 @@ def run(name: str, condition: str, seed: int) -> Run:
     mass, centre, inertia = body(np.random.default_rng(seed))
     upper = inertia[np.triu_indices(3)]
     loaded = {**given.given, "payload": (mass, *centre, *upper, 0.0)}
-    frame, _ = frame_of(robot, None, "")
-    own = frame.turn.T @ inertia @ frame.turn
-    truth = np.array([mass, *frame.turn.T @ (centre - frame.origin), *own[np.triu_indices(3)]])
+    truth = in_the_tool(robot, mass, centre, inertia)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         described(URDFS / f"{name}.urdf", folder)
@@ -92,8 +97,8 @@ def run(name: str, condition: str, seed: int) -> Run:
                 "scarid payload --parameters known.parquet loaded.parquet --json 2> said",
             )
         except CalledProcessError:
-            said = folder / "said"
-            print(f"{name}, {condition}, {seed}: {said.read_text() if said.exists() else ''}")
+            why = (folder / "said").read_text() if (folder / "said").exists() else ""
+            print(f"{name}, {condition}, {seed}: {why}")
             nothing = np.full(10, np.nan)
             return Run(condition, mass, nothing, nothing, ("refused",))
         bare = json.loads((folder / "bare.json").read_text())["verdict"]

@@ -1,4 +1,4 @@
-"""Options that mean nothing without another one."""
+"""Options that mean nothing without another one, or say what an argument says."""
 
 from __future__ import annotations
 
@@ -12,3 +12,10 @@ def needs(owner: str, value: object, given: dict[str, object]) -> None:
     for name, stated in given.items():
         if stated is not None and value is None:
             raise UsageFault(f"{name} belongs to {owner}, which was not given")
+
+
+def the_robot(argument: str | None, option: str | None) -> str | None:
+    """The robot that ROBOT or --robot names; both are refused."""
+    if argument and option:
+        raise UsageFault("the robot is given twice; leave out --robot")
+    return argument or option

@@ -271,13 +271,14 @@ class Reencoded(Wrapped):
         self._ready = b""
 
     def _fetch(self, size: int) -> bytes:
-        data = b"more"
-        while data and not self._ready:
+        while not self._ready:
             data = self.source.read_some(size)
             try:
                 self._ready = self._decoder.decode(data, final=not data).encode()
             except UnicodeError:
                 raise BadData(f"{self.name}: broken text in UTF-16; copy it again") from None
+            if not data:
+                break
         found, self._ready = self._ready[:size], self._ready[size:]
         return found
 

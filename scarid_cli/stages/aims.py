@@ -7,6 +7,7 @@ import numpy as np
 from scarid_cli.algorithms.changes import payload
 from scarid_cli.algorithms.design.prediction import Moments, standard_errors
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.robots.physical import LENGTH, standard_of
 from scarid_cli.algorithms.robots.rigid import Frame
 from scarid_cli.algorithms.statistics.gains import KNOWN
 from scarid_cli.algorithms.statistics.sentences import joints_named
@@ -63,10 +64,8 @@ def load(robot: Robot, moments: Moments, noise: Array) -> str:
 
 def _at(frame: Frame) -> Array:
     """The standard parameters (10) of 1 kg in the origin of a frame that is fixed to the link."""
-    r = np.asarray(frame.origin, dtype=np.float64)
-    about = float(r @ r) * np.eye(3) - np.outer(r, r)
-    inertia = [float(about[pair]) for pair in payload.PAIRS]
-    return np.array([*inertia, *r, 1.0], dtype=np.float64)
+    place = np.append(frame.origin / LENGTH, 1.0)
+    return np.array(standard_of(np.outer(place, place), np.array))
 
 
 PREDICTED = {"gains": gains, "payload": load}

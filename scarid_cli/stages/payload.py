@@ -21,8 +21,8 @@ from scarid_cli.stages.controllers import settings
 from scarid_cli.stages.estimates import Estimates
 
 OF_TORQUES = (
-    "the intervals take the logged torques for right: where they are 1 % too large, so is the mass "
-    "(`scarid gains` tells it by a load whose mass is known)"
+    "the intervals assume that the logged torques are right: if they are 1 % too large, so is the "
+    "mass (a load of known mass shows this: `scarid gains`)"
 )
 
 

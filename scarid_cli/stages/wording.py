@@ -227,7 +227,7 @@ def _order(found: Sequence[dict[Key, _Column]], joints: Sequence[str]) -> list[K
         return wanted
     numbers = _numbers(common)
     order = sorted(numbers)
-    if numbers and (order[0] > 1 or order != [*range(order[0], order[0] + len(order))]):
+    if numbers and (order[0] > 1 or not _in_turn(numbers)):
         raise Unclear(f"their joints are numbered {', '.join(map(str, order))}")
     if common and wanted and not numbers:
         raise Unclear(f"they have none of the joints {', '.join(joints)}")
@@ -240,17 +240,22 @@ def _counted_otherwise(common: Sequence[Key], wanted: Sequence[Key]) -> list[Key
     Unclear if columns from 0 are more than the joints from 1: the first may be another axis.
     """
     columns, own = _numbers(common), _numbers(wanted)
-    first, base = min(columns, default=None), min(own, default=None)
-    in_order = [*own] == sorted(own) and {first, base} == {0, 1}
-    if not in_order or sorted(columns) != [*range(min(columns), min(columns) + len(columns))]:
+    if not (_in_turn(columns) and _in_turn(own) and [*own] == sorted(own)):
         return []
-    if first == 0 and len(columns) > len(own):
+    if {min(columns), min(own)} != {0, 1}:
+        return []
+    if len(columns) > len(own) and 0 in columns:
         first_ones = ",".join(str(number) for number in range(len(own)))
         raise Unclear(
             f"{len(columns)} joints are numbered from 0, and those of the robot from 1 to "
             f"{max(own)} (--joints {first_ones} takes the first ones)"
         )
     return [columns[number] for number in sorted(columns)] if len(columns) == len(own) else []
+
+
+def _in_turn(numbers: Collection[int]) -> bool:
+    """Whether there are numbers, and none between the first and the last is left out."""
+    return bool(numbers) and sorted(numbers) == [*range(min(numbers), min(numbers) + len(numbers))]
 
 
 def _numbers(keys: Sequence[Key]) -> dict[int, Key]:

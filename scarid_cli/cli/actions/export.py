@@ -14,6 +14,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.files import text_of
 from scarid_cli.algorithms.robots.physical import Physical
 from scarid_cli.algorithms.robots.reading import path_of
+from scarid_cli.cli.belonging import the_robot
 from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.job import Job
 from scarid_cli.errors import UsageFault
@@ -42,15 +43,12 @@ def run(
     base: str | None,
 ) -> None:
     """Write the model, and say what it lacks of what was identified."""
-    if description and robot:
-        raise UsageFault("the robot is given twice; leave out --robot")
+    stated = the_robot(description, robot)
     if base and kind not in OF_BODIES:
         raise UsageFault(f"--base: {kind} has no bodies of its own; it is for urdf and mjcf")
     out, side = job.text(place), job.side_table(base)
     table = job.read(parameters, "parameters")
-    source = Source(
-        job, table, list(table.batches), job.robot(description or robot, table), name, place
-    )
+    source = Source(job, table, list(table.batches), job.robot(stated, table), name, place)
     if identified(source.table, source.robot).additions:
         job.say(f"warning: what identify fitted beside the parameters is not in the {kind} file")
     out.write(WRITERS[kind](source))

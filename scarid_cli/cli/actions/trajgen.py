@@ -75,12 +75,12 @@ def _tell(job: Job, about: str, found: Found | None, prediction: Prediction) -> 
 
 def _tell_aim(job: Job, prediction: Prediction, given: dict[str, Any]) -> None:
     """Say what the motion will tell about the gains or a payload, if that was asked for."""
-    if given["wanted"] and prediction.noise is not None:
-        from scarid_cli.stages.aims import PREDICTED
+    if not given["wanted"] or prediction.noise is None:
+        return
+    from scarid_cli.stages.aims import PREDICTED
 
-        if given["wanted"] in PREDICTED:
-            tell = PREDICTED[given["wanted"]]
-            job.say(tell(prediction.robot, prediction.fitted, prediction.noise))
+    if tell := PREDICTED.get(given["wanted"]):
+        job.say(tell(prediction.robot, prediction.fitted, prediction.noise))
 
 
 def _require_moderate(rate: float, duration: float, times: int) -> None:

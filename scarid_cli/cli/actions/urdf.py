@@ -6,6 +6,7 @@ from typing import Any
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.files import text_of
+from scarid_cli.cli.belonging import the_robot
 from scarid_cli.cli.command_line import command_line
 from scarid_cli.cli.job import Job
 from scarid_cli.cli.treatment import for_motion, for_robot, treatment_of
@@ -30,11 +31,10 @@ def run(
     rows = given["smooth_sign"] or given["all_rows"] or given["bandwidth"]
     if not motion and (treatment != Treatment() or rows):
         raise UsageFault("options for the rows of a motion need --motion FILE")
-    if description and robot:
-        raise UsageFault("the robot is given twice; leave out --robot")
+    stated = the_robot(description, robot)
     out, side = job.text(place), job.side_table(base)
     table = job.read(parameters, "parameters")
-    whole = job.robot(description or robot, table)
+    whole = job.robot(stated, table)
     if not whole.body:
         raise UsageFault(f"{whole.name}: has no URDF to write parameters into")
     text = text_of(whole.body.path)
