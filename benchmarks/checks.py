@@ -22,13 +22,16 @@ from scarid_cli.stages.check import check
 from scarid_cli.stages.logs import log_of
 
 ROOT = Path(__file__).parent.parent
-UR10 = ROOT.parent / "shared" / "data" / "urdf" / "ur10.urdf"
+URDF = ROOT.parent / "shared" / "data" / "urdf"
+UR10 = URDF / "ur10.urdf"
 ROBOTS = {
     "scara": "scara2",
     "emps": "emps",
     "arm": str(ROOT / "samples" / "arm.toml"),
     "pendulum": "planar2-gravity",
     "ur10": str(UR10),
+    "ur10e": str(ROOT / "samples" / "robots" / "ur10e.toml"),
+    "panda": str(URDF / "panda.urdf"),
 }
 LOGS = {
     "scara": "SCARA",
@@ -39,6 +42,7 @@ LOGS = {
 }
 SPECIAL = {
     "ur10": ["--ddq-max", "5"],
+    "panda": ["--ddq-max", "5"],
     "pendulum": ["--q-max", "1.5", "--dq-max", "10", "--ddq-max", "60"],
 }
 

@@ -102,9 +102,14 @@ def _explained(log: Log, robot: Robot, motion: Motion) -> Iterator[Finding]:
         figure = "no row of some joint is away from reversals and standstill"
         yield failed("model", figure, "give a longer log in which every joint moves")
         return
-    found, mounted = wiring.wired(robot, samples), mounting.mounted(robot, samples)
-    differs = mounting.findings(mounted.case)
-    if differs and mounted.fit.misfit < found.fit.misfit:
+    found, fitting = wiring.wired(robot, samples), mounting.mounted(robot, samples)
+    left = scale.disagreement(robot, samples.wired(found.case))
+    mounted = mounting.by_masses(robot, samples, fitting, left)
+    told = mounted is not fitting
+    differs = mounting.findings(
+        mounted.case, "the described masses fit" if told else "the model fits"
+    )
+    if differs and mounted.fit.misfit < found.fit.misfit + (mounting.alike(robot) if told else 0.0):
         yield from differs
         robot = mounted.case.of(robot)
         motion = motion.mounted(np.array(mounted.case.signs), np.array(mounted.case.turns))

@@ -29,8 +29,7 @@ def of_model(rows: Rows, robot: Robot) -> list[Finding]:
 def _described(samples: Samples, robot: Robot) -> list[Finding]:
     """What is unlike in the description, by what explains the torques best.
 
-    Single signs are tried where the model leaves what a wrong one would leave. That all friction is
-    negative, as with all torques reversed, is a reason of the verdict by itself.
+    Single signs are tried where the model leaves what a wrong one would leave.
     """
     mounted = mounting.mounted(robot, samples)
     if mounted.fit.residuals.max() > mounting.TURNED:
@@ -43,5 +42,14 @@ def _described(samples: Samples, robot: Robot) -> list[Finding]:
 
 
 def _scale(samples: Samples, robot: Robot) -> list[Finding]:
-    found = scale.finding(robot, scale.scale_of(robot, samples))
+    """Torques in another unit, or all of them reversed.
+
+    That all friction is negative then is a reason of the verdict by itself.
+    """
+    size = scale.scale_of(robot, samples)
+    if size.reversed:
+        signed = wiring.signed(robot, samples)
+        told = signed.fit.brakes or all(sign > 0 for sign in signed.case.signs[1])
+        return [] if told else [wiring.signs(signed, robot)]
+    found = scale.finding(robot, size)
     return [found] if found.status != OK else []

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
-from checks import LOGS, ROBOTS, UR10, clean, named, read, remarks
+from checks import LOGS, ROBOTS, URDF, clean, named, read, remarks
+from checks_kinds import named as kind_named
+from checks_kinds import trial
 from cli.real import TX40, ur10_log
 from conftest import ROOT
-from spoiled import SPOILED, Spoiled, torques_times
+from kinds import KINDS
+from spoiled import SPOILED, Spoiled, torques_times, turned
 
 from scarid_cli.algorithms.checks.finding import FAILED, OK, Finding, worst
 from scarid_cli.algorithms.robots.reading import load
@@ -32,7 +36,7 @@ def bad(found: list[Finding]) -> list[Finding]:
 
 
 def present(robot: str) -> None:
-    if robot == "ur10" and not UR10.exists():
+    if robot in ("ur10", "panda") and not (URDF / f"{robot}.urdf").exists():
         pytest.skip("the URDF (../shared/data) is not here")
 
 
@@ -42,6 +46,48 @@ def test_a_fault_is_named(name: str) -> None:
     present(fault.source)
     found = remarks(fault)
     assert named(fault, found), found
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_a_kind_of_fault_is_named_whatever_joint_and_size_are_drawn(name: str) -> None:
+    kind = KINDS[name]
+    _, found, says = trial(name, kind, 2)
+    assert kind_named(kind, found, says), (says, found)
+
+
+@pytest.mark.parametrize("name", ["ur10", "panda"])
+def test_reversed_torques_are_named_by_the_masses_where_there_is_no_friction(name: str) -> None:
+    present(name)
+    log = clean(name)
+    every = Spoiled(
+        name, torques_times(*[-1.0] * log.joints), "signs", "torques' sign seems reversed"
+    )
+    assert [found.name for found in remarks(every) if named(every, [found])] == ["signs"]
+
+
+def test_scaled_torques_are_not_told_to_be_reversed() -> None:
+    """Each in a unit of its own, they contradict the model: its friction may drive joints then."""
+    for seed in range(3):
+        log = clean("ur10e", seed)
+        factors = 0.1 * np.random.default_rng(seed).uniform(0.8, 1.25, log.joints)
+        found = check(torques_times(*factors)(log), load(ROBOTS["ur10e"]))
+        assert {finding.name for finding in found if finding.status == FAILED} == {"scale"}
+
+
+@pytest.mark.parametrize("turn", [0.5 * np.pi, -0.5 * np.pi, np.pi])
+def test_a_zero_that_estimated_masses_hide_is_told_by_the_described_ones(turn: float) -> None:
+    """Seen from another zero the last link has another centre of mass: all else fits."""
+    found = check(turned(2, turn)(clean("arm")), load(ROBOTS["arm"]))
+    said = next(finding for finding in found if finding.name == "zeros")
+    degrees = -np.degrees(turn) if turn < np.pi else 180.0
+    assert f"the described masses fit far better with joint 2 at {degrees:.0f} " in said.figure
+
+
+def test_a_joint_that_is_a_turn_away_from_its_zero_is_not_in_degrees() -> None:
+    found = list(check(turned(2, 2.0 * np.pi)(clean("ur10e")), load(ROBOTS["ur10e"])))
+    said = next(finding for finding in found if finding.name == "positions")
+    assert "degrees" not in said.advice
+    assert all(finding.name != "motion" for finding in bad(found))
 
 
 def test_the_page_shows_the_faults_that_were_found() -> None:
@@ -80,7 +126,7 @@ def test_a_real_log_is_not_called_worse_than_a_warning(
         description.write_text(TX40.format(folder=folder))
         robot = str(description)
     if name == "ur10":
-        robot, log = str(UR10), tmp_path / "bag.csv"
+        robot, log = str(URDF / "ur10.urdf"), tmp_path / "bag.csv"
         body = load(robot).body
         assert body
         bag = real_logs / "ur10_ros2" / "ur10_exciting_trajectory.db3"

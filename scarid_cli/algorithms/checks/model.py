@@ -107,6 +107,11 @@ class Fit:
         """The joints (from 0) whose friction is significantly negative."""
         return np.flatnonzero(self.powers < -DEVIATIONS).tolist()
 
+    @property
+    def brakes(self) -> bool:
+        """Whether the friction of every joint is known to brake it."""
+        return bool(self.powers.min() > DEVIATIONS)
+
 
 def columns(robot: Robot, motion: Array) -> Array:
     """The regressor (samples, joints, parameters + EXTRA joints) with the added columns.

@@ -16,7 +16,8 @@ import numpy as np
 
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text
 from scarid_cli.algorithms.checks.model import Fit, Samples, fitted
-from scarid_cli.algorithms.checks.search import FALL, Explained, searched
+from scarid_cli.algorithms.checks.scale import disagreement
+from scarid_cli.algorithms.checks.search import ALIKE, FALL, Explained, searched
 from scarid_cli.algorithms.robots.description import Robot
 
 UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
@@ -47,11 +48,19 @@ class Mounting:
             return robot
         return replace(robot, body=replace(robot.body, gravity=self.gravity))
 
-    def fitted(self, robot: Robot, samples: Samples) -> Fit:
-        """The fit of a log of a robot that is mounted so."""
+    def seen(self, samples: Samples) -> Samples:
+        """The samples as a robot that is mounted as described would have logged them."""
         motion = samples.motion * np.array(self.signs)[:, None]
         motion[0] += np.array(self.turns)[:, None]
-        return fitted(self.of(robot), replace(samples, motion=motion))
+        return replace(samples, motion=motion)
+
+    def fitted(self, robot: Robot, samples: Samples) -> Fit:
+        """The fit of a log of a robot that is mounted so."""
+        return fitted(self.of(robot), self.seen(samples))
+
+    def disagreement(self, robot: Robot, samples: Samples) -> float:
+        """How little of the torques the described masses explain if it is mounted so."""
+        return disagreement(self.of(robot), self.seen(samples))
 
     def reversed(self) -> Iterator[Mounting]:
         """One axis more, or less, points the other way."""
@@ -125,9 +134,35 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
     return as_described if found.fit.residuals.max() > UNEXPLAINED else found
 
 
-def findings(mounting: Mounting) -> list[Finding]:
+def by_masses(
+    robot: Robot, samples: Samples, found: Explained[Mounting], left: float
+) -> Explained[Mounting]:
+    """Of the mountings that explain the torques alike, the one that the described masses explain.
+
+    A zero of the last joint, or a half turn of a wrist, often changes no more than the masses that
+    are estimated. What was `found` stays unless the masses leave far less of the torques otherwise,
+    and far less than they do in another explanation (`left`, a disagreement).
+    """
+    most = found.fit.misfit + alike(robot)
+    cases = Mounting.described(len(robot.joints)).turned(robot)
+    ties = [one for one in (Explained(c, c.fitted(robot, samples)) for c in cases)
+            if one.fit.misfit < most]  # fmt: skip
+    if not ties or np.isnan(left):
+        return found
+    left = min(left, found.case.disagreement(robot, samples))
+    sizes = [one.case.disagreement(robot, samples) for one in ties]
+    best = int(np.argmin(sizes))
+    return ties[best] if sizes[best] < left + np.log(FALL) else found
+
+
+def alike(robot: Robot) -> float:
+    """By how much the misfits of fits differ at most that explain the torques alike."""
+    return float(np.log(ALIKE)) / len(robot.joints)
+
+
+def findings(mounting: Mounting, what: str = "the model fits") -> list[Finding]:
     """What differs from the description; none if nothing does."""
-    better, found = "the model fits far better with", []
+    better, found = f"{what} far better with", []
     if axes := [j for j, sign in enumerate(mounting.signs, start=1) if sign < 0]:
         figure = f"{better} the position and the torque of {joints_text(axes)} reversed"
         advice = "does the axis point the other way than in the description?"

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok
-from scarid_cli.algorithms.checks.model import DEVIATIONS, Samples, solved
+from scarid_cli.algorithms.checks.model import DEVIATIONS, EXACT, Samples, solved
 from scarid_cli.algorithms.checks.units import prefixed
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.planar import PlanarTerm
@@ -44,28 +44,48 @@ class Scale:
     @property
     def known(self) -> list[int]:
         """The joints (from 0) whose factors are known well enough to be told."""
-        return np.flatnonzero(self.errors < KNOWN * self.factors).tolist()
+        return np.flatnonzero(self.errors < KNOWN * np.abs(self.factors)).tolist()
+
+    @property
+    def reversed(self) -> bool:
+        """Whether the masses need the opposite of every torque whose factor is known."""
+        return bool(self.known) and bool(np.all(self.factors[self.known] < 0.0))
 
     @property
     def low(self) -> list[int]:
-        """The joints (from 0) whose torques are smaller than any mass that is wrong makes them."""
+        """The joints (from 0) whose torques are smaller than any mass that is wrong makes them.
+
+        A negative factor is no unit: a centre of mass is described on the wrong side.
+        """
         most = self.factors + DEVIATIONS * self.errors
-        return [j for j in self.known if most[j] < 1.0 / WRONG]
+        return [j for j in self.known if self.factors[j] > 0.0 and most[j] < 1.0 / WRONG]
 
     @property
     def high(self) -> list[int]:
         """The joints (from 0) whose torques are larger than a tool at the tip makes them.
 
-        It adds most to the joints near it, so a joint is compared with those behind it; and it does
-        not double the torque of the joint that carries most.
+        It adds most to the joints near it, so a joint is compared with those behind it whose
+        factors are known; it does not double the torque of the joint that carries most; and what it
+        adds to a joint it adds to one before it as well, which is further from it.
         """
         spread = DEVIATIONS * self.errors
-        least, most = self.factors - spread, np.nan_to_num(self.factors + spread, nan=np.inf)
+        least, most = self.factors - spread, self.factors + spread
         above = [j for j in self.known if least[j] > WRONG]
         if above == self.known and int(np.argmax(self.needed)) in above:
             return above
-        last = len(most) - 1
-        return [j for j in above if j < last and least[j] > WRONG * max(1.0, most[j + 1 :].max())]
+        return [j for j in above if self._beyond_a_tool(j, least, most)]
+
+    def _beyond_a_tool(self, j: int, least: Array, most: Array) -> bool:
+        """Whether the torque of joint j (from 0) is larger than a tool makes it.
+
+        The masses that are described may be wrong as well: the joints before it may need only half
+        of what they state without the tool, and joint j twice as much.
+        """
+        behind = [most[k] for k in self.known if k > j]
+        if behind and least[j] > WRONG * max(1.0, *behind):
+            return True
+        added = [(most[k] - 1.0 / WRONG) * self.needed[k] for k in self.known if k < j]
+        return bool(added) and (least[j] - WRONG) * self.needed[j] > WRONG * max(added)
 
 
 def scale_of(robot: Robot, samples: Samples) -> Scale:
@@ -80,6 +100,25 @@ def scale_of(robot: Robot, samples: Samples) -> Scale:
     sizes = np.sqrt(np.mean(needed**2, axis=1))
     factors, errors = np.transpose(found)
     return Scale(factors, errors, sizes)
+
+
+def disagreement(robot: Robot, samples: Samples) -> float:
+    """How little of the torques the described masses explain, by factors that are not negative.
+
+    The mean over joints of the logarithm of what they leave of the mean square that friction, an
+    offset and the motor leave by themselves; nan if nothing is described that needs torques.
+    """
+    q, dq, ddq, tau, slope = samples.motion
+    needed = _needed(robot, robot.regressor(q, dq, ddq))
+    beside = [dq, np.sign(dq), np.ones_like(q), slope, *([ddq] if robot.body else [])]
+    left = []
+    for j in np.flatnonzero(needed.any(axis=1)):
+        counts, own = samples.counts[j], np.column_stack([x[j] for x in beside])[:, None, :]
+        with_masses = np.concatenate((needed[j][:, None, None], own), axis=2)
+        found, without = (solved(W, tau[[j]], counts[None]) for W in (with_masses, own))
+        share = found.residuals[0] / max(without.residuals[0], EXACT)
+        left.append(min(share, 1.0) if found.theta[0] > 0.0 else 1.0)
+    return float(np.mean(np.log(np.maximum(left, EXACT)))) if left else np.nan
 
 
 def _needed(robot: Robot, W: Array) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 from scarid_cli.algorithms.checks.model import Fit
 
 FALL = 0.5  # of the mean square residual: what is left at most if something else is preferred
+ALIKE = 1.1  # times the mean square residual of one joint, for the same explanation
 STEPS = 3  # changes that are looked for, one after the other
 
 T = TypeVar("T")

@@ -36,9 +36,10 @@ def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
         within = ", ".join(f"{x:.3g}" for x in reach)
         return ok("positions", f"up to {within} {_units(robot)}, within the limits"), factors
     names = joints_text(i + 1 for i in outside)
-    if all(_in_other_unit(log.q[i], robot, i, speeds[i]) for i in outside):
+    likely = _alike(robot, outside)
+    far_out = all(_in_other_unit(log.q[i], robot, i, speeds[i]) for i in outside)
+    if far_out and not _turned(robot, likely, reach):
         figure = f"{names} up to {reach[outside].max():.3g}, far outside the limits"
-        likely = _alike(robot, outside)
         for i in likely:
             factors[i] = OTHER_UNITS[robot.joints[i].type][1]
         return failed("positions", figure, _converted(robot, outside, likely)), factors
@@ -65,6 +66,22 @@ def _alike(robot: Robot, outside: list[int]) -> list[int]:
         every = [i for i, joint in enumerate(robot.joints) if joint.type == kind]
         found += every if 2 * len(own) > len(every) else own
     return sorted(found)
+
+
+def _turned(robot: Robot, likely: list[int], reach: Array) -> bool:
+    """Whether one of these joints (from 0), and not all, may be up to a turn from its zero instead.
+
+    `reach` (joints) are the largest positions.
+    """
+    for i in likely:
+        kind = robot.joints[i].type
+        others = [
+            k for k, joint in enumerate(robot.joints) if joint.type == kind and k not in likely
+        ]
+        limit = max(abs(robot.joints[i].lower), abs(robot.joints[i].upper))
+        if others and kind == "revolute" and reach[i] <= limit + 2.0 * pi:
+            return True
+    return False
 
 
 def _converted(robot: Robot, outside: list[int], likely: list[int]) -> str:

@@ -17,27 +17,29 @@ import numpy as np
 from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok, warning
 from scarid_cli.algorithms.checks.model import DEVIATIONS, Fit, Samples, fitted, torque_signs
-from scarid_cli.algorithms.checks.search import FALL, Explained, searched
+from scarid_cli.algorithms.checks.scale import disagreement
+from scarid_cli.algorithms.checks.search import ALIKE, FALL, Explained, searched
 from scarid_cli.algorithms.robots.description import Robot
 
 SURE = 30.0  # standard errors of the friction, whose sign decides then
-ALIKE = 1.1  # times the mean square residual of one joint, for the same explanation
 EXPLAINED = 0.02  # of the mean square torque of each joint: exchanged joints leave far more
 
 
 def wired(robot: Robot, samples: Samples) -> Explained[Wiring]:
     """The wiring that explains the log, which is the log's own unless another is far better."""
 
-    fit_of = partial(_fit, robot, samples)
-    found = _signed(as_logged(robot, samples), torque_signs(robot, samples), fit_of)
-    return _braking(searched(found, fit_of, _neighbours), fit_of)
+    fit_of, logged = partial(_fit, robot, samples), as_logged(robot, samples)
+    found = _signed(logged, torque_signs(robot, samples), fit_of)
+    braking = _braking(searched(found, fit_of, _neighbours), fit_of)
+    return _by_masses(robot, samples, logged, braking)
 
 
 def signed(robot: Robot, samples: Samples) -> Explained[Wiring]:
     """The same, but only signs of the torques are tried."""
     fit_of = partial(_fit, robot, samples)
-    found = _signed(as_logged(robot, samples), torque_signs(robot, samples), fit_of)
-    return _braking(found, fit_of)
+    logged = as_logged(robot, samples)
+    found = _signed(logged, torque_signs(robot, samples), fit_of)
+    return _by_masses(robot, samples, logged, _braking(found, fit_of))
 
 
 def as_logged(robot: Robot, samples: Samples) -> Explained[Wiring]:
@@ -104,6 +106,26 @@ def _braking(found: Explained[Wiring], fit_of: Callable[[Wiring], Fit]) -> Expla
     return every if 2 * len(every.fit.driving) <= len(driving) else found
 
 
+def _by_masses(
+    robot: Robot, samples: Samples, logged: Explained[Wiring], found: Explained[Wiring]
+) -> Explained[Wiring]:
+    """The wiring that was found, unless the described masses speak for another one.
+
+    They tell whether all torques are reversed where friction does not for sure, and they keep the
+    log's own wiring if they explain that far better: torques of one joint in another unit look like
+    much, too.
+    """
+
+    def left(one: Explained[Wiring]) -> float:
+        return disagreement(robot, samples.wired(one.case))
+
+    size = left(found)
+    every = _reversed(found, [-1] * len(found.fit.powers), partial(_fit, robot, samples))
+    if not np.all(found.fit.powers > SURE) and left(every) < size + np.log(FALL):
+        found, size = every, left(every)
+    return logged if left(logged) < size + np.log(FALL) else found
+
+
 def findings(found: Explained[Wiring], robot: Robot) -> list[Finding]:
     """Findings on the signs of torques and positions, and on the order of the joints."""
     return [signs(found, robot), _order(found.case)]
@@ -114,7 +136,11 @@ def signs(found: Explained[Wiring], robot: Robot) -> Finding:
     positions, torques = ([j for j, s in enumerate(k) if s < 0] for k in found.case.signs)
     command = f"`scarid convert {_turned(found.case, robot)}`"
     if len(torques) == len(found.fit.powers) and not positions:
-        figure = "the friction of every joint would drive it"
+        figure = (
+            "the friction of every joint would drive it"
+            if found.fit.brakes
+            else "the described masses need the opposite of every torque"
+        )
         advice = "the torques' sign seems reversed: multiply all by -1"
         return failed("signs", figure, f"{advice}: {command}")
     if torques or positions:
@@ -134,7 +160,8 @@ def signs(found: Explained[Wiring], robot: Robot) -> Finding:
     if found.fit.driving:
         figure = f"the friction of {joints_text(j + 1 for j in found.fit.driving)} is negative"
         return warning("signs", figure, "look at the sign of its torque, and at delays")
-    return ok("signs", "friction brakes every joint")
+    every = "friction brakes every joint" if found.fit.brakes else "no friction drives a joint"
+    return ok("signs", every)
 
 
 def _turned(wiring: Wiring, robot: Robot) -> str:
