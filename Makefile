@@ -183,6 +183,7 @@ bench-mujoco: $(VENV)/tested
 
 bench-checks: $(VENV)/tested
 	$(BIN)/python benchmarks/checks.py
+	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/checks_kinds.py
 
 bench-within: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/within.py --seeds 3 --seed 70000

@@ -13,6 +13,7 @@ from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import BadData, bad_data, bad_row
 from scarid_cli.io.remedies import Remedy, read_on
 from scarid_cli.io.table import SEGMENT, Instant, Table, concatenated, segments_of, steps_of
+from scarid_cli.runs import SORT, remedy_back
 
 # An interval may differ from the period by this fraction, and the mean interval by that one: a
 # derivative would be wrong by as much.
@@ -130,7 +131,8 @@ def _check_order(rows: pa.RecordBatch, table: Table, row: int) -> None:
     back = np.flatnonzero(np.diff(t) < 0.0)
     if len(back):
         at = int(back[0])
-        raise _not_increasing(table.name, float(t[at + 1]), float(t[at]), table.row(row + at + 1))
+        times = float(t[at + 1]), float(t[at])
+        raise _not_increasing(table.name, *times, table.row(row + at + 1), remedy_back(t))
 
 
 def _check_segments(jumps: Numbers, table: Table, row: int) -> None:
@@ -168,8 +170,7 @@ def _wrong_step(
     )
 
 
-def _not_increasing(name: str, time: float, before: float, row: int) -> BadData:
-    remedy = "sort the log and remove repeated rows"
+def _not_increasing(name: str, time: float, before: float, row: int, remedy: str = SORT) -> BadData:
     if time == before > EPOCH:
         remedy = "write it with at least 14 digits, or as seconds since the start of the log"
     return bad_data(

@@ -99,7 +99,9 @@ def _table(source: ByteSource) -> Table:
         )
     _refuse_json(first[:header_end], source.name)
     names = _header(first, header_end, source.name)
-    body = first[header_end:]
+    header = first[:header_end].rstrip(b"\r\n").rpartition(b"\n")[2].removeprefix(BOM.encode())
+    lines = _without_headers(chain([first[header_end:]], lines), header)
+    body = next(lines)
     while not body.strip() and (more := next(lines, None)):
         body = more
     row = _first_row(names, body)
@@ -133,6 +135,16 @@ def _complete_lines(source: ByteSource) -> Iterator[bytes]:
     # A signal that ends the input may have ended its writer in the middle of a row as well.
     if (rest := b"".join(held)) and not STOP.number:
         yield rest + b"\n"
+
+
+def _without_headers(blocks: Iterator[bytes], header: bytes) -> Iterator[bytes]:
+    """The blocks without lines that repeat the header, as between logs joined by `cat`."""
+    for block in blocks:
+        if header not in block:
+            yield block
+        else:
+            lines = block.splitlines(keepends=True)
+            yield b"".join(line for line in lines if line.rstrip(b"\r\n") != header)
 
 
 def _last_row_end(data: bytes, *, inside: bool) -> int:

@@ -45,11 +45,11 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
         log = log.counted(ticks.rate)
         order = clock.order(log)
     log = log.in_order()
-    finding, factor = clock.unit(clock.Clock.of(log.t))
+    finding, factor = clock.unit(clock.Clock.of(log.t, log.segment))
     yield finding
     yield order
     log = log.scaled(t=factor)
-    time = clock.Clock.of(log.t)
+    time = clock.Clock.of(log.t, log.segment)
     yield from clock.clock(time, log.resampling())
     yield values.missing(log)
     found = leaps.found_in(log)
@@ -64,17 +64,18 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
     if empty:
         yield failed("values", f"no value in {', '.join(empty)}", "log these columns")
         return
-    constant = values.constant(log.tau)
-    yield constant
-    if constant.status == OK and time.period:
-        yield values.dead_zone(log, time.period)
+    driven = values.constant(log.tau)
+    yield driven
+    if driven.status == OK and time.period:
+        driven = values.dead_zone(log, time.period)
+        yield driven
     yield values.saturation(log.tau)
     motion = Motion.of(log, time.period) if time.period else None
     if motion is None or not motion.parts():
         figure = f"{log.rows} rows, too few without a gap for the checks of motion and model"
         yield failed("length", figure, "give a longer log")
         return
-    yield from _moving(log, robot, motion, driven=constant.status == OK)
+    yield from _moving(log, robot, motion, driven=driven.status == OK)
 
 
 def _moving(log: Log, robot: Robot, motion: Motion, *, driven: bool) -> Iterator[Finding]:
@@ -120,5 +121,7 @@ def _explained(log: Log, robot: Robot, motion: Motion) -> Iterator[Finding]:
     torques = units.torques(log, robot)
     yield torques
     if torques.status != FAILED:
-        yield scale.finding(robot, scale.scale_of(robot, samples))
+        size = scale.scale_of(robot, samples)
+        yield scale.finding(robot, size)
+        samples = size.corrected(samples)
     yield from fit.model(robot, samples)

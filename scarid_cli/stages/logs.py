@@ -6,7 +6,7 @@ import numpy as np
 
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.io.schemas import of_joints
-from scarid_cli.io.table import Table, matrix
+from scarid_cli.io.table import SEGMENT, Table, matrix
 from scarid_cli.stages.holding import measured
 
 
@@ -16,13 +16,20 @@ def log_of(table: Table, joints: int) -> Log:
     others = [name for name in measured(table.schema) if name not in names]
     names += others
     velocities = velocities_of(table, joints)
-    names += velocities
+    names += [*velocities, *([SEGMENT] if SEGMENT in table.columns else [])]
     parts = [matrix(batch, names) for batch in table.batches]
     whole = np.concatenate(parts, axis=1) if parts else np.empty((len(names), 0))
     whole = np.where(np.isfinite(whole), whole, np.nan)
-    ends = np.cumsum([1, joints, joints, len(others)])
-    t, q, tau, rest, dq = np.split(whole, ends)
-    return Log(t[0], q, tau, rest if others else None, dq if velocities else None)
+    ends = np.cumsum([1, joints, joints, len(others), len(velocities)])
+    t, q, tau, rest, dq, segment = np.split(whole, ends)
+    return Log(
+        t[0],
+        q,
+        tau,
+        rest if others else None,
+        dq if velocities else None,
+        segment[0] if len(segment) else None,
+    )
 
 
 def velocities_of(table: Table, joints: int) -> list[str]:

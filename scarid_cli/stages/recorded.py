@@ -13,10 +13,10 @@ from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import bad_data
 from scarid_cli.io.signals import TAU, Series
 from scarid_cli.io.table import Metadata, Table, doubles, number
+from scarid_cli.runs import RUN, period_of, run_starts
 
 LINEAR, HOLD = "linear", "hold"
 READ_ROWS = 1 << 13
-RUN = 20  # periods by which the time of a new run goes back at least, and of the gap before it
 LATE = 5.0  # periods of the torques' topic after which a row that waits for a value is reported
 
 
@@ -141,27 +141,15 @@ def _rows(times: Numbers, columns: dict[str, Array], source: Series) -> Rows:
 
 
 def _one_after_the_other(rows: Rows) -> tuple[Rows, int]:
-    """Runs whose clock began anew, one after the other; and how often the time went back.
-
-    A message that is late comes before the one before it by a few periods; a new run by more.
-    """
-    steps = np.diff(rows.times)
-    forward = steps[steps > 0]
-    period = int(np.median(forward)) if len(forward) else 0
-    back = np.flatnonzero(steps < -RUN * period) if period else np.empty(0, np.int64)
-    latest = np.maximum.accumulate(rows.times)
-    starts = [at + 1 for at in back.tolist() if not _caught_up(rows.times, at, latest[at])]
+    """Runs whose clock began anew, one after the other; and how often the time went back."""
+    period = int(period_of(rows.times))
+    starts = run_starts(rows.times, period)
     if not starts:
         return rows, 0
     times = rows.times.copy()
     for start in starts:
         times[start:] += times[start - 1] + RUN * period - times[start]
     return replace(rows, times=times), len(starts)
-
-
-def _caught_up(times: Numbers, at: int, latest: int) -> bool:
-    """Whether the time is beyond the `latest` one before row `at` again after a few rows."""
-    return bool(np.any(times[at + 1 : at + 1 + RUN] > latest))
 
 
 def _joined(name: str, rows: Rows, second: Rows, join: str) -> tuple[Rows, dict[str, Any], str]:

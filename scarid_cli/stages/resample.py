@@ -33,6 +33,7 @@ from scarid_cli.io.table import (
     steps_of,
     with_columns,
 )
+from scarid_cli.runs import remedy_back
 from scarid_cli.stages.holding import FirstIntervals, Holding, measured
 from scarid_cli.stages.slower import Filling, slower_groups
 from scarid_cli.stages.splitting import Splitting
@@ -92,7 +93,7 @@ def _ordered(table: Table) -> Iterator[pa.RecordBatch]:
     for batch in table.batches:
         if batch.num_rows:
             steps, _, last = steps_of(batch, last)
-            _check(steps, table, row)
+            _check(steps, batch, table, row)
             ticks.after(matrix(batch, ["t"])[0], matrix(batch, names))
         row += batch.num_rows
         yield batch
@@ -107,14 +108,14 @@ def _ordered(table: Table) -> Iterator[pa.RecordBatch]:
         )
 
 
-def _check(steps: Array, table: Table, row: int) -> None:
+def _check(steps: Array, batch: pa.RecordBatch, table: Table, row: int) -> None:
     if np.any(steps < 0.0):
         at = int(np.argmax(steps < 0.0))
         raise bad_data(
             table.name,
             f"time that goes back by {-steps[at]:.6g} s",
             expected="time to increase from row to row",
-            remedy="sort the log",
+            remedy=remedy_back(matrix(batch, ["t"])[0]),
             row=table.row(row + at + 1),
             column="t",
         )

@@ -19,6 +19,9 @@ FAULTS = {
     "rows missing": "awk 'NR < 100 || NR % 17'",
     "wraps": "awk -F, -v OFS=, 'NR > 1 { while ($2 > .5) $2 -= 1; while ($2 < -.5) $2 += 1 } 1'",
     "glitches": "awk -F, -v OFS=, 'NR == 500 || NR == 1200 { $2 += 40 } 1'",
+    "a second run": "awk -F, -v OFS=, 'NR > 900 { $1 -= 4.5 } 1'",
+    "two logs by cat": "awk -F, -v OFS=, 'NR == 1 { names = $0 } NR == 900 { print names }"
+    " NR >= 900 { $1 -= 4.5 } 1'",
     "several": "awk -F, -v OFS=, 'NR > 1 { $1 *= 1000; $2 *= 57.29577951; $3 *= 57.29577951 }"
     " NR < 100 || NR % 17'",
 }

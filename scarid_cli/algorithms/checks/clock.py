@@ -36,8 +36,12 @@ class Clock:
     period: float
 
     @classmethod
-    def of(cls, t: Array) -> Clock:
-        steps = np.diff(t[np.isfinite(t)])
+    def of(cls, t: Array, segment: Array | None = None) -> Clock:
+        """The clock of the rows at these times, without the gaps between known segments (rows)."""
+        known = np.isfinite(t)
+        steps = np.diff(t[known])
+        if segment is not None:
+            steps = steps[np.diff(segment[known]) == 0.0]
         forward = steps[steps > 0.0]
         return cls(steps, median(forward) if len(forward) else 0.0)
 
@@ -84,9 +88,15 @@ def order(log: Log) -> Finding:
     steps = np.diff(log.t[np.isfinite(log.t)])
     back, repeated = np.count_nonzero(steps < 0.0), np.count_nonzero(steps == 0.0)
     if back:
-        return failed(
-            "time order", f"time goes back in {several(int(back), 'place')}", "sort the log by time"
-        )
+        figure = f"time goes back in {several(int(back), 'place')}"
+        if starts := log.run_starts:
+            rows = ", ".join(str(start + 1) for start in starts)
+            figure += f": {several(len(starts) + 1, 'run')}, begun again in row {rows}"
+            split = log.in_order().resampling()
+            advice = f"`scarid convert` puts them one after the other, {split} makes them segments"
+        else:
+            advice = "sort the log by time"
+        return failed("time order", figure, advice)
     if repeated:
         return warning(
             "time order",

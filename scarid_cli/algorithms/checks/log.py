@@ -10,6 +10,7 @@ import numpy as np
 from scarid_cli.algorithms.processes.holding import held_in
 from scarid_cli.algorithms.processes.rates import resampling_rate
 from scarid_cli.arrays import Array, Marks, Numbers
+from scarid_cli.runs import period_of, run_starts
 
 SELDOM = 0.1  # of the intervals: between rows in any order, half go back
 
@@ -20,6 +21,7 @@ class Log:
 
     Values that are missing are nan. `others` (columns, rows) are further values that sensors fill,
     if there are any. `dq` (joints, rows) are the measured velocities, if every joint has one.
+    `segment` (rows) numbers parts between which a gap is known, if there are any.
     """
 
     t: Array
@@ -27,6 +29,7 @@ class Log:
     tau: Array
     others: Array | None = None
     dq: Array | None = None
+    segment: Array | None = None
 
     @property
     def rows(self) -> int:
@@ -73,13 +76,25 @@ class Log:
         """These rows only (indices, or whether each row is kept)."""
         others = None if self.others is None else self.others[:, rows]
         dq = None if self.dq is None else self.dq[:, rows]
-        return Log(self.t[rows], self.q[:, rows], self.tau[:, rows], others, dq)
+        segment = None if self.segment is None else self.segment[rows]
+        return Log(self.t[rows], self.q[:, rows], self.tau[:, rows], others, dq, segment)
+
+    @cached_property
+    def run_starts(self) -> list[int]:
+        """The rows (from 0) in which the clock begins again, as of another run."""
+        starts = run_starts(self.t, period_of(self.t))
+        return starts if len(starts) <= SELDOM * self.rows else []
 
     def in_order(self) -> Log:
         """The log with its rows sorted by time, those without one last, if they are in no order.
 
-        Where time seldom goes back, as between logs that follow each other, the order is kept.
+        Where time seldom goes back, the order is kept; of runs that follow each other, each with a
+        clock that begins again, the longest one is.
         """
+        if starts := self.run_starts:
+            edges = [0, *starts, self.rows]
+            longest = int(np.argmax(np.diff(edges)))
+            return self.part(np.arange(edges[longest], edges[longest + 1]))
         steps = np.diff(self.t[np.isfinite(self.t)])
         if np.count_nonzero(steps < 0.0) <= SELDOM * len(steps):
             return self

@@ -9,7 +9,7 @@ joints larger: only what neither explains is called another unit.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -74,6 +74,15 @@ class Scale:
         if above == self.known and int(np.argmax(self.needed)) in above:
             return above
         return [j for j in above if self._beyond_a_tool(j, least, most)]
+
+    def corrected(self, samples: Samples) -> Samples:
+        """The samples with the torques of another unit in that of the description."""
+        wrong = self.low or self.high
+        units = np.ones(len(self.factors))
+        units[wrong] = self.factors[wrong]
+        motion = samples.motion.copy()
+        motion[3:] /= units[:, None]
+        return replace(samples, motion=motion)
 
     def _beyond_a_tool(self, j: int, least: Array, most: Array) -> bool:
         """Whether the torque of joint j (from 0) is larger than a tool makes it.

@@ -16,6 +16,7 @@ from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages.adapt import adapted
 from scarid_cli.stages.lacking import lacking
+from scarid_cli.stages.runs import runs_joined
 from scarid_cli.stages.side import episodes_joined
 from scarid_cli.stages.wording import is_current
 
@@ -72,7 +73,8 @@ def run(
         read = _signals(table, columns, arm)
         table = without_leaps(table, read, unwrap=unwrap, despike=despike, report=job.notes)
     job.say_notes()  # before a next command may end the pipe for what is noted
-    job.write(job.recorded(job.within(_adapted(table, columns, rate, arm))))
+    result = runs_joined(_adapted(table, columns, rate, arm), job.say)
+    job.write(job.recorded(job.within(result)))
 
 
 def _adapted(table: Table, columns: Columns, rate: float | None, robot: Robot | None) -> Table:

@@ -1,0 +1,81 @@
+"""Runs whose clock begins anew, put one after the other as a log is read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pyarrow as pa
+
+from scarid_cli.arrays import Array
+from scarid_cli.io.table import SEGMENT, Table, concatenated, doubles, matrix
+from scarid_cli.runs import RUN, period_of, run_starts
+
+
+def runs_joined(table: Table, tell: Callable[[str], None]) -> Table:
+    """The table, in which a run that begins anew at an earlier time `t` follows the one before it.
+
+    A gap of RUN periods is between them, where `resample` begins a new segment. `tell` hears of
+    each run when it is read.
+    """
+    if "t" not in table.columns or SEGMENT in table.columns:  # its segments may overlap
+        return table
+    return replace(table, batches=_Joining(tell).batches(table))
+
+
+@dataclass
+class _Joining:
+    """How far the clock was ahead [s] of that of the present run, and where it is."""
+
+    tell: Callable[[str], None]
+    offset: float = 0.0
+    last: float = np.nan  # of the log's own clock
+    period: float = 0.0
+    rows: int = 0
+
+    def batches(self, table: Table) -> Iterator[pa.RecordBatch]:
+        place = table.columns.index("t")
+        waiting = iter(table.batches)
+        for first in waiting:
+            batch = first
+            t = matrix(batch, ["t"])[0]
+            # Whether a row is late or begins a run is seen in the rows behind it.
+            while self._undecided(t, first) and (more := next(waiting, None)) is not None:
+                batch = concatenated([batch, more])
+                t = matrix(batch, ["t"])[0]
+            starts = self._starts(t)
+            if starts or self.offset:
+                times = doubles(self._times(t, starts))
+                batch = batch.set_column(place, table.schema.field("t"), times)
+            self.last = float(t[-1]) if len(t) else self.last
+            self.rows += len(t)
+            yield batch
+
+    def _known(self, t: Array) -> Array:
+        """The times behind the last one before them, if there is one."""
+        return np.concatenate(([self.last], t)) if self.rows else t
+
+    def _undecided(self, t: Array, first: pa.RecordBatch) -> bool:
+        back = np.flatnonzero(np.diff(self._known(t)) < 0.0)
+        late = bool(len(back)) and int(back[-1]) + RUN >= len(t)
+        return late and len(t) < first.num_rows + RUN
+
+    def _starts(self, t: Array) -> list[int]:
+        known = self._known(t)
+        self.period = self.period or period_of(known)
+        before = len(known) - len(t)
+        return [start - before for start in run_starts(known, self.period)]
+
+    def _times(self, t: Array, starts: list[int]) -> Array:
+        times = t + self.offset
+        for start in starts:
+            before = t[start - 1] if start else self.last
+            self.tell(
+                f"warning: the time goes back from {before:.6g} to {t[start]:.6g} s in row "
+                f"{self.rows + start + 1}: a new run, put behind the one before it with a gap, "
+                "where `scarid resample` begins a segment"
+            )
+            self.offset += before + RUN * self.period - t[start]
+            times[start:] = t[start:] + self.offset
+        return times

@@ -1,0 +1,53 @@
+"""Runs whose clock begins anew within one log: found, and put one after the other."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pyarrow as pa
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scarid_cli.io.table import Metadata, Table
+from scarid_cli.runs import RUN, run_starts
+from scarid_cli.stages.runs import runs_joined
+
+PERIOD = 0.01
+
+
+def joined(t: np.ndarray, sizes: list[int]) -> tuple[np.ndarray, list[str]]:
+    """The times of a table of batches of these sizes, and what was said."""
+    edges = np.unique(np.clip(np.cumsum([0, *sizes, len(t)]), 0, len(t)))
+    schema = pa.schema([("t", pa.float64())])
+    batches = [
+        pa.RecordBatch.from_arrays([pa.array(t[a:b])], schema=schema)
+        for a, b in pairwise(edges.tolist())
+    ]
+    said: list[str] = []
+    table = runs_joined(Table("log", schema, Metadata(), iter(batches)), said.append)
+    return np.concatenate([batch.column("t").to_numpy() for batch in table.batches]), said
+
+
+@given(
+    st.lists(st.integers(RUN + 2, 60), min_size=1, max_size=4),
+    st.lists(st.integers(2, 50), max_size=8),
+)
+def test_every_run_goes_on_behind_the_one_before_it(runs: list[int], sizes: list[int]) -> None:
+    """However the rows arrive; a gap of RUN periods is between two runs."""
+    t = np.concatenate([PERIOD * np.arange(rows) for rows in runs])
+    found, said = joined(t, sizes)
+    steps = np.full(len(t) - 1, PERIOD)
+    steps[np.cumsum(runs)[:-1] - 1] = RUN * PERIOD
+    np.testing.assert_allclose(np.diff(found), steps, atol=1e-9)
+    assert len(said) == len(runs) - 1
+
+
+@given(st.integers(1, 150), st.lists(st.integers(2, 50), max_size=8))
+def test_a_row_that_is_late_begins_no_run(row: int, sizes: list[int]) -> None:
+    t = PERIOD * np.arange(200)
+    t[row + 1 : row + 31] = np.roll(t[row + 1 : row + 31], -1)  # one row comes 30 rows late
+    assert not run_starts(t, PERIOD)
+    found, said = joined(t, sizes)
+    np.testing.assert_array_equal(found, t)
+    assert not said
