@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.robots.files import LARGEST
+from scarid_cli.algorithms.robots.loops import without_loops
 from scarid_cli.algorithms.robots.sound import JOINTS, require_tree, without_impossible
 from scarid_cli.errors import UsageFault
 
@@ -54,10 +55,42 @@ def test_a_tree_is_accepted_and_a_cycle_is_not(parents: list[int]) -> None:
             require_tree(tree)
 
 
-def test_a_link_that_two_joints_carry_is_refused() -> None:
-    double = urdf([0, 0]).replace('child link="l2"', 'child link="l1"')
-    with pytest.raises(ValueError, match="link l1 has two parents"):
-        require_tree(ElementTree.fromstring(double))
+def closed(text: str, parent: int, child: int) -> str:
+    """A URDF with one joint more, `more`, that carries a link that another one carries."""
+    joint = (
+        f'<joint name="more" type="revolute"><parent link="l{parent}"/><child link="l{child}"/>'
+        '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+    )
+    return text.replace("</robot>", f"{joint}</robot>")
+
+
+@given(st.integers(1, 8).flatmap(lambda n: st.tuples(*(st.integers(0, k) for k in range(n)))),
+       st.integers(0, 8), st.integers(1, 8))  # fmt: skip
+def test_of_a_closed_chain_the_tree_is_left(parents: list[int], one: int, other: int) -> None:
+    """Whether what closes it comes from above or from below, or even from the link itself."""
+    count = len(parents)
+    tree = ElementTree.fromstring(closed(urdf(list(parents)), one % (count + 1), other % count + 1))
+    (told,) = without_loops(tree)
+    require_tree(tree)
+    assert told.startswith("joint more: left out, as joint j")
+    assert [joint.get("name") for joint in tree.findall("joint")] == [
+        f"j{k}" for k in range(1, count + 1)
+    ]
+
+
+def test_of_a_closed_chain_the_axes_that_are_named_are_kept() -> None:
+    tree = ElementTree.fromstring(closed(urdf([0, 1, 0]), 3, 2))
+    (told,) = without_loops(tree, ("j1", "more"))
+    assert told.startswith("joint j2: left out, as joint more carries link l2 as well")
+
+
+def test_a_closed_chain_is_told_by_the_commands_that_read_the_robot(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    loop = '<loop_joint name="rod" type="fixed"><link1 link="l2"/><link2 link="l3"/></loop_joint>'
+    path.write_text(closed(urdf([0, 1, 0]), 3, 2).replace("</robot>", f"{loop}</robot>"))
+    body = reading.load(str(path)).body
+    assert body
+    assert [doubt.split(":")[0] for doubt in body.doubts] == ["loop_joint rod", "joint more"]
 
 
 @pytest.mark.parametrize("origin", ["0 0 1e100", "nan 0 0", "0 -inf 0", "1e7 0 0"])

@@ -6,7 +6,6 @@ recursion, and overflows its stack on a long one.
 
 from __future__ import annotations
 
-from collections import Counter
 from math import isfinite
 from xml.etree import ElementTree
 
@@ -19,7 +18,7 @@ ATTRIBUTES = 64  # of an element: URDF has at most six
 
 
 def require_tree(robot: ElementTree.Element) -> None:
-    """Refuse cycles, islands, links with two parents, and numbers of no robot; ValueError."""
+    """Refuse cycles, islands and numbers of no robot; ValueError. See also loops.py."""
     for element in robot.iter():
         if len(element.attrib) > ATTRIBUTES:
             raise ValueError(f"<{element.tag}> has {len(element.attrib)} attributes")
@@ -88,9 +87,6 @@ def _require_near(named: ElementTree.Element, placed: ElementTree.Element) -> No
 
 def _require_connected(robot: ElementTree.Element, joints: list[ElementTree.Element]) -> None:
     ends = [(joint.get("name"), _end(joint, "parent"), _end(joint, "child")) for joint in joints]
-    twice = [child for child, n in Counter(child for _, _, child in ends).items() if n > 1]
-    if twice:
-        raise ValueError(f"link {twice[0]} has two parents")
     links = [link.get("name", "") for link in robot.findall("link")]
     if any(end not in links for _, *both in ends for end in both):
         return  # the reader of URDFs names the link that there is not

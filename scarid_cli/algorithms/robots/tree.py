@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 from scarid_cli.algorithms.robots import values
 from scarid_cli.algorithms.robots.files import of_file, text_of
+from scarid_cli.algorithms.robots.loops import without_loops
 from scarid_cli.algorithms.robots.sound import require_tree, without_impossible
 from scarid_cli.errors import UsageFault
 
@@ -51,8 +52,9 @@ def read(path: str, wanted: tuple[str, ...] = ()) -> Tree:
     text = text_of(path)
     try:
         tree = ElementTree.fromstring(text)
+        loops = without_loops(tree, wanted)
         require_tree(tree)
-        doubts = [*without_impossible(tree), *_fixed(tree, wanted)]
+        doubts = [*loops, *without_impossible(tree), *_fixed(tree, wanted)]
         _turn_endless_joints_into_angles(tree)
         _drop_shapes(tree)
         model = _model(pinocchio, ElementTree.tostring(tree, encoding="unicode"))
