@@ -111,7 +111,7 @@ def _judged(
     try:
         found = outcome(estimator, initial, checkpoint, treatment, robot)
     except NotIdentifiableError as error:
-        raise _not_identifiable(table, robot, error) from None
+        raise _not_identifiable(table, robot, error, findings) from None
     further = reach.findings(robot, table.period)
     every = [*findings, *further]
     in_units = all(finding.status != FAILED for finding in every)
@@ -258,12 +258,16 @@ def _with_sample(checkpoint: Checkpoint, rows: Rows) -> Checkpoint:
     return replace(checkpoint, subsample=checkpoint.subsample.add(rows), seen=seen)
 
 
-def _not_identifiable(table: Table, robot: Robot, error: NotIdentifiableError) -> BadData:
+def _not_identifiable(
+    table: Table, robot: Robot, error: NotIdentifiableError, findings: Sequence[Finding]
+) -> BadData:
+    """The error, which names what is wrong with the log first: the motion may be another one."""
     names = [*robot.names, *(error.added or ["the delay"])]
+    left = combination(error.direction, names[: len(error.direction)])
+    wrong = "; ".join(finding.text for finding in findings if finding.status == FAILED)
+    remedy = f"mend the log first: {wrong}" if wrong else "use a log that excites every joint"
     return BadData(
-        f"{table.name}: not identifiable: the motion leaves "
-        f"{combination(error.direction, names[: len(error.direction)])} undetermined; "
-        "use a log that excites every joint"
+        f"{table.name}: not identifiable: the motion leaves {left} undetermined; {remedy}"
     )
 
 

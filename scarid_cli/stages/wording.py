@@ -26,7 +26,8 @@ QUANTITIES = {
     },
     TORQUE: {
         "achsmoment", "coppia", "couple", "drehmoment", "effort", "efforts", "force", "forces",
-        "istmoment", "kraft", "moment", "momente", "momento", "tau", "torque", "torques", "trq",
+        "istmoment", "kraft", "moment", "momente", "momento", "qfrc", "tau", "torque", "torques",
+        "trq",
     },
     CURRENT: {"corrente", "corriente", "courant", "current", "currents", "strom"},
 }  # fmt: skip
@@ -35,13 +36,23 @@ CLOCK = {
     "date", "datetime", "sec", "seconds", "secs", "stamp", "t", "temps", "tempo", "tiempo", "time",
     "times", "timestamp", "timestamps", "tout", "zeit", "zeitstempel",
 }  # fmt: skip
-BESIDE = {"elapsed", "field", "header", "log", "relative"}  # a word of the clock
+BESIDE = {
+    "elapsed",
+    "field",
+    "header",
+    "log",
+    "relative",
+    "ros",
+    "sim",
+    "wall",
+}  # a word of the clock
 FRACTION = {"nanosec", "nanosecs", "nsec", "nsecs", "usec", "usecs"}  # that a clock leaves out
 # Words that tell neither the joint nor the quantity.
 PLAIN = {
-    "achse", "act", "actual", "articulation", "asse", "axe", "axis", "current", "data", "eje",
-    "feedback", "field", "gelenk", "giunto", "ist", "j", "jnt", "joint", "joints", "js", "link",
-    "log", "meas", "measured", "msr", "present", "state", "states", "value", "values",
+    "achse", "act", "actual", "actuator", "applied", "articulation", "asse", "axe", "axis",
+    "current", "data", "eje", "feedback", "field", "gelenk", "giunto", "ist", "j", "jnt", "joint",
+    "joints", "js", "link", "log", "meas", "measured", "msr", "present", "signals", "state",
+    "states", "value", "values",
 }  # fmt: skip
 # Words of what was commanded or wished.
 COMMANDED = {
@@ -50,12 +61,22 @@ COMMANDED = {
 }  # fmt: skip
 # Words of what was not measured at a joint itself: references, estimates, motors, the tool.
 OTHER = COMMANDED | {
-    "cartesian", "coriolis", "ddot", "dot", "ee", "eef", "encoder", "err", "error", "est",
-    "estimate", "estimated", "ext", "external", "feedforward", "ff", "filt", "filtered", "friction",
-    "gravity", "hat", "limit", "lp", "max", "mean", "min", "model", "motor", "motors", "nominal",
-    "pose", "predicted", "raw", "residual", "rms", "smooth", "smoothed", "std", "tcp",
-    "temperature", "tool", "var", "x", "y", "z",
+    "bias", "cartesian", "constraint", "coriolis", "ddot", "dot", "ee", "eef", "encoder", "err",
+    "error", "est", "estimate", "estimated", "ext", "external", "feedforward", "ff", "filt",
+    "filtered", "friction", "gravity", "hat", "limit", "lp", "max", "mean", "min", "model", "motor",
+    "motors", "nominal", "passive", "pose", "predicted", "raw", "residual", "rms", "smooth",
+    "smoothed", "std", "tcp", "temperature", "tool", "var", "x", "y", "z",
 }  # fmt: skip
+# Words of a clock, whatever else the name of its column says.
+TIMES = {"stamp", "time", "times", "timestamp", "timestamps", "tout"}
+# What a unit alone says of a column whose words say nothing but the joint.
+BY_UNIT = {"deg": POSITION, "rad": POSITION, "rev": POSITION, "deg/s": VELOCITY,
+           "rad/s": VELOCITY, "rpm": VELOCITY, "N m": TORQUE, "mN m": TORQUE, "kN m": TORQUE,
+           "N mm": TORQUE, "A": CURRENT, "mA": CURRENT}  # fmt: skip
+# Units that only their device knows.
+UNSTATED = re.compile(
+    r".*[\[(]\s*(inc|incs|increments?|counts?|cnt|ticks?|pulses?|.*%|permille|LSB)\s*[\])]\s*"
+)
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 INSIDE = re.compile(r"[^./]+[./]")  # the name of a structure, before that of its member
 
@@ -162,6 +183,8 @@ def words_of(name: str) -> tuple[str, ...]:
 
 def _read(name: str) -> _Column:
     """A column, the unit that its name states, and the words before it."""
+    if (match := UNSTATED.fullmatch(name)) and not unit_in_name(name):
+        return _Column(name, match[1], words_of(name[: match.start(1)]))
     before, unit = unit_in_name(name) or (name, "")
     return _Column(name, unit, words_of(before))
 
@@ -169,7 +192,7 @@ def _read(name: str) -> _Column:
 def _wanted(known: Collection[str]) -> list[str]:
     """The quantities of which a log has no column with our name."""
     wanted = [new for new in QUANTITIES if new.replace("{i}", "1") not in known]
-    if "q1" in known:
+    if "q1" in known and VELOCITY in wanted:
         wanted.remove(VELOCITY)  # which keep their names beside positions that have ours
     return wanted
 
@@ -193,6 +216,11 @@ def _by_joint(new: str, columns: Sequence[_Column]) -> dict[Key, _Column]:
     for column in columns:
         if _quantity(column) != new:
             continue
+        if UNSTATED.fullmatch(column.name) and column.unit not in UNITS:
+            raise Unclear(
+                f"{column.name} does not say what one {column.unit} is (state it as well, as in "
+                f"--unit '{new.replace('{i}', '*')}=0.001 {'N m' if new == TORQUE else 'rad'}')"
+            )
         key = tuple(word for word in column.words if word not in PLAIN | QUANTITIES[new])
         if key in found:
             what = new.replace("{i}", "")
@@ -203,10 +231,15 @@ def _by_joint(new: str, columns: Sequence[_Column]) -> dict[Key, _Column]:
 
 def _quantity(column: _Column) -> str | None:
     """What a column holds, if its name says this, and nothing against it."""
-    kinds = {new for new, words in QUANTITIES.items() if words & {*column.words}}
+    words = {*column.words}
+    if words & TIMES:
+        return None
+    kinds = {new for new, own in QUANTITIES.items() if own & words}
+    if not kinds and all(word in PLAIN or word.isdigit() for word in words):
+        return BY_UNIT.get(column.unit)
     if len(kinds) > 1:
         kinds.discard(CURRENT)  # "current" means "present" beside another quantity
-    return kinds.pop() if len(kinds) == 1 and not OTHER & {*column.words} else None
+    return kinds.pop() if len(kinds) == 1 and not OTHER & words else None
 
 
 def _order(found: Sequence[dict[Key, _Column]], joints: Sequence[str]) -> list[Key]:

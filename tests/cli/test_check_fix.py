@@ -70,3 +70,14 @@ def test_what_no_command_mends_is_said(shell: Shell) -> None:
     assert found.status == 65
     assert found.out == ""
     assert "not mended: constant torque" in found.err
+
+
+def test_what_a_wrong_log_leaves_undetermined_is_no_advice_to_move_otherwise(shell: Shell) -> None:
+    """Angles from 0 to 2 pi: few rows are left between the leaps, and the leaps are the cause."""
+    turned = "awk -F, -v OFS=, 'NR > 1 { for (k = 2; k < 4; k++) while ($k < 0) $k += 2 * p } 1'"
+    made = shell(f"{LOG} --format csv | cut -d, -f-5 | {turned} p=3.14159265358979 > log.csv")
+    assert made.status == 0, made.err
+    found = shell("scarid identify --robot planar2-gravity log.csv > parameters.csv")
+    assert found.status == 65
+    assert "undetermined; mend the log first: wraps: q1 leaps by 2 pi in " in found.err
+    assert "excites" not in found.err

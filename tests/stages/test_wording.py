@@ -55,6 +55,19 @@ HEADERS = {
     ),
     "one joint": ("time position torque", "time position torque"),
     "torques only": ("t q1 q2 effort_1 effort_2", "effort_1 effort_2"),
+    "a simulator's generalized forces": (
+        "time qpos0 qpos1 qvel0 qvel1 qfrc_actuator0 qfrc_actuator1 qfrc_bias0 qfrc_passive0",
+        "time qpos0 qpos1 qfrc_actuator0 qfrc_actuator1",
+    ),
+    "a simulator's clock": (
+        "sim_time joint_pos_0 joint_pos_1 applied_torque_0 applied_torque_1",
+        "sim_time joint_pos_0 joint_pos_1 applied_torque_0 applied_torque_1",
+    ),
+    "units alone": ("time J1_deg J2_deg J1_Nm J2_Nm", "time J1_deg J2_deg J1_Nm J2_Nm"),
+    "clocks within structures": (
+        "out.tout out.q.time out.q.signals.values1 out.tau.time out.tau.signals.values1",
+        "out.tout out.q.signals.values1 out.tau.signals.values1",
+    ),
     "motors as well": (
         "t joint_position_1 motor_position_1 joint_torque_1 motor_torque_1",
         "joint_position_1 joint_torque_1",
@@ -108,6 +121,8 @@ def test_joints_with_names_are_in_the_order_of_the_robot() -> None:
         ("t position_1 pos_1 torque_1", (), "both position_1 and pos_1 could be q of one joint"),
         ("t position_2 position_3", (), "their joints are numbered 2, 3"),
         ("t position_1 position_3", (), "their joints are numbered 1, 3"),
+        ("t a1.pos[inc] a1.torque[0.1%]", (), r"a1.pos\[inc\] does not say what one inc is"),
+        ("t pos1(deg) trq1(%)", (), r"trq1\(%\) does not say what one % is"),
         ("t left_position right_torque", (), "seem to be of different joints"),
         ("t left_position right_position", ("shoulder", "elbow"), "none of the joints shoulder"),
         (
