@@ -42,6 +42,7 @@ SECTIONS: Navigation = {
         "robots.md",
         "simulator.md",
         "check.md",
+        "known-faults.md",
         "report.md",
         "reference/*.md",
     ],

@@ -91,8 +91,8 @@ def test_a_joint_that_is_a_turn_away_from_its_zero_is_not_in_degrees() -> None:
 
 
 def test_the_page_shows_the_faults_that_were_found() -> None:
-    """The table of `make bench-checks` is that of docs/check.md, but for the digits."""
-    page = (ROOT / "docs" / "check.md").read_text("utf-8")
+    """The table of `make bench-checks` is that of docs/known-faults.md, but for the digits."""
+    page = (ROOT / "docs" / "known-faults.md").read_text("utf-8")
     shown = [row.split("|")[1:4] for row in page.splitlines() if row.startswith("| ")]
     for name, fault in SPOILED.items():
         assert [f" {name} ", f" {LOGS[fault.source]} ", f" {fault.check} "] in shown
