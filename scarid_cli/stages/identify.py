@@ -29,7 +29,7 @@ from scarid_cli.stages.corrected import TORQUE_GAINS
 from scarid_cli.stages.parameters import parameters
 from scarid_cli.stages.reach import Reach
 from scarid_cli.stages.rows import treated
-from scarid_cli.stages.suspicions import of_model
+from scarid_cli.stages.suspicions import of_model, without_placeholders
 from scarid_cli.stages.times import Times
 
 if TYPE_CHECKING:  # cvxpy takes a second to import
@@ -113,11 +113,12 @@ def _judged(
     except NotIdentifiableError as error:
         raise _not_identifiable(table, robot, error, findings) from None
     further = reach.findings(robot, table.period)
+    if not estimator.FOLLOWS:
+        rows = regressed(checkpoint.subsample.rows(), robot)
+        further = without_placeholders(further, rows, robot)
+        if all(finding.status != FAILED for finding in (*findings, *further)):
+            further += of_model(rows, robot)
     every = [*findings, *further]
-    in_units = all(finding.status != FAILED for finding in every)
-    if in_units and not estimator.FOLLOWS:
-        further += of_model(regressed(checkpoint.subsample.rows(), robot), robot)
-        every = [*findings, *further]
     bodies = None
     if treatment.consistent:
         found, bodies = _constrained(found, robot, checkpoint.subsample.rows())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -58,15 +58,21 @@ def simulate(
         round(given.one(kind) * loop.control_rate) for kind in (StandstillBefore, StandstillAfter)
     )
     if loop.sensors and watch is None:
-        watch = Followed(len(loop.robot.joints))
+        watch = Followed([joint.torque_limit for joint in loop.robot.joints])
     rows = _rows(with_standstill(references, before, after), loop, recorder, watch)
     return Table(table.name, schema, meta, _batches(rows, schema, len(loop.robot.joints)))
 
 
 class Followed:
-    """How well a loop follows its reference, and how much its torques change from tick to tick."""
+    """How well a loop follows its reference, and how its torques are.
 
-    def __init__(self, joints: int) -> None:
+    `limits` (joints) [N m or N] are those of the commanded torques.
+    """
+
+    def __init__(self, limits: Sequence[float]) -> None:
+        joints = len(limits)
+        self._limits = np.array(limits)[:, None]
+        self._limited = np.zeros(joints)
         self._ticks = 0
         self._last: Array | None = None  # the last command (joints, 1)
         self._sums = np.zeros((4, joints))
@@ -78,6 +84,7 @@ class Followed:
         changes = np.diff(log.command, prepend=before)
         parts = ((reference - log.q_true) ** 2, changes**2, reference, reference**2)
         self._sums += [part.sum(axis=1) for part in parts]
+        self._limited += np.count_nonzero(np.abs(log.command) >= self._limits, axis=1)
         self._ticks += reference.shape[1]
 
     @property
@@ -89,6 +96,11 @@ class Followed:
     def changes(self) -> Array:
         """The rms change of the commanded torque of each joint from tick to tick [N m or N]."""
         return np.asarray(np.sqrt(self._sums[1] / self._ticks))
+
+    @property
+    def limited(self) -> Array:
+        """The share of the time in which the torque of each joint is at its limit."""
+        return np.asarray(self._limited / max(self._ticks, 1))
 
     @property
     def lost(self) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from scarid_cli.algorithms.checks import mounting, scale, wiring
-from scarid_cli.algorithms.checks.finding import OK, Finding
+from scarid_cli.algorithms.checks.finding import FAILED, OK, TORQUES, Finding
 from scarid_cli.algorithms.checks.model import Samples, enough
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
@@ -13,17 +13,34 @@ from scarid_cli.algorithms.robots.description import Robot
 FEWEST = 100  # rows of each joint with which the description is put to the test
 
 
+def without_placeholders(findings: list[Finding], rows: Rows, robot: Robot) -> list[Finding]:
+    """The findings, but for torques far from their limits if they are those that masses need."""
+    if not any(finding.name == TORQUES and finding.status == FAILED for finding in findings):
+        return findings
+    samples = _samples(rows, robot)
+    if samples is None or not scale.scale_of(robot, samples).agrees:
+        return findings
+    return [finding for finding in findings if finding.name != TORQUES]
+
+
 def of_model(rows: Rows, robot: Robot) -> list[Finding]:
     """Axes, zeros, gravity and signs unlike in the description, and torques in another unit.
 
     A torque that never changes, as of a joint without a motor, says nothing about them.
     """
-    if rows.samples < FEWEST or not np.all(np.count_nonzero(rows.scales, axis=0) >= FEWEST):
+    samples = _samples(rows, robot)
+    if samples is None:
         return []
-    samples = Samples.of_rows(rows, enough(robot))
     driven = np.all(np.ptp(samples.motion[3], axis=1) > 0.0)
     unlike = _described(samples, robot) if driven else []
     return unlike or _scale(samples, robot)
+
+
+def _samples(rows: Rows, robot: Robot) -> Samples | None:
+    """The rows that are put to the test; None if they are too few."""
+    if rows.samples < FEWEST or not np.all(np.count_nonzero(rows.scales, axis=0) >= FEWEST):
+        return None
+    return Samples.of_rows(rows, enough(robot))
 
 
 def _described(samples: Samples, robot: Robot) -> list[Finding]:

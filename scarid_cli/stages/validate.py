@@ -39,6 +39,9 @@ class Beside(Protocol):
         """What it found in lines; `change` is what the verdict says of the robot."""
 
 
+PREDICTED = 0.5  # of a torque: a prediction in another unit misses more
+
+
 def validate(
     table: Table,
     model: Identified,
@@ -47,7 +50,7 @@ def validate(
     predictions: Sink | None = None,
     beside: Sequence[Beside] = (),
     before: Known | None = None,
-    failed: Callable[[], Sequence[str]] = tuple,
+    failed: Callable[[bool], Sequence[str]] = lambda _: (),
 ) -> Table:
     """The metrics of the torques that identified parameters predict for a motion, a row per joint.
 
@@ -55,8 +58,8 @@ def validate(
     `predictions` receives the measured and predicted torques of every sample (Fig. 7-8), and
     all `beside` see the rows on their way. With
     `before`, what is known of the log of the identification, the metadata say whether the robot
-    has changed since then. What `failed` among the checks of the log, told at its end, is then the
-    likelier cause.
+    has changed since then. What `failed` among the checks of the log, told at its end and whether
+    some torque is predicted, is then the likelier cause.
     """
     robot = model.robot
     sums = [empty() for _ in robot.joints]
@@ -86,7 +89,7 @@ def validate(
         relative = np.array([quality.relative_error / 100.0 for quality in qualities])
         rows = left_out.settled(subsample.rows())
         judged = verdict(rows, model, before, relative, times)
-        if causes := failed():
+        if causes := failed(bool(np.min(relative) < PREDICTED)):
             judged = replace(judged, grade=UNEXPLAINED, reason="; ".join(causes))
         extra["change"] = judged.extra
     for other in beside:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -173,3 +174,23 @@ def test_conditions_of_real_cells_can_be_expressed(name: str, rate: int, simulat
     found = simulate("--log-rate", rate, *words)
     assert found.status == 0
     assert found.out != simulate("--log-rate", rate).out
+
+
+def test_torques_at_their_limits_are_told(scarid: Run, tmp_path: Path) -> None:
+    """Of a description whose motor is too weak, for its share of the time; not of one that is not.
+
+    The share is that of the rows whose measured torque is within its noise of the limit.
+    """
+    weak = tmp_path / "weak.toml"
+    text = (ROBOTS / "scara2.toml").read_text("utf-8")
+    weak.write_text(text.replace("[[joint]]", "[[joint]]\ntorque_limit = 8.0", 1))
+    reference, log = tmp_path / "reference.csv", tmp_path / "log.csv"
+    scarid("trajgen", "-q", "--robot", weak, "--seed", 2, "-o", reference)
+    assert "limits" not in scarid("simulate", "--robot", "scara2", reference, "-o", log).err
+    noiseless = ("--torque-noise", 0, "--log-rate", 1000, "--robot", weak)
+    said = scarid("simulate", *noiseless, reference, "-o", log).err
+    (share,) = re.findall(r"joint 1 in (\S+) % \(8 N m\): the motion is not followed there", said)
+    torques = [float(line.split(",")[3]) for line in log.read_text().splitlines()[1:]]
+    at_limit = sum(abs(torque) >= 8.0 - 1e-9 for torque in torques) / len(torques)
+    assert float(share) == pytest.approx(100.0 * at_limit, abs=1.0)
+    assert "joint 2 in" not in said

@@ -242,3 +242,26 @@ def test_a_time_in_milliseconds_is_told(
 ) -> None:
     log = spoiled(samples / "scara2.csv", tmp_path / "log.csv", {"t": 1e3})
     assert told in scarid(*command.split(), log, "-o", tmp_path / "out.csv").err
+
+
+@pytest.mark.parametrize("limit", [3.0e5, 0.004])
+def test_a_limit_that_is_a_placeholder_is_no_reason_for_doubt(
+    limit: float, tmp_path: Path, scarid: Run
+) -> None:
+    """The masses need just these torques; of torques in another unit they do not."""
+    log, lifted = tmp_path / "log.csv", tmp_path / "lifted.csv"
+    reference, robot = tmp_path / "reference.csv", tmp_path / "arm.urdf"
+    made = (ROOT / "samples" / "arm.urdf").read_text("utf-8")
+    words = ("--seed", 3, "--ddq-max", 10)
+    robot.write_text(made)
+    scarid("trajgen", "-q", "--robot", robot, *words, "-o", reference)
+    scarid("simulate", "-q", "--robot", robot, reference, "-o", log)
+    robot.write_text(re.sub(r'effort="[^"]*"', f'effort="{limit}"', made))
+    found = tmp_path / "parameters.parquet"
+    assert verdict(scarid("identify", "--robot", robot, log, "-o", found)).startswith("good")
+    checked = scarid("check", "--robot", robot, log)
+    assert "failed" not in checked.out.replace("0 failed", "")
+    same = scarid("validate", "--parameters", found, log).err
+    assert "unchanged" in same
+    spoiled(log, lifted, {"tau1": 1e3, "tau2": 1e3})
+    assert not verdict(scarid("identify", "--robot", robot, lifted)).startswith("good")

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 OK, WARNING, FAILED = "ok", "warning", "failed"
+TORQUES = "torques"  # the name of the check that knows limits only
 STATUSES = (OK, WARNING, FAILED)  # from the best to the worst
 
 

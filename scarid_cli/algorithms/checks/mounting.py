@@ -19,10 +19,12 @@ from scarid_cli.algorithms.checks.model import Fit, Samples, fitted
 from scarid_cli.algorithms.checks.scale import disagreement
 from scarid_cli.algorithms.checks.search import ALIKE, FALL, Explained, searched
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.arrays import Array
 
 UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
-EXACT = 1e-6  # of the mean square torque of each joint: 0.1 % of it, which no sensor shows
+EXACT = 1e-6  # of the mean square of each torque with its mean: 0.1 %, which no sensor shows
 TURNED = 0.003  # of the mean square torque of a joint: what a wrong zero or gravity leaves of one
+TINY = 1e-300  # (N m)^2
 TURNS = (0.5 * pi, -0.5 * pi, pi)  # rad
 
 
@@ -122,7 +124,7 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
     described = Mounting.described(joints)
     as_described = Explained(described, fit_of(described))
     left = as_described.fit.residuals.max()
-    if left < EXACT:
+    if np.max(as_described.fit.residuals * _varying(samples)) < EXACT:
         return as_described
     found = searched(as_described, fit_of, reversed_axes, FALL ** (1.0 / joints))
     if left > TURNED:
@@ -132,6 +134,12 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
         other = searched(as_described, fit_of, folded)
         found = other if other.fit.misfit < found.fit.misfit + np.log(FALL) else found
     return as_described if found.fit.residuals.max() > UNEXPLAINED else found
+
+
+def _varying(samples: Samples) -> Array:
+    """The share of the mean square of each torque (joints) that is its variance."""
+    rows = [tau[counts] for tau, counts in zip(samples.motion[3], samples.counts, strict=True)]
+    return np.array([x.var() / max(np.mean(x**2), TINY) if len(x) else 0.0 for x in rows])
 
 
 def by_masses(
@@ -147,7 +155,8 @@ def by_masses(
     cases = Mounting.described(len(robot.joints)).turned(robot)
     ties = [one for one in (Explained(c, c.fitted(robot, samples)) for c in cases)
             if one.fit.misfit < most]  # fmt: skip
-    if not ties or np.isnan(left):
+    unexplained = found.fit.residuals.max() > UNEXPLAINED
+    if unexplained or not ties or np.isnan(left):
         return found
     left = min(left, found.case.disagreement(robot, samples))
     sizes = [one.case.disagreement(robot, samples) for one in ties]

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok
-from scarid_cli.algorithms.checks.model import DEVIATIONS, EXACT, Samples, solved
+from scarid_cli.algorithms.checks.model import DEVIATIONS, EXACT, Samples, Solution, solved
 from scarid_cli.algorithms.checks.units import prefixed
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.planar import PlanarTerm
@@ -75,6 +75,11 @@ class Scale:
             return above
         return [j for j in above if self._beyond_a_tool(j, least, most)]
 
+    @property
+    def agrees(self) -> bool:
+        """Whether the torques are about those that the masses need, as far as is known."""
+        return bool(self.known) and not (self.low or self.high or self.reversed)
+
     def corrected(self, samples: Samples) -> Samples:
         """The samples with the torques of another unit in that of the description."""
         wrong = self.low or self.high
@@ -115,7 +120,8 @@ def disagreement(robot: Robot, samples: Samples) -> float:
     """How little of the torques the described masses explain, by factors that are not negative.
 
     The mean over joints of the logarithm of what they leave of the mean square that friction, an
-    offset and the motor leave by themselves; nan if nothing is described that needs torques.
+    offset and the motor leave by themselves, which is all where they need nothing else than these;
+    nan if nothing is described that needs torques.
     """
     q, dq, ddq, tau, slope = samples.motion
     needed = _needed(robot, robot.regressor(q, dq, ddq))
@@ -126,7 +132,7 @@ def disagreement(robot: Robot, samples: Samples) -> float:
         with_masses = np.concatenate((needed[j][:, None, None], own), axis=2)
         found, without = (solved(W, tau[[j]], counts[None]) for W in (with_masses, own))
         share = found.residuals[0] / max(without.residuals[0], EXACT)
-        left.append(min(share, 1.0) if found.theta[0] > 0.0 else 1.0)
+        left.append(min(share, 1.0) if found.theta[0] > 0.0 and _apart(found) else 1.0)
     return float(np.mean(np.log(np.maximum(left, EXACT)))) if left else np.nan
 
 
@@ -142,9 +148,14 @@ def _factor(needed: Array, beside: list[Array], tau: Array, counts: Marks) -> tu
         return np.nan, np.nan
     W = np.column_stack([needed, *beside])[:, None, :]
     found = solved(W, tau[None], counts[None])
-    if found.inverse[0, 0] * np.sum(found.A[:, 0] ** 2) > ALIKE:
+    if not _apart(found):
         return np.nan, np.nan
     return float(found.theta[0]), float(found.scatter(1)[0])
+
+
+def _apart(found: Solution) -> bool:
+    """Whether the first column is unlike all that the others can be."""
+    return bool(found.inverse[0, 0] * np.sum(found.A[:, 0] ** 2) <= ALIKE)
 
 
 def finding(robot: Robot, scale: Scale) -> Finding:

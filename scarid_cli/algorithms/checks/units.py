@@ -6,7 +6,7 @@ from math import pi
 
 import numpy as np
 
-from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok, warning
+from scarid_cli.algorithms.checks.finding import TORQUES, Finding, failed, joints_text, ok, warning
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
@@ -141,7 +141,10 @@ def _in_other_unit(q: Array, robot: Robot, i: int, speed: float) -> bool:
 
 
 def torques(log: Log, robot: Robot) -> Finding:
-    """Torques against the limits; checks.scale compares them with those that the masses need."""
+    """Torques against the limits, many of which are placeholders in a URDF.
+
+    `checks.scale` compares them with those that the masses need, which are the better judge.
+    """
     reach = np.nanmax(np.abs(log.tau), axis=1)
     limits = np.array([joint.torque_limit or np.inf for joint in robot.joints])
     excess = float(np.max(np.where(np.isfinite(limits), reach / limits, 0.0)))
@@ -153,15 +156,15 @@ def torques(log: Log, robot: Robot) -> Finding:
         if 0 < len(large) < log.joints:
             single = " ".join(f"--unit 'tau{i + 1}=mN m'" for i in large)
             advice += f", or `{single}` if all others are in N m"
-        return failed("torques", figure, advice)
+        return failed(TORQUES, figure, advice)
     used = float(np.max(reach / limits))
     if np.isfinite(limits).all() and 0.0 < used < IDLE:
         figure += f", at most {used:.2g} of the limits of {robot.short_name}"
-        return failed("torques", figure, prefixed("k", robot))
+        return failed(TORQUES, figure, prefixed("k", robot))
     if excess > SPARE:
         advice = "are these torques of the joints, in N m, of this robot?"
-        return warning("torques", f"{figure}, {excess:.3g} times the limit", advice)
-    return ok("torques", figure)
+        return warning(TORQUES, f"{figure}, {excess:.3g} times the limit", advice)
+    return ok(TORQUES, figure)
 
 
 def prefixed(prefix: str, robot: Robot) -> str:

@@ -17,6 +17,8 @@ from scarid_cli.errors import UsageFault
 from scarid_cli.stages import simulate as stage
 from scarid_cli.stages.realtime import PART, Lateness, in_parts, paced
 
+LIMITED = 0.01  # of the time: a start from rest, or a push, is shorter
+
 
 def run(
     job: Job,
@@ -55,16 +57,34 @@ def run(
         sensors=None if soft_sensor is None else _sensors(soft_sensor, joints),
         **building.in_the_loop(given, arm.joints, control_rate),
     )
-    watch = stage.Followed(joints) if loop.sensors else None
+    watch = stage.Followed([joint.torque_limit for joint in arm.joints])
     reference, lateness = job.recorded(table), Lateness()
     if realtime:
         reference = in_parts(reference)
     log = stage.simulate(reference, loop, log_rate, truth=truth, given=given, watch=watch)
     job.write(paced(log, lateness) if realtime else log)
-    if watch and soft_sensor:
+    if soft_sensor:
         job.say(_told(soft_sensor, watch, arm))
+    if text := _limited(watch, arm):
+        job.say(text)
     if realtime:
         _tell_of_lateness(job, lateness, 1.0 / log_rate)
+
+
+def _limited(watch: stage.Followed, arm: Robot) -> str:
+    """Which torques are at their limits, so that the robot does not move as it should."""
+    own = [
+        f"joint {i} in {100.0 * share:.2g} % ({joint.torque_limit:.3g} {joint.torque_unit})"
+        for i, (share, joint) in enumerate(zip(watch.limited, arm.joints, strict=True), start=1)
+        if share > LIMITED
+    ]
+    if not own:
+        return ""
+    return (
+        f"warning: torques are at the limits of {arm.short_name} for a part of the time: "
+        f"{', '.join(own)}: the motion is not followed there; give a slower one, or one that "
+        "keeps them (`scarid trajgen --optimise`)"
+    )
 
 
 def _tell_of_lateness(job: Job, lateness: Lateness, interval: float) -> None:

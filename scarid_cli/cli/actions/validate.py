@@ -9,7 +9,7 @@ from typing import Any
 
 import pyarrow as pa
 
-from scarid_cli.algorithms.checks.finding import FAILED
+from scarid_cli.algorithms.checks.finding import FAILED, TORQUES
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.cli.belonging import FALSE_ALARMS, needs
@@ -92,7 +92,7 @@ def run(
         predictions=side,
         beside=beside,
         before=before if before.testable else None,
-        failed=lambda: _failed(reach, arm, table),
+        failed=lambda predicted: _failed(reach, arm, table, predicted=predicted),
     )
     job.write_or_print(result, validation if as_json else None)
     report(job, table, treatment.counting, result.meta.extra.get("left_out", {}))
@@ -101,7 +101,7 @@ def run(
     if gains:
         job.say(f"torques are divided by the gains of the identification: {told_gains(gains)}")
     if not before.testable:
-        for text in _failed(reach, arm, table):
+        for text in _failed(reach, arm, table, predicted=False):
             job.say(f"warning: {text}")
     _tell(job, model, before, result.meta.extra)
     for text in _told(beside, result.meta.extra):
@@ -148,10 +148,13 @@ def _status(job: Job, require: str | None, extra: dict[str, Any]) -> int:
     return REQUIRED
 
 
-def _failed(reach: Reach, robot: Robot, table: Table) -> list[str]:
-    """What is wrong with the extremes of the log, such as positions in another unit."""
-    found = reach.findings(robot, table.period)
-    return [finding.text for finding in found if finding.status == FAILED]
+def _failed(reach: Reach, robot: Robot, table: Table, *, predicted: bool) -> list[str]:
+    """What is wrong with the extremes of the log, such as positions in another unit.
+
+    Torques that are `predicted` are in their unit, however far from limits that may be none.
+    """
+    failed = [one for one in reach.findings(robot, table.period) if one.status == FAILED]
+    return [one.text for one in failed if not (predicted and one.name == TORQUES)]
 
 
 def _tell(job: Job, model: Identified, before: Known, extra: dict[str, Any]) -> None:
