@@ -22,11 +22,17 @@ def run_starts(times: Array | Numbers, period: float) -> list[int]:
     """The rows (from 0) in which the clock begins anew.
 
     A row that is late comes before the one before it by a few periods, and the time is beyond that
-    again a few rows later; a new run goes back by more.
+    again a few rows later; a new run goes back by more, and behind a few rows whose times leap
+    ahead the time goes on.
     """
     back = np.flatnonzero(np.diff(times) < -RUN * period) if period else np.empty(0, np.int64)
     latest = np.maximum.accumulate(times)
-    return [at + 1 for at in back.tolist() if not np.any(times[at + 1 : at + 1 + RUN] > latest[at])]
+    return [
+        at + 1
+        for at in back.tolist()
+        if not np.any(times[at + 1 : at + 1 + RUN] > latest[at])
+        and times[at + 1] < times[max(0, at + 1 - RUN) : at + 1].min()
+    ]
 
 
 def remedy_back(times: Array) -> str:

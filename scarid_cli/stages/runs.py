@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pyarrow as pa
@@ -30,7 +30,9 @@ class _Joining:
 
     tell: Callable[[str], None]
     offset: float = 0.0
-    last: float = np.nan  # of the log's own clock
+    tail: Array = field(
+        default_factory=lambda: np.empty(0)
+    )  # the last times of the log's own clock
     period: float = 0.0
     rows: int = 0
 
@@ -48,29 +50,29 @@ class _Joining:
             if starts or self.offset:
                 times = doubles(self._times(t, starts))
                 batch = batch.set_column(place, table.schema.field("t"), times)
-            self.last = float(t[-1]) if len(t) else self.last
+            self.tail = self._known(t)[-RUN:]
             self.rows += len(t)
             yield batch
 
     def _known(self, t: Array) -> Array:
-        """The times behind the last one before them, if there is one."""
-        return np.concatenate(([self.last], t)) if self.rows else t
+        """The times behind the last ones before them."""
+        return np.concatenate((self.tail, t))
 
     def _undecided(self, t: Array, first: pa.RecordBatch) -> bool:
-        back = np.flatnonzero(np.diff(self._known(t)) < 0.0)
-        late = bool(len(back)) and int(back[-1]) + RUN >= len(t)
+        back = np.flatnonzero(np.diff(self._known(t)) < 0.0) - len(self.tail)
+        late = bool(len(back)) and int(back[-1]) + 1 + RUN > len(t)
         return late and len(t) < first.num_rows + RUN
 
     def _starts(self, t: Array) -> list[int]:
         known = self._known(t)
         self.period = self.period or period_of(known)
-        before = len(known) - len(t)
-        return [start - before for start in run_starts(known, self.period)]
+        before = len(self.tail)
+        return [start - before for start in run_starts(known, self.period) if start >= before]
 
     def _times(self, t: Array, starts: list[int]) -> Array:
         times = t + self.offset
         for start in starts:
-            before = t[start - 1] if start else self.last
+            before = t[start - 1] if start else self.tail[-1]
             self.tell(
                 f"warning: the time goes back from {before:.6g} to {t[start]:.6g} s in row "
                 f"{self.rows + start + 1}: a new run, put behind the one before it with a gap, "

@@ -51,3 +51,15 @@ def test_a_row_that_is_late_begins_no_run(row: int, sizes: list[int]) -> None:
     found, said = joined(t, sizes)
     np.testing.assert_array_equal(found, t)
     assert not said
+
+
+@given(st.integers(1, 150), st.integers(1, RUN - 1), st.lists(st.integers(2, 50), max_size=8))
+def test_times_that_leap_ahead_begin_no_run_where_they_return(
+    row: int, count: int, sizes: list[int]
+) -> None:
+    t = PERIOD * np.arange(200)
+    t[row : row + count] += 1e3
+    assert not run_starts(t, PERIOD)
+    found, said = joined(t, sizes)
+    np.testing.assert_array_equal(found, t)
+    assert not said

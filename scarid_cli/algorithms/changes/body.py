@@ -34,13 +34,15 @@ def nearest(phi: Array, factor: Array) -> tuple[Array, float]:
     information = units.T @ units + np.diag((HELD / sizes) ** 2)
     body = _start(goal)
     weight = max(1.0, float(np.sum((units @ (body - goal)) ** 2)))
-    while weight > LAST:
+    while True:
         for _ in range(STEPS):
             step, length = _step(body, goal, information, weight)
             body = body + step / (1.0 + length)  # stays a body, and is less far
             if length < NEAR:
                 break
-        weight *= FALL
+        if weight <= LAST:
+            break
+        weight = max(FALL * weight, LAST)
     return mass * body, float(np.linalg.norm(units @ (body - goal)))
 
 
