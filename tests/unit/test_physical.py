@@ -288,3 +288,33 @@ def test_a_list_is_shortened_where_something_is_left_out(count: int) -> None:
     named = [item for item in _first_few(items).split(", ") if item != "..."]
     assert named == items[: len(named)]
     assert _first_few(items).endswith(", ...") == (len(named) < count)
+
+
+SMALL = """<robot name="small"><link name="base"/>{links}</robot>"""
+LINK = """<link name="l{k}"><inertial><origin xyz="{com}"/><mass value="{mass}"/>
+<inertia ixx="{x}" iyy="{y}" izz="{z}" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="j{k}" type="revolute"><origin xyz="{at}" rpy="{rpy}"/><parent link="{parent}"/>
+<child link="l{k}"/><axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="5" velocity="3"/></joint>
+"""
+
+
+@pytest.mark.parametrize("size", [0.05, 0.1, 1.0])
+def test_the_bodies_of_a_small_arm_are_possible_however_small(size: float, tmp_path: Path) -> None:
+    """Lengths times `size`, masses times its cube: a gripper of some grams is a body as well."""
+    inertia = [size**5 * x for x in (0.02, 0.024, 0.006)]
+    links = "".join(
+        LINK.format(
+            k=k, com=f"{0.2 * size} 0 0", mass=5.0 * size**3, x=inertia[0], y=inertia[1],
+            z=inertia[2], at=f"{0.4 * size} 0 0", rpy="1.5708 0 0",
+            parent="base" if k == 1 else f"l{k - 1}",
+        )
+        for k in (1, 2, 3)
+    )  # fmt: skip
+    path = tmp_path / "small.urdf"
+    path.write_text(SMALL.format(links=links))
+    robot = load(str(path))
+    covariance = np.diag((1e-4 * np.maximum(np.abs(robot.apriori), size**5 * 1e-3)) ** 2)
+    found = nearest(robot, robot.apriori, covariance)
+    assert found.distance < 0.1
+    np.testing.assert_allclose(found.bodies, np.reshape(robot.body.standard, (3, 10)), rtol=0.05,
+                               atol=1e-3 * size**5)  # fmt: skip

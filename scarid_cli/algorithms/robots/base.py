@@ -23,6 +23,7 @@ STATE_RANGE = 3.0  # rad or m, and per s and s2
 # (docs/design/robots.md).
 DEPENDENT = 1e-4  # of a column: what is left of it counts as nothing
 NOTHING = 1e-5  # of the longest column: a column, or what is left of it, that counts as nothing
+EXACT = 1e-9  # of a column: what is left of it where it is a combination of others
 ROUNDING = 1e-12
 MARGIN = 4  # rows per parameter at least
 TOGETHER = 32  # columns that are projected at once, as products of matrices are faster
@@ -61,7 +62,7 @@ def independent(W: Array) -> tuple[list[int], Array]:
     """The columns that are independent of those before them, and the others in terms of them.
 
     W is (rows, columns). The second result B (kept columns, columns) gives the dropped columns,
-    W_dropped = W_kept B; it is zero for columns that are kept or always zero.
+    W_dropped = W_kept B; it is zero for columns that are kept, or that count as nothing.
     """
     lengths = np.linalg.norm(W, axis=0)
     nothing = NOTHING * lengths.max(initial=0.0)
@@ -83,6 +84,12 @@ def independent(W: Array) -> tuple[list[int], Array]:
     rounding = np.finfo(np.float64).eps * len(W)
     parts: Array = np.asarray(np.linalg.lstsq(small[:, kept], small, rounding)[0], dtype=np.float64)
     parts[:, kept] = 0.0
+    parts[:, lengths <= nothing] = 0.0
+    # What a rounded angle leaves of a column has a share of every other one, which says nothing.
+    left = np.linalg.norm(W - W[:, kept] @ parts, axis=0)
+    rounded = left > EXACT * lengths
+    little = np.abs(parts) * lengths[kept][:, None] <= DEPENDENT * lengths
+    parts[little & rounded] = 0.0
     return kept, parts
 
 

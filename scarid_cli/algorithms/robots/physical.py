@@ -32,11 +32,17 @@ from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import BadData, UsageFault
 
 LENGTH = 0.1  # m: with lengths in decimetres the entries of a pseudo-inertia are of similar size
-LEAST_EIGENVALUE = 1e-4  # kg: the smallest eigenvalue of a pseudo-inertia in these units
-PRICE = 1e-4  # squared errors per kg^2 of distance from the URDF's bodies: decides what the base
-# parameters leave open, and keeps masses finite where the nearest ones would be infinite
+LEAST_EIGENVALUE = 1e-4  # of a pseudo-inertia whose diagonal is 1 for the link as described,
+SMALLER = 0.5  # or this part of what a flat link has as described
+ACCURACY = 1e-6  # of such an eigenvalue that the solver finds
+LIGHT = 0.01  # kg: the scale of lighter links; that of links without a mass is 1 kg
+POINT = 1e-3  # of the mass: the least scale of an inertia, a radius of 3 mm
+PRICE = 4e-5  # squared errors per square of the distance from the URDF's bodies, in their scale:
+# decides what the base parameters leave open, and keeps masses finite where the nearest ones would
+# be infinite
 SOLVER_ROUNDING = 1e-12  # kg m2: smaller values are left over by the solver
-RESOLUTION = 1e-6  # of an estimate: smaller errors are beyond the accuracy of the solver
+# Of an estimate, and of the largest one: smaller errors are beyond the solver's accuracy.
+RESOLUTIONS = (1e-6, 0.0), (1e-6, 1e-6), (1e-5, 1e-5)
 YIELD = 1.0  # squared errors: by one standard deviation the zeros of dropped parameters may move
 # the estimates, beyond what dropping them did
 NEGLIGIBLE = 1e-4  # errors: a dropped parameter that is smaller is zero
@@ -69,9 +75,25 @@ def nearest(
     nan: a parameter with a nan variance is free. The `dropped` parameters (indices) are kept at
     zero where that is possible (see `_smallest`): without other constraints this is least squares
     without their columns, if `estimates` and `covariance` are those of all parameters.
+
+    Where the solver gives up, as with the errors of a log without noise, errors are taken to be
+    larger, a little more each time.
     """
+    for resolution in RESOLUTIONS[:-1]:
+        with contextlib.suppress(BadData):
+            return _nearest(robot, estimates, covariance, dropped, resolution)
+    return _nearest(robot, estimates, covariance, dropped, RESOLUTIONS[-1])
+
+
+def _nearest(
+    robot: Robot,
+    estimates: Array,
+    covariance: Array,
+    dropped: Sequence[int],
+    resolution: tuple[float, float],
+) -> Physical:
     arm = Arm.of(robot)
-    away, tie = whitened(arm.base, estimates, covariance)
+    away, tie = whitened(arm.base, estimates, covariance, resolution)
     differences = arm.cvxpy.hstack([away, *(np.sqrt(PRICE) * x for x in arm.beyond)])
     constraints = [*arm.constraints, *tie]
     zero, penalty = np.empty(0, dtype=np.int64), 0.0
@@ -105,7 +127,7 @@ class Arm:
     """The unknowns of the semidefinite program, and what is linear or quadratic in them.
 
     `base` = of_bodies @ bodies + of_axes @ beside; `beyond` is the difference of the bodies from
-    those of the URDF [kg], and `beside`.
+    those of the URDF, in the scale of these, and `beside`.
     """
 
     cvxpy: Any
@@ -125,13 +147,16 @@ class Arm:
         standard = [f"{symbol}{i}" for i in links for symbol in SYMBOLS]
         names = dict.fromkeys(name for p in _parts(robot) for name, _ in p)
         axes = [name for name in names if name not in standard]
-        pseudo = [cvxpy.Variable((4, 4), symmetric=True) for _ in links]
+        own = np.array(robot.body.standard).reshape(len(links), 10)
+        scales = [_scale(x) for x in own]
+        scaled = [cvxpy.Variable((4, 4), symmetric=True) for _ in links]
+        pseudo = [cvxpy.multiply(s, K) for s, K in zip(scales, scaled, strict=True)]
         beside = cvxpy.Variable(len(axes))
         positive = [i for i, name in enumerate(axes) if POSITIVE.fullmatch(name)]
         bounds = [beside[positive] >= 0.0] if positive else []
-        own = np.array(robot.body.standard).reshape(len(links), 10)
         apart = [
-            cvxpy.vec(J - pseudo_inertia(x), order="F") for J, x in zip(pseudo, own, strict=True)
+            cvxpy.vec(K - pseudo_inertia(x) / s, order="F")
+            for K, s, x in zip(scaled, scales, own, strict=True)
         ]
         return cls(
             cvxpy,
@@ -140,7 +165,13 @@ class Arm:
             axes,
             _combinations(robot, standard),
             _combinations(robot, axes),
-            [*bounds, *(J >> LEAST_EIGENVALUE * np.eye(4) for J in pseudo)],
+            [
+                *bounds,
+                *(
+                    K >> _least(pseudo_inertia(x) / s) * np.eye(4)
+                    for K, s, x in zip(scaled, scales, own, strict=True)
+                ),
+            ],
             [*apart, beside],
         )
 
@@ -150,17 +181,39 @@ class Arm:
         return self.of_bodies @ self.cvxpy.hstack(self.bodies) + self.of_axes @ self.beside
 
 
-def whitened(base: Any, estimates: Array, covariance: Array) -> tuple[Any, list[Any]]:
+def _scale(body: Array) -> Array:
+    """The scale (4, 4) [kg] of a pseudo-inertia, by which its diagonal is about 1 as described.
+
+    A link of next to no mass, or the mass of a point, may be a placeholder, and is no scale.
+    """
+    diagonal = np.diag(pseudo_inertia(body)).copy()
+    diagonal[3] = max(diagonal[3], LIGHT) if diagonal[3] > 0.0 else 1.0
+    diagonal[:3] = np.maximum(diagonal[:3], POINT * diagonal[3])
+    size = np.sqrt(diagonal)
+    return np.outer(size, size)
+
+
+def _least(own: Array) -> float:
+    """The smallest eigenvalue that a link may have whose scaled pseudo-inertia is its own."""
+    described = float(np.linalg.eigvalsh(own)[0])
+    return min(LEAST_EIGENVALUE, max(SMALLER * described, ACCURACY))
+
+
+def whitened(
+    base: Any, estimates: Array, covariance: Array, resolution: tuple[float, float] = RESOLUTIONS[0]
+) -> tuple[Any, list[Any]]:
     """The whitened difference z with base - estimates = C^(1/2) z, and this constraint.
 
-    C^(1/2) instead of C^(-1/2): the equation stays well scaled when C is nearly singular.
+    Errors are at least the `resolution` of estimates (see RESOLUTIONS). C^(1/2) instead of
+    C^(-1/2): the equation stays well scaled when C is nearly singular.
     """
     cvxpy = _cvxpy()
     known = np.flatnonzero(np.isfinite(np.diag(covariance)))
     away = cvxpy.Variable(len(known))
     if not len(known):
         return away, []
-    rounding = RESOLUTION * np.abs(estimates[known])
+    sizes = np.abs(estimates[known])
+    rounding = np.maximum(resolution[0] * sizes, resolution[1] * sizes.max())
     C = covariance[np.ix_(known, known)] + np.diag(rounding**2)
     errors = np.sqrt(np.diag(C))
     values, vectors = np.linalg.eigh(C / np.outer(errors, errors))
