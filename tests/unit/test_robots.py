@@ -67,6 +67,13 @@ def test_unknown_robot_is_refused_with_the_choice(name: str) -> None:
         load(name)
 
 
+def test_a_robot_without_a_title_has_that_of_its_file(tmp_path: Path) -> None:
+    text = (ROBOTS / "emps.toml").read_text("utf-8")
+    path = tmp_path / "linear axis.toml"
+    path.write_text(text.replace('title = "EMPS, one prismatic axis"', ""), "utf-8")
+    assert load(str(path)).title == "linear axis"
+
+
 def test_a_description_that_is_not_there_is_refused() -> None:
     with pytest.raises(UsageFault, match=r"^nowhere/robot\.toml: no such file$"):
         load("nowhere/robot.toml")
@@ -75,7 +82,6 @@ def test_a_description_that_is_not_there_is_refused() -> None:
 @pytest.mark.parametrize(
     ("text", "instead", "complaint"),
     [
-        ('title = "EMPS, one prismatic axis"', "", "missing 'title'"),
         ('title = "EMPS, one prismatic axis"', "title = 3", "title is 3, not a string"),
         ('title = "EMPS, one prismatic axis"', 'title = ""', "title is '', not a string"),
         ("[[joint]]", "[[axis]]", "axis is not a key of a robot; its keys are title, joint"),

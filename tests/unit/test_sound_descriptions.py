@@ -172,6 +172,17 @@ def test_an_inertia_is_told_exactly_if_no_body_has_it(moments: tuple[float, floa
         assert text.startswith("link l2: its principal inertias are ")
 
 
+@pytest.mark.parametrize("moments", [(-2.4e-35, 0.0, 2.4e-35), (4.9e-21, 3.6e-20, 5.5e-20)])
+def test_what_rounding_leaves_of_the_inertia_of_a_point_is_not_told(
+    moments: tuple[float, float, float],
+) -> None:
+    tree = ElementTree.fromstring(with_inertia("1", moments))
+    assert not without_impossible(tree)
+    inertia = tree.find(".//inertia")
+    assert inertia is not None
+    assert min(float(inertia.get(key, "0")) for key in ("ixx", "iyy", "izz")) >= 0.0
+
+
 @given(st.floats(-1e100, -1e-9))
 def test_a_negative_mass_is_told_and_taken_as_none(mass: float) -> None:
     tree = ElementTree.fromstring(with_inertia(repr(mass), (0.1, 0.1, 0.1)))

@@ -103,7 +103,7 @@ def arm(name: str, document: dict[str, Any], folder: Path) -> Robot:
     found_robot = with_base_parameters(
         Robot(
             name,
-            values.text("title", document["title"]),
+            values.text("title", document.get("title", Path(name).stem)),
             tuple(joints),
             tuple(parameters),
             control=control_of(document, len(found)),

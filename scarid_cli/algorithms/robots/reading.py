@@ -106,7 +106,7 @@ def _robot(name: str, document: dict[str, Any]) -> Robot:
     values.distinct("term of a joint", [(p.term.NAME, *p.term.joints) for p in parameters])
     robot = Robot(
         name=name,
-        title=values.text("title", document["title"]),
+        title=values.text("title", document.get("title", Path(name).stem)),
         joints=joints,
         parameters=parameters,
         control=control_of(document, len(joints)),

@@ -14,6 +14,7 @@ import numpy as np
 JOINTS = 1000  # of a chain or of a whole robot, fixed ones included
 FURTHEST = 1e6  # m or rad, of an origin
 ROUNDED = 0.01  # of an inertia, as files with few digits have it
+NOTHING = 1e-12  # kg m2, of a milligram at a millimetre: what CAD leaves of the inertia of a point
 ATTRIBUTES = 64  # of an element: URDF has at most six
 
 
@@ -57,11 +58,12 @@ def _mended(link: ElementTree.Element, inertial: ElementTree.Element) -> str:
     x, y, z, xy, xz, yz = (_number(inertia, f"i{a}") for a in ("xx", "yy", "zz", "xy", "xz", "yz"))
     moments = np.linalg.eigvalsh([[x, xy, xz], [xy, y, yz], [xz, yz, z]])
     told = f"its principal inertias are {', '.join(f'{moment:.3g}' for moment in moments)} kg m2"
+    nothing = np.abs(moments).max() < NOTHING
     if moments[0] < -ROUNDED * abs(moments[-1]):
         for key in inertia.attrib:
             inertia.set(key, "0")
-        return f"{told}, negative; taken as a point"
-    if moments[-1] > (1.0 + ROUNDED) * (moments[0] + moments[1]):
+        return "" if nothing else f"{told}, negative; taken as a point"
+    if not nothing and moments[-1] > (1.0 + ROUNDED) * (moments[0] + moments[1]):
         return f"{told}, of which one is larger than the sum of the others"
     return ""
 
