@@ -68,10 +68,14 @@ def clean(name: str, seed: int = 1, *more: str) -> Log:
         return read(log, ROBOTS[name])
 
 
-def remarks(fault: Spoiled) -> list[Finding]:
+def remarks(fault: Spoiled, seed: int = 1) -> list[Finding]:
     """What is not in order in a log with this fault."""
-    robot = load(ROBOTS[fault.robot or fault.source])
-    return [found for found in check(fault.spoil(clean(fault.source)), robot) if found.status != OK]
+    return of_log(fault.spoil(clean(fault.source, seed)), fault.robot or fault.source)
+
+
+def of_log(log: Log, robot: str) -> list[Finding]:
+    """What is not in order in a log of this robot."""
+    return [found for found in check(log, load(ROBOTS[robot])) if found.status != OK]
 
 
 def named(fault: Spoiled, found: list[Finding]) -> bool:

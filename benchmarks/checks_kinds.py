@@ -13,46 +13,35 @@ from pathlib import Path
 from zlib import crc32
 
 import numpy as np
-from checks import ROBOTS, clean
+from checks import ROBOTS, clean, named, of_log, remarks
 from kinds import KINDS, Kind
+from spoiled import Spoiled
 
-from scarid_cli.algorithms.checks.finding import OK, Finding
-from scarid_cli.algorithms.checks.log import Log
-from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.stages.check import check
+from scarid_cli.algorithms.checks.finding import Finding
 
 PRESENT = [robot for robot, path in ROBOTS.items() if "/" not in path or Path(path).exists()]
 
 
-def remarks(log: Log, robot: str) -> list[Finding]:
-    """What is not in order."""
-    return [found for found in check(log, load(ROBOTS[robot])) if found.status != OK]
-
-
-def trial(name: str, kind: Kind, seed: int) -> tuple[str, list[Finding], str]:
-    """The robot of this run, what was found, and what had to be said."""
+def trial(name: str, kind: Kind, seed: int) -> tuple[Spoiled, list[Finding]]:
+    """The fault of this run, and what was found."""
     rng = np.random.default_rng((crc32(name.encode()), seed))
     robot = str(rng.choice([robot for robot in kind.robots if robot in PRESENT]))
-    log = clean(robot, seed)
-    spoil, says = kind.draw(log, rng)
-    return robot, remarks(spoil(log), robot), says
-
-
-def named(kind: Kind, found: list[Finding], says: str) -> bool:
-    return any(f.name == kind.check and says in f"{f.figure}; {f.advice}" for f in found)
+    spoil, says = kind.draw(clean(robot, seed), rng)
+    fault = Spoiled(robot, spoil, kind.check, says)
+    return fault, remarks(fault, seed)
 
 
 def row(name: str, kind: Kind, seeds: range) -> str:
     """The kind's row: how often it was named, and which other checks did not pass."""
     count, others = 0, Counter[str]()
     for seed in seeds:
-        robot, found, says = trial(name, kind, seed)
-        hit = named(kind, found, says)
+        fault, found = trial(name, kind, seed)
+        hit = named(fault, found)
         count += hit
         others.update({f.name for f in found if f.name != kind.check})
         if not hit:
             told = "; ".join(f"{f.name}: {f.figure} -> {f.advice}" for f in found) or "nothing"
-            print(f"{name}, {robot}, seed {seed} ({says}): {told}", file=sys.stderr)
+            print(f"{name}, {fault.source}, seed {seed} ({fault.says}): {told}", file=sys.stderr)
     more = ", ".join(f"{other} {number}" for other, number in others.most_common()) or "-"
     return f"| {name} | {kind.check} | {count} of {len(seeds)} | {more} |"
 
@@ -61,7 +50,7 @@ def clean_row(robot: str, seeds: range) -> str:
     """The false alarms on clean logs of a robot."""
     alarms, logs = Counter[str](), 0
     for seed in seeds:
-        found = remarks(clean(robot, seed), robot)
+        found = of_log(clean(robot, seed), robot)
         logs += bool(found)
         alarms.update({f"{f.name} ({f.status})" for f in found})
     more = ", ".join(f"{name} {number}" for name, number in alarms.most_common()) or "-"

@@ -36,16 +36,8 @@ CLOCK = {
     "date", "datetime", "sec", "seconds", "secs", "stamp", "t", "temps", "tempo", "tiempo", "time",
     "times", "timestamp", "timestamps", "tout", "zeit", "zeitstempel",
 }  # fmt: skip
-BESIDE = {
-    "elapsed",
-    "field",
-    "header",
-    "log",
-    "relative",
-    "ros",
-    "sim",
-    "wall",
-}  # a word of the clock
+# A word of the clock.
+BESIDE = {"elapsed", "field", "header", "log", "relative", "ros", "sim", "wall"}
 FRACTION = {"nanosec", "nanosecs", "nsec", "nsecs", "usec", "usecs"}  # that a clock leaves out
 # Words that tell neither the joint nor the quantity.
 PLAIN = {
@@ -92,6 +84,7 @@ class _Column:
     name: str
     unit: str
     words: tuple[str, ...]
+    unstated: str = ""  # a unit that only the device knows
 
 
 def in_words(
@@ -184,7 +177,7 @@ def words_of(name: str) -> tuple[str, ...]:
 def _read(name: str) -> _Column:
     """A column, the unit that its name states, and the words before it."""
     if (match := UNSTATED.fullmatch(name)) and not unit_in_name(name):
-        return _Column(name, match[1], words_of(name[: match.start(1)]))
+        return _Column(name, "", words_of(name[: match.start(1)]), match[1])
     before, unit = unit_in_name(name) or (name, "")
     return _Column(name, unit, words_of(before))
 
@@ -205,7 +198,8 @@ def _clock(columns: Sequence[_Column], structure: str) -> list[tuple[str, _Colum
     if any({*column.words} & FRACTION for column in columns):
         return []  # seconds in one column, their fractions in another
     beside = BESIDE.union(words_of(structure))
-    found = [c for c in columns if {*c.words} & CLOCK and {*c.words} <= CLOCK | beside]
+    named = [c for c in columns if {*c.words} & CLOCK and {*c.words} <= CLOCK | beside]
+    found = [column for column in named if not column.unstated]
     stamps = [column for column in found if "header" in column.words]
     return [("t", column) for column in (stamps or found)[:1]]
 
@@ -216,10 +210,10 @@ def _by_joint(new: str, columns: Sequence[_Column]) -> dict[Key, _Column]:
     for column in columns:
         if _quantity(column) != new:
             continue
-        if UNSTATED.fullmatch(column.name) and column.unit not in UNITS:
+        if column.unstated:
             raise Unclear(
-                f"{column.name} does not say what one {column.unit} is (state it as well, as in "
-                f"--unit '{new.replace('{i}', '*')}=0.001 {'N m' if new == TORQUE else 'rad'}')"
+                f"{column.name} does not say what one {column.unstated} is (state it as well, as "
+                f"in --unit '{new.replace('{i}', '*')}=0.001 {'N m' if new == TORQUE else 'rad'}')"
             )
         key = tuple(word for word in column.words if word not in PLAIN | QUANTITIES[new])
         if key in found:

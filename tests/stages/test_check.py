@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from checks import LOGS, ROBOTS, URDF, clean, named, read, remarks
-from checks_kinds import named as kind_named
 from checks_kinds import trial
 from cli.real import TX40, ur10_log
 from conftest import ROOT
@@ -50,9 +49,8 @@ def test_a_fault_is_named(name: str) -> None:
 
 @pytest.mark.parametrize("name", KINDS)
 def test_a_kind_of_fault_is_named_whatever_joint_and_size_are_drawn(name: str) -> None:
-    kind = KINDS[name]
-    _, found, says = trial(name, kind, 2)
-    assert kind_named(kind, found, says), (says, found)
+    fault, found = trial(name, KINDS[name], 2)
+    assert named(fault, found), (fault.says, found)
 
 
 @pytest.mark.parametrize("name", ["ur10", "panda"])

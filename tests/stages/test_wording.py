@@ -158,6 +158,10 @@ def test_other_tables_keep_their_names(header: str) -> None:
     assert not renamable(header.split())
 
 
+def test_a_clock_in_ticks_of_its_device_is_left_to_the_user() -> None:
+    assert renamed("time[ticks] pos1 torque1") == {"q1": "pos1", "tau1": "torque1"}
+
+
 def test_names_that_are_given_are_not_looked_for() -> None:
     found = in_words(["time", "encoder", "torque_1"], {"q1"}, ())
     assert found is not None

@@ -151,12 +151,13 @@ def by_masses(
     are estimated. What was `found` stays unless the masses leave far less of the torques otherwise,
     and far less than they do in another explanation (`left`, a disagreement).
     """
+    if np.isnan(left) or found.fit.residuals.max() > UNEXPLAINED:
+        return found
     most = found.fit.misfit + alike(robot)
     cases = Mounting.described(len(robot.joints)).turned(robot)
     ties = [one for one in (Explained(c, c.fitted(robot, samples)) for c in cases)
             if one.fit.misfit < most]  # fmt: skip
-    unexplained = found.fit.residuals.max() > UNEXPLAINED
-    if unexplained or not ties or np.isnan(left):
+    if not ties:
         return found
     left = min(left, found.case.disagreement(robot, samples))
     sizes = [one.case.disagreement(robot, samples) for one in ties]

@@ -104,9 +104,8 @@ class Scale:
 
 def scale_of(robot: Robot, samples: Samples) -> Scale:
     """The factors of a robot's torques in these samples."""
-    q, dq, ddq, tau, slope = samples.motion
-    needed = _needed(robot, robot.regressor(q, dq, ddq))
-    beside = [dq, np.sign(dq), np.ones_like(q), slope, *([ddq] if robot.body else [])]
+    needed, beside = _columns(robot, samples)
+    tau = samples.motion[3]
     found = [
         _factor(needed[j], [x[j] for x in beside], tau[j], samples.counts[j])
         for j in range(len(tau))
@@ -123,10 +122,8 @@ def disagreement(robot: Robot, samples: Samples) -> float:
     offset and the motor leave by themselves, which is all where they need nothing else than these;
     nan if nothing is described that needs torques.
     """
-    q, dq, ddq, tau, slope = samples.motion
-    needed = _needed(robot, robot.regressor(q, dq, ddq))
-    beside = [dq, np.sign(dq), np.ones_like(q), slope, *([ddq] if robot.body else [])]
-    left = []
+    needed, beside = _columns(robot, samples)
+    tau, left = samples.motion[3], []
     for j in np.flatnonzero(needed.any(axis=1)):
         counts, own = samples.counts[j], np.column_stack([x[j] for x in beside])[:, None, :]
         with_masses = np.concatenate((needed[j][:, None, None], own), axis=2)
@@ -136,10 +133,12 @@ def disagreement(robot: Robot, samples: Samples) -> float:
     return float(np.mean(np.log(np.maximum(left, EXACT)))) if left else np.nan
 
 
-def _needed(robot: Robot, W: Array) -> Array:
-    """The torques (joints, samples) of the described masses and inertias."""
+def _columns(robot: Robot, samples: Samples) -> tuple[Array, list[Array]]:
+    """The torques (joints, samples) of the described masses and inertias, and the other columns."""
+    q, dq, ddq, _, slope = samples.motion
     masses = np.array([isinstance(p.term, MASSES) for p in robot.parameters])
-    return robot.torques(W, np.where(masses, robot.apriori, 0.0))
+    needed = robot.torques(robot.regressor(q, dq, ddq), np.where(masses, robot.apriori, 0.0))
+    return needed, [dq, np.sign(dq), np.ones_like(q), slope, *([ddq] if robot.body else [])]
 
 
 def _factor(needed: Array, beside: list[Array], tau: Array, counts: Marks) -> tuple[float, float]:

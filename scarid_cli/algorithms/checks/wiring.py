@@ -119,10 +119,11 @@ def _by_masses(
     def left(one: Explained[Wiring]) -> float:
         return disagreement(robot, samples.wired(one.case))
 
-    size = left(found)
-    every = _reversed(found, [-1] * len(found.fit.powers), partial(_fit, robot, samples))
-    if not np.all(found.fit.powers > SURE) and left(every) < size + np.log(FALL):
-        found, size = every, left(every)
+    size, powers = left(found), found.fit.powers
+    if not np.all(powers > SURE):
+        every = _reversed(found, [-1] * len(powers), partial(_fit, robot, samples))
+        if (other := left(every)) < size + np.log(FALL):
+            found, size = every, other
     return logged if left(logged) < size + np.log(FALL) else found
 
 

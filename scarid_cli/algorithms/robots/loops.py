@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
+from scarid_cli.algorithms.robots.sound import end_of
+
 LOOP = "loop_joint"  # an element of some simulators, which names the two links that it connects
 UNSEEN = "what it passes on is not modelled"
 
@@ -20,7 +22,7 @@ def without_loops(robot: ElementTree.Element, wanted: tuple[str, ...] = ()) -> l
     ]
     carriers: dict[str, list[ElementTree.Element]] = {}
     for joint in robot.findall("joint"):
-        carriers.setdefault(_end(joint, "child"), []).append(joint)
+        carriers.setdefault(end_of(joint, "child"), []).append(joint)
     for link, joints in carriers.items():
         if len(joints) > 1:
             kept = _kept(joints, carriers, wanted)
@@ -47,15 +49,10 @@ def _kept(
 
 def _below(joint: ElementTree.Element, carriers: dict[str, list[ElementTree.Element]]) -> bool:
     """Whether the way up from the parent of a joint leads to the link that it carries."""
-    target, link, seen = _end(joint, "child"), _end(joint, "parent"), set[str]()
+    target, link, seen = end_of(joint, "child"), end_of(joint, "parent"), set[str]()
     while link in carriers and link not in seen:
         if link == target:
             return True
         seen.add(link)
-        link = _end(carriers[link][0], "parent")
+        link = end_of(carriers[link][0], "parent")
     return link in seen
-
-
-def _end(joint: ElementTree.Element, tag: str) -> str:
-    element = joint.find(tag)
-    return "" if element is None else element.get("link", "")

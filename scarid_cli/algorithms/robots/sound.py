@@ -88,7 +88,9 @@ def _require_near(named: ElementTree.Element, placed: ElementTree.Element) -> No
 
 
 def _require_connected(robot: ElementTree.Element, joints: list[ElementTree.Element]) -> None:
-    ends = [(joint.get("name"), _end(joint, "parent"), _end(joint, "child")) for joint in joints]
+    ends = [
+        (joint.get("name"), end_of(joint, "parent"), end_of(joint, "child")) for joint in joints
+    ]
     links = [link.get("name", "") for link in robot.findall("link")]
     if any(end not in links for _, *both in ends for end in both):
         return  # the reader of URDFs names the link that there is not
@@ -111,6 +113,7 @@ def _require_connected(robot: ElementTree.Element, joints: list[ElementTree.Elem
         raise ValueError(f"no way leads from the base {roots[0]} to joint {names}")
 
 
-def _end(joint: ElementTree.Element, tag: str) -> str:
+def end_of(joint: ElementTree.Element, tag: str) -> str:
+    """The link that is the parent, or the child, of a joint."""
     element = joint.find(tag)
     return "" if element is None else element.get("link", "")
