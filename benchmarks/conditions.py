@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from altered import Change, altered, clipped, drifted, hurried, loose, pulled, saturated
 from arms import URDFS, described
-from mechanics import BUILT, CHANGES, LOADED, cubic
+from mechanics import BUILT, CHANGES, FREQUENCIES, LOADED, cubic, geared, one_flexible
 
 from scarid_cli.algorithms.choices.registry import EXCITATIONS
 from scarid_cli.algorithms.plants.controllers import law
@@ -185,12 +185,16 @@ UNSEEN = [
     Condition("cubic cable", altered=partial(cubic, 0.2), stroke=1.5),
     *[Condition(name, built=build) for name, build in BUILT.items()],
     *[Condition(name, own=given) for name, given in LOADED.items()],
+    *[Condition(f"{FLEXIBLE} 2, {f:g} Hz", own=partial(one_flexible, f)) for f in FREQUENCIES],
 ]
+GEARED = {"scara2-geared": 0.05, "planar2-gravity-geared": 0.02}  # kg m2, of the second motor
 
 
 @cache
 def robot_named(name: str) -> Robot:
     """A robot by its name; an arm known by its URDF gets motors and friction."""
+    if name in GEARED:
+        return geared(load(name.removesuffix("-geared")), GEARED[name])
     if not (URDFS / f"{name}.urdf").exists():
         return load(name)
     with tempfile.TemporaryDirectory() as folder:

@@ -16,6 +16,7 @@ from altered import Change, Recorded, coulomb
 
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.planar import MX2
+from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
 
 ARM, HALF = 0.2, 10.0  # m; s
@@ -37,10 +38,16 @@ def gained(factor: float, _: Robot, log: Recorded) -> Recorded:
     return t, q, tau
 
 
-def loose(degrees: float, _: Robot, log: Recorded) -> Recorded:
-    """Backlash: the encoder of the motor is ahead in the direction of the torque."""
+def loose(degrees: float, robot: Robot, log: Recorded) -> Recorded:
+    """Backlash: the encoder is ahead of the link in the direction of the torque in the gear.
+
+    That is the torque of the motor without the friction, which is on its side.
+    """
     t, q, tau = log
-    return t, q + 0.5 * np.radians(degrees) * np.sign(tau), tau
+    speed = velocity(log)
+    viscous = np.array([[robot.value("viscous", i)] for i in range(1, len(q) + 1)])
+    carried = tau - viscous * speed - coulomb(robot) * np.sign(speed)
+    return t, q + 0.5 * np.radians(degrees) * np.sign(carried), tau
 
 
 def play(x: Array, half: Array) -> Array:
@@ -87,6 +94,27 @@ def late(seconds: float, _: Robot, log: Recorded) -> Recorded:
     return t, q, tau
 
 
+def late_torque(seconds: float, _: Robot, log: Recorded) -> Recorded:
+    """The torque of a joint is that of a time ago."""
+    t, q, tau = log
+    tau = tau.copy()
+    tau[JOINT] = np.interp(t - seconds, t, tau[JOINT])
+    return t, q, tau
+
+
+def one_flexible(frequency: float, robot: Robot) -> dict[str, tuple[float, ...]]:
+    """A gear of a joint is elastic: its frequency [Hz], with the motor locked."""
+    return {"flexibility": tuple(frequency * (j == JOINT) for j in range(len(robot.joints)))}
+
+
+def geared(robot: Robot, inertia: float) -> Robot:
+    """The robot whose second motor has an inertia [kg m2] of its own."""
+    (mass,) = (p for p in load("emps").parameters if p.term.NAME == "mass")
+    own = replace(mass, name="Ia2", unit="kg m2", apriori=inertia)
+    own = replace(own, term=replace(mass.term, joint=JOINT + 1))
+    return replace(robot, name=f"{robot.name}-geared", parameters=(*robot.parameters, own))
+
+
 def longer(factor: float, robot: Robot) -> Robot:
     """The robot whose first link is longer, with the same masses on it."""
     parameters = [
@@ -110,7 +138,9 @@ CHANGES: dict[str, Change] = {
     **{f"torque hysteresis {100 * x:g} %": partial(hysteresis, x) for x in (0.005, 0.02)},
     **{f"Maxwell slip {1e3 * x:g} mrad": partial(slipping, x) for x in (0.02, 0.06)},
     "Coulomb friction over the position 30 %": partial(uneven, 0.3),
-    "position of joint 2 late 4 ms": partial(late, 0.004),
+    **{f"position of joint 2 late {1e3 * x:g} ms": partial(late, x) for x in (0.004, 0.01)},
+    **{f"torque of joint 2 late {1e3 * x:g} ms": partial(late_torque, x) for x in (0.004, 0.01)},
 }
 BUILT: dict[str, Callable[[Robot], Robot]] = {"link length +1 %": partial(longer, 1.01)}
+FREQUENCIES = (5.0, 8.0, 12.0, 20.0)  # Hz, of a gear
 LOADED = {f"payload of {100 * x:g} % in mid-log": partial(picked_up, x) for x in (0.05, 0.2)}

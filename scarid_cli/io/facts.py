@@ -76,11 +76,15 @@ def _evidence(x: Any) -> bool:
 
 ADDITION = {"name": text, "joint": lambda x: isinstance(x, int) and 0 <= x < 1 << 20,
             "usual": _size, "size": _or_none(number), "cycles": _size}  # fmt: skip
+SINCE = {"error": _or_none(_size)}  # which the additions of older tables have not
 
 
 def _addition(x: Any) -> bool:
     """What was fitted beside the parameters (statistics/additions.py)."""
-    return _of(ADDITION)(x) and set(x) == set(ADDITION)
+    if not _of(ADDITION)(x):
+        return False
+    further = set(x) - set(ADDITION)
+    return further <= set(SINCE) and all(SINCE[key](x[key]) for key in further)
 
 
 def _gains(x: Any) -> bool:

@@ -12,12 +12,14 @@ import pyarrow as pa
 from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.shifting import reach
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import Addition, Shapes
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.gains import estimated, widening
+from scarid_cli.algorithms.statistics.mismatches import reach as of_mismatch
 from scarid_cli.algorithms.statistics.outcome import Outcome
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 from scarid_cli.arrays import Array, median
@@ -56,6 +58,11 @@ class Identified:
         """The predicted torques (joints, samples) of rows, without the delay."""
         torques = self.robot.torques(rows.W, self.theta)
         return torques + self.shapes.torques(rows).T if self.additions else torques
+
+    def reach(self, period: float) -> int:
+        """The samples on either side without which no torque is predicted, `period` [s] apart."""
+        own = [of_mismatch(x.name, period) for x in self.additions if x.mismatch]
+        return max(own, default=0) + reach(self.delay, period, low_pass=self.low_pass)
 
     @property
     def model(self) -> Model:
@@ -107,7 +114,10 @@ def identified(table: Table, robot: Robot) -> Identified:
     theta = values[: len(values) - len(velocities)]
     delay = float(table.meta.extra.get("delay") or 0.0)
     low_pass = bool(table.meta.extra.get("low_pass"))
-    additions = tuple(Addition(**addition) for addition in table.meta.extra.get(ADDITIONS, []))
+    additions = tuple(
+        Addition(**{key: x for key, x in addition.items() if x is not None})
+        for addition in table.meta.extra.get(ADDITIONS, [])
+    )
     return Identified(robot.with_stribeck(velocities), theta, delay, low_pass, additions)
 
 

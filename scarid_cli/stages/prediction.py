@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.rows import Rows, joined
-from scarid_cli.algorithms.regression.shifting import led, reach
+from scarid_cli.algorithms.regression.shifting import led
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
@@ -43,7 +43,7 @@ def of_parts(
 ) -> Iterator[Predicted]:
     """The same of parts whose samples are `period` [s] apart."""
     delay, low_pass = models[0].delay, models[0].low_pass
-    needed = reach(delay, period, low_pass=low_pass)
+    needed = max(model.reach(period) for model in models)
     for (batch, rows), around, own in _with_context(parts, needed):
         torques = [model.torques(around) for model in models]
         if delay:

@@ -136,9 +136,11 @@ class Residuals:
     def _observed(
         self, parts: Iterator[Part], model: Identified, observer: Observer
     ) -> Iterator[Part]:
+        # What needs the rows around its own would depend on how they arrive.
+        own = [addition for addition in model.additions if not addition.mismatch]
+        beside = replace(model.shapes, additions=own)
         for batch, rows in parts:
-            beside = model.shapes.torques(rows) if model.additions else 0.0
-            yield batch, observer(replace(rows, y=rows.y - beside))
+            yield batch, observer(replace(rows, y=rows.y - beside.torques(rows)))
 
     def _start(self, table: Table) -> None:
         units = [joint.torque_unit for joint in self.robot.joints]

@@ -9,7 +9,7 @@ are predicted.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from statistics import fmean
 
@@ -29,6 +29,10 @@ from scarid_cli.algorithms.statistics.alternatives import (
     Signals,
 )
 from scarid_cli.algorithms.statistics.explanations import Explanation
+from scarid_cli.algorithms.statistics.mismatches import (
+    MISMATCHES,
+    Mismatches,
+)
 from scarid_cli.arrays import Array
 
 
@@ -37,7 +41,8 @@ class Addition:
     """A torque of a joint (from 0): `size` times one of the SHAPES, whose name it has.
 
     `usual` [rad/s or m/s] is the speed by which the shape scales velocities, and `cycles` the
-    periods of a ripple per rad or m, 0 for others.
+    periods of a ripple per rad or m, 0 for others. `error` is the standard error of the size. A
+    mismatch of a joint (mismatches.py) changes the torques of others as well.
     """
 
     name: str
@@ -45,6 +50,12 @@ class Addition:
     usual: float
     size: float = np.nan
     cycles: float = 0.0
+    error: float = field(default=np.nan, compare=False)
+
+    @property
+    def mismatch(self) -> bool:
+        """Whether it is a late signal or a joint that yields."""
+        return self.name in MISMATCHES
 
     @property
     def lasts(self) -> bool:
@@ -53,7 +64,12 @@ class Addition:
 
     @property
     def possible(self) -> bool:
-        """Whether there is such a thing: friction takes a part of the load away."""
+        """Whether there is such a thing: friction takes a part of the load away.
+
+        What yields does so in the direction of the torque, and what is late is not early.
+        """
+        if self.mismatch:
+            return self.size > 0.0
         return self.name != LOAD or 0.0 < self.size < 1.0
 
 
@@ -89,7 +105,10 @@ def mean_additions(sets: Sequence[Sequence[Addition]]) -> tuple[Addition, ...]:
         alike.setdefault((addition.name, addition.joint, addition.cycles), []).append(addition)
     return tuple(
         replace(
-            own[0], usual=fmean(x.usual for x in own), size=sum(x.size for x in own) / len(sets)
+            own[0],
+            usual=fmean(x.usual for x in own),
+            size=sum(x.size for x in own) / len(sets),
+            error=float(np.linalg.norm([x.error for x in own])) / len(sets),
         )
         for own in alike.values()
     )
@@ -102,6 +121,16 @@ class Shapes:
     additions: Sequence[Addition]
     model: Model
     theta: Array
+
+    @property
+    def possible(self) -> bool:
+        """Whether there are additions of these sizes."""
+        return all(addition.possible for addition in self.additions)
+
+    @property
+    def curved(self) -> bool:
+        """Whether a column depends on the size that it gets."""
+        return any(addition.mismatch for addition in self.additions)
 
     @property
     def constant(self) -> list[int]:
@@ -117,9 +146,14 @@ class Shapes:
         signals = Signals.of(rows, self.model, self.theta)
         columns = np.zeros((*rows.y.shape, len(self.additions)))
         joints = np.ones(rows.y.shape[1])
+        mismatches = Mismatches(rows, self.model, self.theta)
         signals = replace(signals, turns=joints > 0.0)  # those of the log that shows them
         for k, addition in enumerate(self.additions):
             usual, cycles = addition.usual * joints, addition.cycles * joints
+            if addition.mismatch:
+                of = addition.name, addition.joint, addition.size
+                columns[:, :, k] = mismatches.column(*of)
+                continue
             own = replace(signals, usual=usual, cycles=cycles)
             columns[:, addition.joint, k] = SHAPES[addition.name](own)[:, addition.joint]
         return columns

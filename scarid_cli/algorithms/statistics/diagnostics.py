@@ -36,6 +36,7 @@ from scarid_cli.algorithms.statistics.jackknife import (
     jackknife_of_blocks,
     quantile,
 )
+from scarid_cli.algorithms.statistics.mismatched import mismatches
 from scarid_cli.algorithms.statistics.parallel import ENCODERS, ZEROS
 from scarid_cli.algorithms.statistics.residuals import JointResidual, residuals
 from scarid_cli.algorithms.statistics.trimmed import trimmed
@@ -61,7 +62,8 @@ class Diagnostics:
     explain, counted from sample 0 of a record that is known as a whole. `cuts` are the estimates
     before and after some times [s] from its first sample on. `offsets` [N m or N] are those of the
     torques of joints (from 0) that were fitted beside the parameters, and `additions` what else
-    was. Each of the `explanations` alone explains nearly all that the torques are beyond the model.
+    was. Each of the `explanations` alone explains nearly all that the torques are beyond the model;
+    `mismatches` may, which the whole estimation tells.
     `cycles` (ripples, joints) are the periods per rad or m of the likeliest ripples. `totals`
     (joints, columns + 2, columns + 2) are the products of [W, y, 1] of the rows as they were fitted
     and weighted, `counts` (joints) their numbers, and `inflation` is how much larger variances are
@@ -84,6 +86,7 @@ class Diagnostics:
     bursts: tuple[Interval, ...] = ()
     cuts: tuple[tuple[float, Cut], ...] = ()
     explanations: tuple[Explanation, ...] = ()
+    mismatches: tuple[Explanation, ...] = ()
     cycles: Array = field(default_factory=lambda: np.zeros((0, 0)))
     offsets: dict[int, float] = field(default_factory=dict)
     additions: tuple[Addition, ...] = ()
@@ -126,6 +129,7 @@ def diagnose(
     suspected: frozenset[str] = frozenset(),
     shared: Set[str] = frozenset(),
     curves: Collection[int] = (),
+    mismatched: Set[tuple[str, int]] = frozenset(),
 ) -> Diagnostics:
     """Diagnose an estimation from its rows.
 
@@ -137,7 +141,7 @@ def diagnose(
     `gain_errors` are the relative standard errors of the torque constants. Intervals allow for the
     alternatives that are `suspected` even where they are not significant, for all that is possible
     of those that are `shared`, because other joints have them, and for any curve of the friction of
-    the joints (from 0) of `curves`.
+    the joints (from 0) of `curves`. Those `mismatched`, of joints (from 0), are in W.
     """
     noise = found.noise
     white = noise.rows(rows) if noise else rows
@@ -155,6 +159,7 @@ def diagnose(
         noise=noise,
         suspected=suspected,
         shared=shared,
+        fitted=mismatched,
     )
     longer = trial.longer(white)
     scatter = errors * longer
@@ -191,6 +196,7 @@ def diagnose(
         bursts=() if record else bursts_of(rows, trimmed(whole)),
         cuts=trial.cuts(longer),
         explanations=explanations(trial, effects) if model and trial.plain else (),
+        mismatches=mismatches(trial, effects) if model and trial.plain and not shared else (),
         cycles=trial.ripples.cycles,
     )
 

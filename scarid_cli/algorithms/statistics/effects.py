@@ -27,6 +27,7 @@ from scarid_cli.algorithms.statistics.autocovariance import autocovariance_error
 from scarid_cli.algorithms.statistics.cuts import Cut, cuts
 from scarid_cli.algorithms.statistics.geometry import distance_columns
 from scarid_cli.algorithms.statistics.jackknife import block_numbers, quantile
+from scarid_cli.algorithms.statistics.mismatches import MISMATCHES, WIDESPREAD, Mismatches
 from scarid_cli.algorithms.statistics.parallel import ZEROS, smoothed
 from scarid_cli.algorithms.statistics.products import Products, Solved, jackknifed
 from scarid_cli.algorithms.statistics.ripple import Ripples
@@ -163,6 +164,7 @@ class Trial:
     its regressor. Joints are weighted by `weights`, and rows are whitened by the `noise`, if there
     is one: torques need only those in these `places`. The alternatives that are `suspected` count
     even where they are not significant; those that are `shared` were fitted for other joints.
+    Mismatches that are `fitted`, of joints (from 0), are in W.
     """
 
     rows: Rows
@@ -176,6 +178,7 @@ class Trial:
     places: Numbers
     suspected: frozenset[str] = frozenset()
     shared: Set[str] = frozenset()
+    fitted: Set[tuple[str, int]] = frozenset()
 
     @classmethod
     def of(
@@ -189,12 +192,15 @@ class Trial:
         noise: ColouredNoise | None = None,
         suspected: frozenset[str] = frozenset(),
         shared: Set[str] = frozenset(),
+        fitted: Set[tuple[str, int]] = frozenset(),
     ) -> Trial:
         """From the rows of an estimation, and its estimates."""
         few = thinned(rows)
         places = noise.kept(few) if noise else np.arange(few.samples)
         numbers = block_numbers(few.at, few.h)
-        return cls(few, own, weights, estimates, model, *numbers, noise, places, suspected, shared)
+        return cls(
+            few, own, weights, estimates, model, *numbers, noise, places, suspected, shared, fitted
+        )
 
     @cached_property
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
@@ -205,6 +211,31 @@ class Trial:
             columns = distance_columns(self.model, theta, self.rows.motion[:3])
             further |= {} if columns is None else {GEOMETRY: columns}
         return self.products(self.rows.scales, further)
+
+    @cached_property
+    def mismatches(self) -> tuple[Products, dict[int, tuple[str, int]]]:
+        """The products with late signals and yielding joints, and the joint of each column."""
+        products, places = self.mismatched(MISMATCHES)
+        pool = {column: (x, j) for x, own in places.items() for j, column in enumerate(own)}
+        return products, pool
+
+    def mismatched(self, names: Sequence[str]) -> tuple[Products, dict[str, list[int]]]:
+        """The products with these mismatches of all joints; the columns of what is fitted are 0."""
+        assert self.model is not None
+        joints = range(self.rows.y.shape[1])
+        own = Mismatches(self.rows, self.model, self.estimates[: self.own])
+        none = np.zeros_like(self.rows.y)
+        columns = {
+            x: [none if (x, j) in self.fitted else own.column(x, j) for j in joints] for x in names
+        }
+        return self.products(
+            self.rows.scales, {x: np.stack(each, axis=2) for x, each in columns.items()}
+        )
+
+    def elsewhere(self, plain: Solved) -> list[Effect]:
+        """The effects of what was fitted for some joints and that others are likely to have."""
+        kinds = [x for x in WIDESPREAD if x in {name for name, _ in self.fitted}]
+        return self.beside(*self.mismatched(kinds), plain, plain) if kinds else []
 
     @cached_property
     def ripples(self) -> Ripples:
@@ -252,7 +283,7 @@ class Trial:
         if solved:
             found.append(self.effect(REVERSALS, self.plain, self.plain, solved))
             same.insert(0, (away, solved))
-        return (*found, *self.signals(self.plain, same))
+        return (*found, *self.elsewhere(self.plain), *self.signals(self.plain, same))
 
     def errors_with_curves(self, joints: Collection[int]) -> Array:
         """The errors (own) if the friction of these joints (from 0) is any curve of the speed.

@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 
 from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, PARTS, RIPPLE, SHAPES
 from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial, clear, level_among
+from scarid_cli.algorithms.statistics.mismatches import ELASTIC_GEAR, ELASTIC_JOINT
+from scarid_cli.algorithms.statistics.parallel import ELASTICITY, SIGNALS
 from scarid_cli.arrays import Array
 
 # The names of alternatives for the torques, with the joints (from 0) to whose torques they belong.
@@ -25,14 +27,21 @@ class Explanation:
     """An alternative that explains nearly all that the torques are beyond the model.
 
     It is as clear as its `clearness`; what is left is not clearer than `rest`. To be fitted, it
-    must be larger than so many errors as its `threshold` says. `cycles` (ripples, joints) are
-    the periods per rad or m that ripples have.
+    must be larger than so many errors as its `threshold` says, and each part larger than `each`.
+    `cycles` (ripples, joints) are the periods per rad or m that ripples have.
     """
 
     torques: Torques
     clearness: float
     threshold: float
     cycles: Array
+    each: float = 0.0
+
+    @property
+    def kindred(self) -> set[str]:
+        """What other joints may have of the same, for which their intervals are wider."""
+        yields = any(name in (ELASTIC_GEAR, ELASTIC_JOINT) for name, _ in self.torques)
+        return {ELASTICITY, SIGNALS} if yields else set()
 
     @property
     def rest(self) -> float:

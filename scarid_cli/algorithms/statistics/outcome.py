@@ -36,9 +36,12 @@ from scarid_cli.algorithms.statistics.effects import Effect, clear
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
 from scarid_cli.algorithms.statistics.explanations import Explanation
 from scarid_cli.algorithms.statistics.joint_products import JointProducts
+from scarid_cli.algorithms.statistics.mismatches import PRESLIDING
 from scarid_cli.algorithms.statistics.offsets import offset_joints, offsets, with_offsets
 from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.arrays import Array, median
+
+ROWS = 3  # behind a reversal, that the build-up of friction must last
 
 
 @dataclass(frozen=True)
@@ -97,25 +100,48 @@ class Problem:
             suspected=suspected,
             shared={CABLE if x.name == CUBE else x.name for x in self.additions} - {OFFSET},
             curves={x.joint for x in self.additions if x.name in DECAYED},
+            mismatched={(x.name, x.joint) for x in self.additions if x.mismatch},
         )
         sizes = self.found.fit.estimates[self.own + len(self.additions) :].tolist()
         offsets = dict(zip(self.offsets, sizes, strict=False))
-        found = replace(found, offsets=offsets, additions=self.additions)
+        found = replace(found, offsets=offsets, additions=self._with_errors(found.scatter))
         return self._with_slack(self.model.robot, self.model.kept, found) if self.model else found
 
-    def added(self, errors: Array) -> float:
-        """The largest addition in units of its error (columns); 0 if one of them is impossible.
+    def _with_errors(self, errors: Array) -> tuple[Addition, ...]:
+        """The additions, with those of these errors (columns) that are theirs."""
+        own = errors[self.own : self.own + len(self.additions)].tolist()
+        return tuple(replace(x, error=e) for x, e in zip(self.additions, own, strict=True))
+
+    def shows(self, explanation: Explanation, errors: Array) -> bool:
+        """Whether the additions, of this explanation, are larger than their errors (columns).
 
         These errors are those of disturbances that last, too, of which blocks know nothing. An
-        offset and a ripple go with others, and do not count beside them.
+        offset and a ripple go with others, and do not count beside them. Of each kind of mismatch
+        one joint must exceed the threshold, and all `each`.
         """
-        if not all(addition.possible for addition in self.additions):
-            return 0.0
         sizes = self.found.fit.estimates[self.own : self.own + len(self.additions)]
         ratios = np.abs(sizes) / errors[self.own : self.own + len(self.additions)]
-        names = [addition.name for addition in self.additions]
-        own = {*names} - {OFFSET, SINE, COSINE} or {SINE, COSINE}
-        return float(np.max(ratios[[name in own for name in names]]))
+        names = np.array([addition.name for addition in self.additions])
+        if self.mismatched:
+            largest = [ratios[names == name].max() for name in {*names.tolist()}]
+            return bool(min(largest) > explanation.threshold and ratios.min() > explanation.each)
+        own = {*names.tolist()} - {OFFSET, SINE, COSINE} or {SINE, COSINE}
+        return bool(ratios[[name in own for name in names]].max() > explanation.threshold)
+
+    @property
+    def mismatched(self) -> bool:
+        """Whether late signals or yielding joints are among the additions."""
+        return any(addition.mismatch for addition in self.additions)
+
+    @property
+    def possible(self) -> bool:
+        """Whether there are such additions; presliding that is over within ROWS is not seen."""
+        accelerations = np.sqrt(np.mean(self.rows.motion[2] ** 2, axis=1))
+        least = 0.25 * accelerations * (ROWS * self.rows.h) ** 2  # half the distance from rest
+        return all(
+            x.possible and not (x.name == PRESLIDING and x.size < least[x.joint])
+            for x in self.additions
+        )
 
     def _with_slack(self, robot: Robot, kept: list[int], found: Diagnostics) -> Diagnostics:
         """The diagnostics, whose errors of the offsets allow for where springs are slack.
@@ -278,15 +304,22 @@ def _explained(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnos
     if not (given.align and plain.model):
         return plain, diagnostics
     suspected = frozenset(effect.name for effect in clear(diagnostics.effects))
-    for explanation in diagnostics.explanations:
+    candidates = [*diagnostics.explanations, *diagnostics.mismatches]
+    for explanation in sorted(candidates, key=lambda x: -x.clearness):
         try:
-            wider = _problem(given, _shapes(given, plain, plain.model, explanation))
+            shapes = _shapes(given, plain, plain.model, explanation)
+            if shapes.curved and not shapes.possible:
+                continue
+            wider = _problem(given, shapes)
         except NotIdentifiableError:
+            continue
+        if not wider.possible:
             continue
         found = wider.diagnostics(gain_errors, suspected)
         left = {effect.name for effect in clear(found.effects, explanation.rest)}
-        there = wider.added(found.scatter) > explanation.threshold
-        if there and not left & {*suspected, *TORQUES}:
+        there = wider.shows(explanation, found.scatter)
+        new = left if wider.mismatched else left & {*suspected, *TORQUES}
+        if there and not new - explanation.kindred:
             return wider, found
     return plain, diagnostics
 
@@ -320,12 +353,17 @@ def _shapes(given: _Given, plain: Problem, model: Model, explanation: Explanatio
 
 def _beside(given: _Given, plain: Problem, model: Model, additions: tuple[Addition, ...]) -> Shapes:
     """The shapes of additions, with the estimates beside them."""
-    rows = thinned(plain.rows)
-    first = Shapes(additions, model, plain.found.fit.estimates[: plain.own])
-    wide = first.beside(rows)
-    start = np.append(given.initial, np.zeros(wide.W.shape[2] - plain.own))
-    estimator = given.estimator.widened(len(start) - plain.own).quick()
-    return replace(first, theta=estimator.of_rows(wide, start).fit.estimates[: plain.own])
+    rows, own, count = thinned(plain.rows), plain.own, plain.rows.W.shape[2]
+    shapes = Shapes(additions, model, plain.found.fit.estimates[:own])
+    for _ in range(1 + 3 * shapes.curved):
+        wide = shapes.beside(rows)
+        start = np.append(given.initial, np.zeros(wide.W.shape[2] - own))
+        estimator = given.estimator.widened(len(start) - own).quick()
+        found = estimator.of_rows(wide, start).fit.estimates
+        shapes = replace(shapes, theta=found[:own], additions=shapes.sized(found[count:]))
+        if not shapes.possible:
+            break
+    return shapes
 
 
 def _problem(given: _Given, shapes: Shapes | None = None) -> Problem:

@@ -33,6 +33,16 @@ from scarid_cli.algorithms.statistics.alternatives import (
 from scarid_cli.algorithms.statistics.curves import laws
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import REVERSALS, Effect, level_among
+from scarid_cli.algorithms.statistics.mismatches import (
+    BACKLASH,
+    ELASTIC_GEAR,
+    ELASTIC_JOINT,
+    HYSTERESIS,
+    LATE_POSITION,
+    LATE_TORQUE,
+    MISMATCHES,
+    PRESLIDING,
+)
 from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, LATE, ZEROS
 from scarid_cli.arrays import Array, Marks
 from scarid_cli.interval import plus_minus
@@ -74,6 +84,14 @@ ADVICE = {
     LATE: "the signals of {joints} are not of the same instant as those of the others",
     ELASTICITY: "the transmission of {joints} is elastic (a gear or a belt between encoder and "
     "link)",
+    BACKLASH: "there is a gap in the gear of {joints} (backlash), with the encoder on the motor",
+    HYSTERESIS: "the torque of {joints} has a hysteresis, as of its sensor",
+    PRESLIDING: "friction of {joints} builds up over a distance behind a reversal (presliding)",
+    LATE_POSITION: "the position of {joints} is older than the other signals",
+    LATE_TORQUE: "the torque of {joints} is older than the other signals",
+    ELASTIC_GEAR: "something yields between encoder and link of {joints} (an elastic gear or belt)",
+    ELASTIC_JOINT: "motor and link of {joints} oscillate against each other, the encoder on the "
+    "link",
     REVERSALS: "friction near reversals differs from the model (--drop-slow leaves more of the "
     "slow rows out)",
 }
@@ -177,6 +195,8 @@ def _fitted(kind: str, added: Sequence[Addition], robot: Robot) -> str:
         return f"fitted as well, with {_amplitudes(added, robot)}"
     if kind == CABLE:
         return f"fitted as well: {_cables(added, robot)}"
+    if kind in MISMATCHES:
+        return f"fitted as well: {_mismatches(added, robot)}"
     return f"fitted as well: {_sizes(added, robot)}"
 
 
@@ -187,6 +207,27 @@ def _sizes(added: Sequence[Addition], robot: Robot) -> str:
     if len(set(units)) == 1:
         return f"{listed(sizes)} {units[0]}"
     return listed([f"{size} {unit}" for size, unit in zip(sizes, units, strict=True)])
+
+
+def _mismatches(added: Sequence[Addition], robot: Robot) -> str:
+    """`117 +- 4 N m/rad at joint 1 and 98 +- 3 N m/rad at joint 2`."""
+    return listed([f"{_mismatch(x, robot.joints[x.joint])} at joint {x.joint + 1}" for x in added])
+
+
+def _mismatch(x: Addition, joint: Joint) -> str:
+    """The delay, stiffness, gap and so on of a mismatch, with half its 95 % interval."""
+    if x.name == ELASTIC_GEAR:
+        return (
+            f"{1.0 / x.size:.3g} {plus_minus(x.error / x.size**2)} {joint.torque_unit}/{joint.unit}"
+        )
+    if x.name in (BACKLASH, PRESLIDING):
+        return f"{2.0 * x.size:.2g} {plus_minus(2.0 * x.error)} {joint.unit}"
+    if x.name == HYSTERESIS:
+        return f"{x.size:.3g} {plus_minus(x.error)} {joint.torque_unit}"
+    if x.name == ELASTIC_JOINT:
+        frequency = 0.5 / (np.pi * np.sqrt(x.size))
+        return f"{frequency:.3g} {plus_minus(0.5 * frequency * x.error / x.size)} Hz"
+    return f"{1e3 * x.size:.3g} {plus_minus(1e3 * x.error)} ms"
 
 
 def _cables(added: Sequence[Addition], robot: Robot) -> str:
