@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.algorithms.statistics.effects import CERTAIN, PARALLEL, Effect, Trial, clear
+from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial
 from scarid_cli.algorithms.statistics.explanations import RARE, Explanation, Torques
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.mismatches import LATE_POSITION, LATE_TORQUE, MISMATCHES
@@ -26,8 +26,6 @@ def mismatches(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, ..
     """
     if trial.model is None or not trial.rows.order:
         return ()  # a low-pass that is not known exactly looks like a joint that yields
-    if any(effect.name == PARALLEL for effect in clear(effects)):
-        return ()  # what depends on the soft sensor is not the robot's
     products, pool = trial.mismatches
     if products.eliminated is None:
         return ()
