@@ -213,29 +213,30 @@ class Trial:
         return self.products(self.rows.scales, further)
 
     @cached_property
-    def mismatches(self) -> tuple[Products, dict[int, tuple[str, int]]]:
-        """The products with late signals and yielding joints, and the joint of each column."""
-        products, places = self.mismatched(MISMATCHES)
-        pool = {column: (x, j) for x, own in places.items() for j, column in enumerate(own)}
-        return products, pool
+    def mismatches(self) -> tuple[Products, dict[str, list[int]]]:
+        """The products with mismatches, and the places of the columns of all joints.
 
-    def mismatched(self, names: Sequence[str]) -> tuple[Products, dict[str, list[int]]]:
-        """The products with these mismatches of all joints; the columns of what is fitted are 0."""
-        assert self.model is not None
+        The columns of what is fitted are 0, and where something is, only those are there that may
+        widen intervals. A low-pass that is not known exactly looks like a joint that yields.
+        """
+        if self.model is None or not self.rows.order:
+            return self.products(self.rows.scales, {})
         joints = range(self.rows.y.shape[1])
         own = Mismatches(self.rows, self.model, self.estimates[: self.own])
         none = np.zeros_like(self.rows.y)
         columns = {
-            x: [none if (x, j) in self.fitted else own.column(x, j) for j in joints] for x in names
+            x: [none if (x, j) in self.fitted else own.column(x, j) for j in joints]
+            for x in (WIDESPREAD if self.shared else MISMATCHES)
         }
         return self.products(
             self.rows.scales, {x: np.stack(each, axis=2) for x, each in columns.items()}
         )
 
-    def elsewhere(self, plain: Solved) -> list[Effect]:
-        """The effects of what was fitted for some joints and that others are likely to have."""
-        kinds = [x for x in WIDESPREAD if x in {name for name, _ in self.fitted}]
-        return self.beside(*self.mismatched(kinds), plain, plain) if kinds else []
+    def memories(self, plain: Solved) -> list[Effect]:
+        """The effects of gaps, hysteresis and presliding, of the joints that are not fitted."""
+        products, places = self.mismatches
+        own = {x: columns for x, columns in places.items() if x in WIDESPREAD}
+        return self.beside(products, own, plain, plain) if own else []
 
     @cached_property
     def ripples(self) -> Ripples:
@@ -283,7 +284,7 @@ class Trial:
         if solved:
             found.append(self.effect(REVERSALS, self.plain, self.plain, solved))
             same.insert(0, (away, solved))
-        return (*found, *self.elsewhere(self.plain), *self.signals(self.plain, same))
+        return (*found, *self.memories(self.plain), *self.signals(self.plain, same))
 
     def errors_with_curves(self, joints: Collection[int]) -> Array:
         """The errors (own) if the friction of these joints (from 0) is any curve of the speed.

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, PARTS, RIPPLE, SHAPES
 from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial, clear, level_among
-from scarid_cli.algorithms.statistics.mismatches import ELASTIC_GEAR, ELASTIC_JOINT
+from scarid_cli.algorithms.statistics.mismatches import ELASTIC_GEAR, ELASTIC_JOINT, WIDESPREAD
 from scarid_cli.algorithms.statistics.parallel import ELASTICITY, SIGNALS
 from scarid_cli.arrays import Array
 
@@ -40,8 +40,9 @@ class Explanation:
     @property
     def kindred(self) -> set[str]:
         """What other joints may have of the same, for which their intervals are wider."""
-        yields = any(name in (ELASTIC_GEAR, ELASTIC_JOINT) for name, _ in self.torques)
-        return {ELASTICITY, SIGNALS} if yields else set()
+        names = {name for name, _ in self.torques}
+        yields = names & {ELASTIC_GEAR, ELASTIC_JOINT}
+        return {*({ELASTICITY, SIGNALS} if yields else ()), *(names & {*WIDESPREAD})}
 
     @property
     def rest(self) -> float:

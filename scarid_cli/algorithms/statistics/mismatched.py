@@ -24,13 +24,13 @@ def mismatches(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, ..
 
     All of a set must be clear in the whole estimation.
     """
-    if trial.model is None or not trial.rows.order:
-        return ()  # a low-pass that is not known exactly looks like a joint that yields
-    products, pool = trial.mismatches
-    if products.eliminated is None:
+    products, places = trial.mismatches
+    pool = {column: (x, j) for x, own in places.items() for j, column in enumerate(own)}
+    if not pool or products.eliminated is None:
         return ()
     joints = trial.rows.y.shape[1]
-    level = CERTAIN / (len(effects) + len(MISMATCHES))  # each is an alternative more
+    names = {*MISMATCHES, *(effect.name for effect in effects)}
+    level = CERTAIN / len(names)  # each is an alternative
     least, strict = (
         quantile(1.0 - 0.5 * x / joints, trial.count - 1) for x in (CERTAIN, RARE / CERTAIN * level)
     )
