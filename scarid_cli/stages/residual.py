@@ -140,7 +140,8 @@ class Residuals:
         own = [addition for addition in model.additions if not addition.mismatch]
         beside = replace(model.shapes, additions=own)
         for batch, rows in parts:
-            yield batch, observer(replace(rows, y=rows.y - beside.torques(rows)))
+            torques = beside.torques(rows) if own else 0.0
+            yield batch, observer(replace(rows, y=rows.y - torques))
 
     def _start(self, table: Table) -> None:
         units = [joint.torque_unit for joint in self.robot.joints]

@@ -27,9 +27,10 @@ from functools import cached_property
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.two_sided import two_sided_bandwidth, two_sided_taps
+from scarid_cli.algorithms.filters.two_sided import two_sided_taps
 from scarid_cli.algorithms.regression.rows import Rows, curvature, delay_column, runs
 from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.statistics.ringing import LowPass
 from scarid_cli.arrays import Array
 
 LATE_POSITION, LATE_TORQUE = "late position", "late torque"
@@ -145,12 +146,10 @@ class Mismatches:
     def _passed(self, x: Array) -> Array:
         """A signal (samples) behind the low-pass of the rows, if this is known."""
         rows = self.rows
-        if not (rows.order and rows.bandwidth and rows.h > 0.0):
+        low_pass = LowPass.behind(rows)
+        if low_pass is None:
             return x
-        cutoff = rows.bandwidth / two_sided_bandwidth(rows.order) * rows.h
-        if cutoff >= 0.5:  # it passes everything
-            return x
-        taps = two_sided_taps(cutoff, rows.order, int(MEMORY / rows.h))
+        taps = two_sided_taps(low_pass.cutoff, low_pass.order, int(MEMORY / rows.h))
         half, found = len(taps) // 2, np.empty_like(x)
         for run in runs(rows.at):
             found[run] = np.convolve(np.pad(x[run], half, mode="edge"), taps, "valid")

@@ -14,13 +14,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.two_sided import two_sided_bandwidth, two_sided_gain
+from scarid_cli.algorithms.filters.two_sided import (
+    PERIODS,
+    two_sided_bandwidth,
+    two_sided_gain,
+)
 from scarid_cli.algorithms.regression.rows import Rows, runs
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
 from scarid_cli.arrays import Array
 
-PADDING = 3.0  # periods of the cut-off, after which the ringing has decayed to 1e-4
 SHORTEST = 0.5  # periods of the cut-off, of a run that may have rows away from its reversals
 BLOCKS = 5.0  # effective ones, below which the error of an estimate is not known
 
@@ -32,9 +35,17 @@ class LowPass:
     cutoff: float
     order: int
 
+    @classmethod
+    def behind(cls, rows: Rows) -> LowPass | None:
+        """The one behind the rows; None if it is not known to be such a filter, or passes all."""
+        if not (rows.order and rows.bandwidth and rows.h > 0.0):
+            return None
+        cutoff = rows.bandwidth / two_sided_bandwidth(rows.order)
+        return cls(cutoff * rows.h, rows.order) if cutoff * rows.h < 0.5 else None
+
     def over(self, x: Array) -> Array:
         """x (samples of a run) behind the filter, as if its first and last value went on."""
-        edge = int(PADDING / self.cutoff) + 1
+        edge = int(PERIODS / self.cutoff) + 1
         length = 1 << (len(x) + 2 * edge - 1).bit_length()
         padded = np.pad(x, (edge, length - len(x) - edge), mode="edge")
         gain = two_sided_gain(np.asarray(np.fft.rfftfreq(length)) / self.cutoff, self.order)
@@ -48,12 +59,9 @@ def with_ringing(rows: Rows, robot: Robot) -> Rows:
     There are none if the low-pass behind the rows is not known to be a two-sided Butterworth
     filter, nor for a friction that reverses in too few blocks of time.
     """
-    if not (rows.order and rows.bandwidth and rows.h > 0.0):
+    low_pass = LowPass.behind(rows)
+    if low_pass is None:
         return rows
-    cutoff = rows.bandwidth / two_sided_bandwidth(rows.order)
-    if cutoff * rows.h >= 0.5:  # it passes everything
-        return rows
-    low_pass = LowPass(cutoff * rows.h, rows.order)
     columns = [c for c in _columns(rows, robot, low_pass) if _determined(rows, c)]
     if not columns:
         return rows
