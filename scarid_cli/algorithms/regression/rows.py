@@ -179,16 +179,23 @@ def curvature(rows: Rows, predicted: Array) -> Array:
     return _derivative(rows, predicted, 2)
 
 
-def _derivative(rows: Rows, predicted: Array, order: int) -> Array:
-    found = np.zeros_like(predicted)
+def slope(rows: Rows, x: Array) -> Array:
+    """The time derivative of a signal (samples, ...), run by run; 0 in a run of one sample."""
+    found = np.zeros_like(x)
     for run in runs(rows.at):
         if run.stop - run.start > 1:
-            slope = predicted[run]
-            for _ in range(order):
-                slope = np.gradient(slope, rows.h, axis=0)
-            direction = np.sign(rows.motion[1][:, run].T)
-            turns = np.zeros(direction.shape, dtype=bool)
-            turns[1:] |= direction[1:] != direction[:-1]
-            turns[:-1] |= turns[1:]
-            found[run] = np.where(turns, 0.0, slope)
+            found[run] = np.gradient(x[run], rows.h, axis=0)
+    return found
+
+
+def _derivative(rows: Rows, predicted: Array, order: int) -> Array:
+    found = predicted
+    for _ in range(order):
+        found = slope(rows, found)
+    for run in runs(rows.at):
+        direction = np.sign(rows.motion[1][:, run].T)
+        turns = np.zeros(direction.shape, dtype=bool)
+        turns[1:] |= direction[1:] != direction[:-1]
+        turns[:-1] |= turns[1:]
+        found[run] = np.where(turns, 0.0, found[run])
     return found

@@ -28,7 +28,7 @@ from functools import cached_property
 import numpy as np
 
 from scarid_cli.algorithms.filters.two_sided import two_sided_taps
-from scarid_cli.algorithms.regression.rows import Rows, curvature, delay_column, runs
+from scarid_cli.algorithms.regression.rows import Rows, curvature, delay_column, runs, slope
 from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.ringing import LowPass
 from scarid_cli.arrays import Array
@@ -191,15 +191,6 @@ def played(rows: Rows, x: Array, size: float) -> Array:
             here = around[k : k + count]
             now = np.clip(now, here - size, here + size)
         found[run] = now
-    return found
-
-
-def slope(rows: Rows, x: Array) -> Array:
-    """The time derivative of a signal (samples), run by run; 0 where a run has one sample."""
-    found = np.zeros_like(x)
-    for run in runs(rows.at):
-        if run.stop - run.start > 1:
-            found[run] = np.gradient(x[run], rows.h)
     return found
 
 

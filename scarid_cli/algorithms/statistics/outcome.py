@@ -122,16 +122,11 @@ class Problem:
         sizes = self.found.fit.estimates[self.own : self.own + len(self.additions)]
         ratios = np.abs(sizes) / errors[self.own : self.own + len(self.additions)]
         names = np.array([addition.name for addition in self.additions])
-        if self.mismatched:
+        if any(addition.mismatch for addition in self.additions):
             largest = [ratios[names == name].max() for name in {*names.tolist()}]
             return bool(min(largest) > explanation.threshold and ratios.min() > explanation.each)
         own = {*names.tolist()} - {OFFSET, SINE, COSINE} or {SINE, COSINE}
         return bool(ratios[[name in own for name in names]].max() > explanation.threshold)
-
-    @property
-    def mismatched(self) -> bool:
-        """Whether late signals or yielding joints are among the additions."""
-        return any(addition.mismatch for addition in self.additions)
 
     @property
     def possible(self) -> bool:
@@ -318,7 +313,7 @@ def _explained(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnos
         found = wider.diagnostics(gain_errors, suspected)
         left = {effect.name for effect in clear(found.effects, explanation.rest)}
         there = wider.shows(explanation, found.scatter)
-        new = left if wider.mismatched else left & {*suspected, *TORQUES}
+        new = left if shapes.curved else left & {*suspected, *TORQUES}
         if there and not new - explanation.kindred:
             return wider, found
     return plain, diagnostics
