@@ -27,6 +27,7 @@ from scarid_cli.algorithms.regression.normal_equations import inverse
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.additions import gains
 from scarid_cli.algorithms.statistics.bursts import bursts_of
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.ringing import with_ringing
@@ -171,18 +172,19 @@ def verdict(
     if steps:
         return of_wiring(steps)
     rows = in_step(rows, theta, model.delay, low_pass=model.low_pass)
-    wide = model.shapes.beside(rows) if model.additions else rows
+    wide = model.shapes.compared(rows)
     sums = Products.of(with_ringing(wide, robot), theta, model=model.model)
+    powers = sums.powers * gains(model.additions, len(robot.joints)) ** 2  # of the logged torques
     now = sums.usual
     first = before.evidence or _alike(now, before.errors[: len(theta)], robot)
     possible = hypotheses(robot)
-    ratios = before.ratios(now, sums.powers)
+    ratios = before.ratios(now, powers)
     if before.evidence is None:
         possible = [h for h in possible if h.kind not in (DELAY, OFFSET, *SEARCHED)]
     values = dict(zip(robot.names, theta.tolist(), strict=True))
     found = change(first, sums, possible)
     slight = _slight(found, sums, first, now, before)
-    expected = before.fitted(sums.powers), before.allowed(sums)
+    expected = before.fitted(powers), before.allowed(sums)
     judged = of_change(found, values, ratios, residuals, expected, slight)
     as_before = judged.grade == UNCHANGED and ratios is not None
     return judged if as_before else _with_times(judged, rows, theta, times)

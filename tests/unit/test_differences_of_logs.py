@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from scarid_cli.algorithms.changes.columns import Columns
-from scarid_cli.algorithms.changes.evidence import LogEvidence
+from scarid_cli.algorithms.changes.evidence import LogEvidence, _without
 from scarid_cli.algorithms.changes.explanation import Change, Explanation, _of_search, found_in
 from scarid_cli.algorithms.changes.hypotheses import (
     LOW_PASS,
@@ -18,6 +18,7 @@ from scarid_cli.algorithms.changes.hypotheses import (
 )
 from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.statistics.gains import Gain, apart
 
 RNG = np.random.default_rng(3)
 N = 4
@@ -122,3 +123,32 @@ def test_another_offset_is_a_constant_torque_of_its_joint_alone(name: str) -> No
     torques = np.concatenate([columns @ h.directions for h in found], axis=2)
     assert np.array_equal(torques, offsets)
     assert all(np.count_nonzero(h.directions) == 1 for h in found)
+
+
+def test_a_column_that_the_nuisances_span_leaves_nothing() -> None:
+    """As that of a motor constant beside a gain that was fitted: rounding is no information."""
+    columns = RNG.standard_normal((50, 3))
+    nuisances = columns[:, :2] @ RNG.standard_normal((2, 2))
+    left = _without(nuisances, columns)
+    assert np.all(left[:, :2] == 0.0)
+    assert np.linalg.norm(left[:, 2]) > 1.0
+
+
+@pytest.mark.parametrize(
+    ("factors", "expected"),
+    [
+        ((1.0, 0.77, 0.765, 0.61), {0: 1.3, 3: 0.795}),
+        ((1.0, 1.3, 0.99), None),
+        ((1.0, 0.8), None),
+        ((1.0, 0.8, 0.6), None),
+    ],
+)
+def test_gains_are_relative_to_the_joints_that_agree(
+    factors: tuple[float, ...], expected: dict[int, float] | None
+) -> None:
+    found = apart([Gain(j, x, 0.01 * (j > 0)) for j, x in enumerate(factors)], 0)
+    if expected is None:
+        assert found is None
+    else:
+        assert found is not None
+        assert {x.joint: x.factor for x in found} == pytest.approx(expected, rel=0.01)

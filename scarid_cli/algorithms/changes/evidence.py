@@ -23,6 +23,7 @@ from scarid_cli.arrays import Array, Numbers
 
 REFITS = 3  # times that the joints are weighted by their residuals
 LEAST = 1e-9  # of the rms torque of a joint: a smaller residual is rounding
+SPANNED = 1e-9  # of a column: less is what rounding leaves of it
 TINY = 1e-30  # the least variance, of a joint without torques
 MOST_LEVERAGE = 0.9  # of a block that counts in full
 
@@ -222,9 +223,14 @@ def _products(rows: Rows, theta: Array, delay: float, further: Array, nuisances:
 
 
 def _without(nuisances: Array, columns: Array) -> Array:
-    """What a fit of the nuisances leaves of columns, both (samples, columns)."""
+    """What a fit of the nuisances leaves of columns, both (samples, columns).
+
+    Of a column that they span it leaves nothing, and not what rounding does.
+    """
     along = np.linalg.qr(nuisances[:, np.any(nuisances != 0.0, axis=0)])[0]
-    return np.asarray(columns - along @ (along.T @ columns))
+    left = columns - along @ (along.T @ columns)
+    spanned = np.linalg.norm(left, axis=0) < SPANNED * np.linalg.norm(columns, axis=0)
+    return np.where(spanned, 0.0, left)
 
 
 def _blocks(rows: Rows) -> list[tuple[int, int]]:

@@ -19,6 +19,7 @@ from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.alternatives import (
     CABLE,
     DRIFT,
+    GAIN,
     LOAD,
     OFFSET,
     PARTS,
@@ -34,6 +35,9 @@ from scarid_cli.algorithms.statistics.mismatches import (
     Mismatches,
 )
 from scarid_cli.arrays import Array
+
+REFITS = 4  # gains of .6 are then as large at the next fit, to a tenth of their errors
+COMPARED = (GAIN, OFFSET)  # a comparison of logs has columns for these by itself
 
 
 @dataclass(frozen=True)
@@ -98,6 +102,14 @@ def of_explanation(
     )
 
 
+def gains(additions: Sequence[Addition], joints: int) -> Array:
+    """The gains of the torques (joints) that were fitted, 1 where none was."""
+    found = np.ones(joints)
+    for addition in additions:
+        found[addition.joint] += addition.size if addition.name == GAIN else 0.0
+    return found
+
+
 def mean_additions(sets: Sequence[Sequence[Addition]]) -> tuple[Addition, ...]:
     """The mean of several sets of additions, of which each may have others."""
     alike: dict[tuple[str, int, float], list[Addition]] = {}
@@ -133,6 +145,11 @@ class Shapes:
         return any(addition.mismatch for addition in self.additions)
 
     @property
+    def refits(self) -> int:
+        """The fits until columns that depend on the estimates beside them no longer change."""
+        return REFITS if self.curved or any(x.name == GAIN for x in self.additions) else 1
+
+    @property
     def constant(self) -> list[int]:
         """The joints (from 0) that have an offset."""
         return [addition.joint for addition in self.additions if addition.name == OFFSET]
@@ -140,6 +157,12 @@ class Shapes:
     def beside(self, rows: Rows) -> Rows:
         """The rows with the shapes as further columns."""
         return replace(rows, W=np.concatenate((rows.W, self.columns(rows)), axis=2))
+
+    def compared(self, rows: Rows) -> Rows:
+        """The rows as logs are compared: without their gains, beside what no comparison fits."""
+        others = [addition for addition in self.additions if addition.name not in COMPARED]
+        wide = replace(self, additions=others).beside(rows) if others else rows
+        return replace(wide, y=wide.y / gains(self.additions, wide.y.shape[1]))
 
     def columns(self, rows: Rows) -> Array:
         """The shapes (samples, joints, additions)."""

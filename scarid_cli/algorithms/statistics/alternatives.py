@@ -9,7 +9,7 @@ proportional to the real ones. Those of parallel.py concern the positions and th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -217,18 +217,23 @@ SHAPES: dict[str, Callable[[Signals], Array]] = {
 
 
 def torque_columns(
-    rows: Rows, model: Model | None, estimates: Array, cycles: Array
+    rows: Rows,
+    model: Model | None,
+    estimates: Array,
+    cycles: Array,
+    apart: Collection[int] = (),
 ) -> dict[str, Array]:
     """Further columns (samples, joints, columns) of each alternative for the torques.
 
-    `cycles` (ripples, joints) are the periods of ripple per rad or m, 0 where there is none.
+    `cycles` (ripples, joints) are the periods of ripple per rad or m, 0 where there is none. Gains
+    of the joints (from 0) that are `apart` are among the estimates.
     """
     signals = Signals.of(rows, model, estimates)
     shapes = {name: shape for name, shape in SHAPES.items() if model or name != LOAD}
     waves = [shapes.pop(name) for name in WAVES[RIPPLE]]
     uneven = [diagonal(shapes.pop(name)(signals)) for name in WAVES[UNEVEN]]
     columns = {name: diagonal(shape(signals)) for name, shape in shapes.items()}
-    columns[GAIN] *= compared(rows, estimates)
+    columns[GAIN] *= compared(rows, estimates, apart)
     columns[SPRING] = np.concatenate((columns[OFFSET], columns[SPRING]), axis=2)
     columns[CABLE] = np.concatenate((columns[SPRING], columns.pop(CUBE)), axis=2)
     ripples = [replace(signals, cycles=own) for own in cycles]
@@ -242,18 +247,30 @@ def torque_columns(
     return columns
 
 
-def compared(rows: Rows, estimates: Array) -> Array:
+def compared(rows: Rows, estimates: Array, apart: Collection[int] = ()) -> Array:
     """1 for each joint whose torque others can be compared with (joints), but for one of them.
 
     Joints are compared by the parameters that they share. The one with the largest torque of those
-    is what the others are compared with: a common factor cannot be told.
+    is what the others are compared with: a common factor cannot be told. Joints that are `apart`
+    (from 0), because their gains are estimated, are none of them.
     """
-    W = rows.W[:, :, : len(estimates)]
-    shared = np.count_nonzero(np.any(W != 0.0, axis=0), axis=0) > 1
-    power = np.sum((W[:, :, shared] @ estimates[shared]) ** 2, axis=0)
+    power = _shared(rows, estimates)
+    power[list(apart)] = 0.0
     marks: Array = np.asarray(power > 0.0, dtype=np.float64)
     marks[int(np.argmax(power))] = 0.0
     return marks
+
+
+def reference(rows: Rows, estimates: Array) -> int:
+    """The joint (from 0) with whose torque those of the others are `compared`."""
+    return int(np.argmax(_shared(rows, estimates)))
+
+
+def _shared(rows: Rows, estimates: Array) -> Array:
+    """The squares of the torques (joints) of the parameters that joints share."""
+    W = rows.W[:, :, : len(estimates)]
+    shared = np.count_nonzero(np.any(W != 0.0, axis=0), axis=0) > 1
+    return np.asarray(np.sum((W[:, :, shared] @ estimates[shared]) ** 2, axis=0))
 
 
 def diagonal(values: Array) -> Array:

@@ -129,7 +129,7 @@ def diagnose(
     suspected: frozenset[str] = frozenset(),
     shared: Set[str] = frozenset(),
     curves: Collection[int] = (),
-    mismatched: Set[tuple[str, int]] = frozenset(),
+    fitted: Set[tuple[str, int]] = frozenset(),
 ) -> Diagnostics:
     """Diagnose an estimation from its rows.
 
@@ -141,14 +141,15 @@ def diagnose(
     `gain_errors` are the relative standard errors of the torque constants. Intervals allow for the
     alternatives that are `suspected` even where they are not significant, for all that is possible
     of those that are `shared`, because other joints have them, and for any curve of the friction of
-    the joints (from 0) of `curves`. Those `mismatched`, of joints (from 0), are in W.
+    the joints (from 0) of `curves`. Gains and mismatches that are `fitted`, of joints (from 0),
+    are in W.
     """
     noise = found.noise
     white = noise.rows(rows) if noise else rows
     whole = record or Blocks.every(rows.h).add(rows).whole()
-    fitted = Blocks.every(rows.h).add(white).whole() if noise else whole
+    seen = Blocks.every(rows.h).add(white).whole() if noise else whole
     weights = _weights(found, rows.y.shape[1])
-    covariance, blocks, errors = _noise_errors(white, found, record, fitted)
+    covariance, blocks, errors = _noise_errors(white, found, record, seen)
     estimates = found.fit.estimates
     trial = Trial.of(
         rows,
@@ -159,14 +160,14 @@ def diagnose(
         noise=noise,
         suspected=suspected,
         shared=shared,
-        fitted=mismatched,
+        fitted=fitted,
     )
     longer = trial.longer(white)
     scatter = errors * longer
     effects = trial.effects()
     if doubt is not None:
         effects = (*effects, of_low_pass(doubt))
-    gains = gain_sensitivities(fitted.total, weights)[:, :own]
+    gains = gain_sensitivities(seen.total, weights)[:, :own]
     known = scatter[:own]
     if curves:
         known = np.maximum(known, trial.errors_with_curves(curves))
@@ -183,14 +184,14 @@ def diagnose(
         gains=gains,
         consequences=consequences(
             whole,
-            fitted,
+            seen,
             weights,
             estimates,
             stated.uncertainty,
             model,
             rows.motion[0],
         ),
-        totals=(weights**2)[:, None, None] * fitted.total,
+        totals=(weights**2)[:, None, None] * seen.total,
         counts=_counts(white, whole, whitened=noise is not None),
         inflation=_inflation(found.fit, scatter),
         bursts=() if record else bursts_of(rows, trimmed(whole)),

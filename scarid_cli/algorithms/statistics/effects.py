@@ -12,6 +12,7 @@ import numpy as np
 from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
 from scarid_cli.algorithms.statistics.alternatives import (
+    GAIN,
     GEOMETRY,
     OFFSET,
     RIPPLE,
@@ -164,7 +165,7 @@ class Trial:
     its regressor. Joints are weighted by `weights`, and rows are whitened by the `noise`, if there
     is one: torques need only those in these `places`. The alternatives that are `suspected` count
     even where they are not significant; those that are `shared` were fitted for other joints.
-    Mismatches that are `fitted`, of joints (from 0), are in W.
+    Gains and mismatches that are `fitted`, of joints (from 0), are in W.
     """
 
     rows: Rows
@@ -205,7 +206,9 @@ class Trial:
     @cached_property
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
         """The products with what torques may have beyond the model, and the places of those."""
-        further = torque_columns(self.rows, self.model, self.estimates, self.ripples.cycles)
+        apart = [j for name, j in self.fitted if name == GAIN]
+        of = self.rows, self.model, self.estimates, self.ripples.cycles
+        further = torque_columns(*of, apart)
         if self.model:
             theta = self.estimates[: self.own]
             columns = distance_columns(self.model, theta, self.rows.motion[:3])

@@ -8,7 +8,7 @@ in common, and joints that share no parameter with others, no log can tell.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,13 +42,16 @@ def fitted(diagnostics: Diagnostics, own: int) -> list[Gain]:
 
 def estimated(diagnostics: Diagnostics, own: int) -> list[Gain]:
     """The gains that the log tells: those that were fitted, else those of all joints compared."""
+    return fitted(diagnostics, own) or known(diagnostics)
+
+
+def known(diagnostics: Diagnostics) -> list[Gain]:
+    """The gains of all joints compared that the log tells, where none were fitted."""
     effect = next((x for x in diagnostics.effects if x.name == GAIN), None)
     if effect is None:
-        return fitted(diagnostics, own)
+        return []
     pairs = enumerate(zip(effect.amounts.tolist(), effect.noise.tolist(), strict=True))
-    return fitted(diagnostics, own) or [
-        Gain(j, 1.0 + amount, noise) for j, (amount, noise) in pairs if 0.0 < noise < KNOWN
-    ]
+    return [Gain(j, 1.0 + amount, noise) for j, (amount, noise) in pairs if 0.0 < noise < KNOWN]
 
 
 def significant(diagnostics: Diagnostics) -> list[Gain]:
@@ -60,6 +63,25 @@ def significant(diagnostics: Diagnostics) -> list[Gain]:
                 Gain(int(j), 1.0 + float(effect.amounts[j]), float(effect.noise[j])) for j in there
             ]
     return []
+
+
+def apart(gains: Sequence[Gain], before: int) -> list[Gain] | None:
+    """The gains of the joints that are apart from the most that agree, relative to these.
+
+    None if those that agree with joint `before` (from 0), beside which they were found, are as
+    many. Two gains agree within twice their errors.
+    """
+    groups = [
+        [x for x in gains if abs(x.factor - one.factor) <= 2.0 * np.hypot(x.error, one.error)]
+        for one in gains
+    ]
+    first = next(own for one, own in zip(gains, groups, strict=True) if one.joint == before)
+    largest = max(groups, key=len)
+    if len(largest) <= len(first):
+        return None
+    common = float(np.mean([x.factor for x in largest]))
+    rest = [x for x in gains if x not in largest]
+    return [replace(x, factor=x.factor / common, error=x.error / common) for x in rest]
 
 
 def widening(diagnostics: Diagnostics, own: int) -> tuple[Array, Array] | None:

@@ -13,7 +13,13 @@ from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableErr
 from scarid_cli.algorithms.regression.rows import Rows, faded, regressed, thinned
 from scarid_cli.algorithms.regression.treatment import GainErrors, Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.additions import Addition, Shapes, of_explanation
+from scarid_cli.algorithms.statistics.additions import (
+    COMPARED,
+    Addition,
+    Shapes,
+    gains,
+    of_explanation,
+)
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
 from scarid_cli.algorithms.statistics.alternatives import (
     CABLE,
@@ -26,6 +32,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     SPRING,
     TORQUES,
     Model,
+    reference,
 )
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
@@ -35,6 +42,7 @@ from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
 from scarid_cli.algorithms.statistics.effects import Effect, clear
 from scarid_cli.algorithms.statistics.essential import Essential, Noise, essential
 from scarid_cli.algorithms.statistics.explanations import Explanation
+from scarid_cli.algorithms.statistics.gains import Gain, apart, fitted, known
 from scarid_cli.algorithms.statistics.joint_products import JointProducts
 from scarid_cli.algorithms.statistics.mismatches import PRESLIDING
 from scarid_cli.algorithms.statistics.offsets import offset_joints, offsets, with_offsets
@@ -100,7 +108,7 @@ class Problem:
             suspected=suspected,
             shared={CABLE if x.name == CUBE else x.name for x in self.additions} - {OFFSET},
             curves={x.joint for x in self.additions if x.name in DECAYED},
-            mismatched={(x.name, x.joint) for x in self.additions if x.mismatch},
+            fitted={(x.name, x.joint) for x in self.additions if x.mismatch or x.name == GAIN},
         )
         sizes = self.found.fit.estimates[self.own + len(self.additions) :].tolist()
         offsets = dict(zip(self.offsets, sizes, strict=False))
@@ -162,11 +170,13 @@ class Problem:
 
     @property
     def compared(self) -> Rows:
-        """The rows without the columns that a comparison with other logs has by itself."""
+        """The rows without their gains, and without columns that a comparison has by itself."""
         start = self.own + len(self.additions)
-        dropped = range(start, start + len(self.offsets))
+        dropped = {*range(start, start + len(self.offsets))}
+        dropped |= {k for k, x in enumerate(self.additions, self.own) if x.name in COMPARED}
         kept = [k for k in range(self.rows.W.shape[2] - self.delayed) if k not in dropped]
-        return replace(self.rows, W=self.rows.W.take(kept, axis=2))
+        torques = self.rows.y / gains(self.additions, self.rows.y.shape[1])
+        return replace(self.rows, W=self.rows.W.take(kept, axis=2), y=torques)
 
     def reduced(self, to: Essential) -> Problem:
         """The problem with only the essential parameters."""
@@ -315,8 +325,41 @@ def _explained(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnos
         there = wider.shows(explanation, found.scatter)
         new = left if shapes.curved else left & {*suspected, *TORQUES}
         if there and not new - explanation.kindred:
-            return wider, found
+            return _regauged(given, plain, diagnostics, wider, found, gain_errors)
     return plain, diagnostics
+
+
+def _regauged(
+    given: _Given,
+    plain: Problem,
+    before: Diagnostics,
+    wider: Problem,
+    found: Diagnostics,
+    gain_errors: GainErrors,
+) -> tuple[Problem, Diagnostics]:
+    """The problem with gains relative to most joints, if these are apart from the reference.
+
+    So a torque constant that is wrong for the joint with the largest torque is that of this one,
+    and not of all others.
+    """
+    own = fitted(found, wider.own)
+    if not own or not plain.model:
+        return wider, found
+    first = reference(plain.rows, plain.found.fit.estimates[: plain.own])
+    as_before = [x for x in known(before) if x.joint not in {y.joint for y in own}]
+    every = [Gain(first, 1.0, 0.0), *own, *(replace(x, factor=1.0) for x in as_before)]
+    if (less := apart(every, first)) is None:
+        return wider, found
+    rest = [x for x in wider.additions if x.name != GAIN]
+    added = [Addition(GAIN, x.joint, 1.0, x.factor - 1.0) for x in less]
+    try:
+        other = _problem(given, _beside(given, plain, plain.model, (*rest, *added)))
+    except NotIdentifiableError:
+        return wider, found
+    suspected = frozenset(effect.name for effect in clear(before.effects))
+    diagnostics = other.diagnostics(gain_errors, suspected)
+    more = {x.name for x in clear(diagnostics.effects)} - {x.name for x in clear(found.effects)}
+    return (wider, found) if more else (other, diagnostics)
 
 
 def _with_friction(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnostics]:
@@ -350,7 +393,7 @@ def _beside(given: _Given, plain: Problem, model: Model, additions: tuple[Additi
     """The shapes of additions, with the estimates beside them."""
     rows, own, count = thinned(plain.rows), plain.own, plain.rows.W.shape[2]
     shapes = Shapes(additions, model, plain.found.fit.estimates[:own])
-    for _ in range(1 + 3 * shapes.curved):
+    for _ in range(shapes.refits):
         wide = shapes.beside(rows)
         start = np.append(given.initial, np.zeros(wide.W.shape[2] - own))
         estimator = given.estimator.widened(len(start) - own).quick()
