@@ -1,13 +1,14 @@
 """Logs in JSON: an object a line, a list of objects, or an object with a list for each column.
 
-Objects inside objects become columns a.b, lists columns a[0], a[1], ... The first row decides which
-columns there are; a row may lack values, but has no others.
+pandas writes columns and rows in forms of its own, which are read as well. Objects inside objects
+become columns a.b, lists columns a[0], a[1], ... The first row decides which columns there are; a
+row may lack values, but has no others.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from typing import Any
 
@@ -115,7 +116,7 @@ def _rows(source: ByteSource) -> Iterator[Any]:
         row = json.loads(first)
     except ValueError:
         row = None
-    if isinstance(row, dict) and not _is_columns(row):
+    if isinstance(row, dict) and not (_columns(row) or len(_objects(row)) > NESTED):
         yield row
         for number, line in enumerate(lines, start=2):
             yield _parsed(line, source.name, number)
@@ -153,29 +154,71 @@ def _whole(first: bytes, lines: Iterable[bytes], name: str) -> Any:
 
 def _of_document(document: Any, name: str) -> Iterator[Any]:
     """The rows of a document, which may stand in its only list of objects."""
-    if isinstance(document, dict) and _is_columns(document):
+    rows = document if isinstance(document, list) else _objects(document)
+    if not rows and isinstance(document, dict) and (columns := _columns(document)):
         yield from (
-            dict(zip(document, row, strict=True)) for row in zip(*document.values(), strict=True)
+            dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)
         )
         return
-    lists = [document] if isinstance(document, list) else []
-    if isinstance(document, dict):
-        lists = [
-            x for x in document.values() if isinstance(x, list) and x and isinstance(x[0], dict)
-        ]
-    if len(lists) != 1 or not all(isinstance(row, dict) for row in lists[0]):
+    if not rows or not all(isinstance(row, dict) for row in rows):
         keys = ", ".join(map(str, list(document)[:5])) if isinstance(document, dict) else "a list"
         raise BadData(
             f"{name}: JSON with {keys}, but no rows; write an object for each sample, "
             "or a list for each column"
         )
-    yield from lists[0]
+    yield from rows
 
 
-def _is_columns(document: dict[str, Any]) -> bool:
-    """Whether each value is a column: lists of one length, more rows than a vector has joints."""
-    lengths = {len(x) if isinstance(x, list) else 0 for x in document.values()}
-    return len(lengths) == 1 and min(lengths) > NESTED
+def _objects(document: Any) -> list[Any]:
+    """The only list of objects in a document, or those that it has under numbers; else none."""
+    if not isinstance(document, dict):
+        return []
+    if document and all(key.isdecimal() and isinstance(x, dict) for key, x in document.items()):
+        return [*document.values()]
+    lists = [x for x in document.values() if isinstance(x, list) and x and isinstance(x[0], dict)]
+    return lists[0] if len(lists) == 1 else []
+
+
+def _columns(document: dict[str, Any]) -> dict[str, Sequence[Any]]:
+    """The columns of an object that has one list for each, maybe in objects; empty if it has none.
+
+    The lists have one length, more rows than a vector has joints. Single values beside them are
+    the same in each row. pandas writes an object of rows for each column, or the rows under `data`
+    and their names under `columns`.
+    """
+    if {*document} - {"index"} == {"columns", "data"}:
+        names, rows = document["columns"], document["data"]
+        lists = isinstance(names, list) and isinstance(rows, list)
+        if lists and all(isinstance(x, list) and len(x) == len(names) for x in rows):
+            return dict(zip(map(str, names), zip(*rows, strict=True), strict=True))
+    found = dict(_lists(document))
+    rows = {len(x) for x in found.values() if isinstance(x, list)}
+    if len(rows) != 1 or min(rows) <= NESTED:
+        return {}
+    return {key: x if isinstance(x, list) else [x] * min(rows) for key, x in found.items()}
+
+
+def _lists(value: dict[str, Any], name: str = "", depth: int = 0) -> Iterator[tuple[str, Any]]:
+    """The values inside of it by name, of which lists, and objects of numbered rows, are whole.
+
+    A few long lists in one, as of a matrix with a row for each joint, are columns of their own.
+    """
+    for key, own in value.items():
+        path = f"{name}.{key}" if name else str(key)
+        if _few_long(own):
+            yield from ((f"{path}[{k}]", column) for k, column in enumerate(own))
+        elif not isinstance(own, dict):
+            yield path, own
+        elif len(own) > NESTED and all(row.isdecimal() for row in own):
+            yield path, [*own.values()]
+        elif depth < NESTED:
+            yield from _lists(own, path, depth + 1)
+
+
+def _few_long(value: Any) -> bool:
+    """Whether a list has more values in each of its lists than lists."""
+    inner = isinstance(value, list) and len(value) <= NESTED and bool(value)
+    return inner and all(isinstance(x, list) and len(x) > NESTED for x in value)
 
 
 def _lines(source: ByteSource) -> Iterator[bytes]:

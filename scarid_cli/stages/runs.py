@@ -12,6 +12,9 @@ from scarid_cli.arrays import Array
 from scarid_cli.io.table import SEGMENT, Table, concatenated, doubles, matrix
 from scarid_cli.runs import RUN, period_of, run_starts
 
+# Those of a time of the day, and of counters of 16 and 32 bits of s, ms, us and ns [s].
+WRAPS = (86400.0, *(2.0**bits * unit for bits in (16, 32) for unit in (1.0, 1e-3, 1e-6, 1e-9)))
+
 
 def runs_joined(table: Table, tell: Callable[[str], None]) -> Table:
     """The table, in which a run that begins anew at an earlier time `t` follows the one before it.
@@ -22,6 +25,14 @@ def runs_joined(table: Table, tell: Callable[[str], None]) -> Table:
     if "t" not in table.columns or SEGMENT in table.columns:  # its segments may overlap
         return table
     return replace(table, batches=_Joining(tell).batches(table))
+
+
+def _wrap(back: float, period: float) -> float:
+    """The time [s] after which a clock begins again that goes back by this time; 0 if none does.
+
+    The first row behind it comes as late as any other, within two periods.
+    """
+    return next((wrap for wrap in WRAPS if 0.0 < wrap - back < 2.0 * period), 0.0)
 
 
 @dataclass
@@ -73,11 +84,16 @@ class _Joining:
         times = t + self.offset
         for start in starts:
             before = t[start - 1] if start else self.tail[-1]
-            self.tell(
-                f"warning: the time goes back from {before:.6g} to {t[start]:.6g} s in row "
-                f"{self.rows + start + 1}: a new run, put behind the one before it with a gap, "
-                "where `scarid resample` begins a segment"
-            )
-            self.offset += before + RUN * self.period - t[start]
+            back = f"the time goes back from {before:.6g} to {t[start]:.6g} s in row "
+            back += f"{self.rows + start + 1}"
+            if wrap := _wrap(before - t[start], self.period):
+                self.tell(f"{back}: a clock that begins again after {wrap:.10g} s, which goes on")
+                self.offset += wrap
+            else:
+                self.tell(
+                    f"warning: {back}: a new run, put behind the one before it with a gap, where "
+                    "`scarid resample` begins a segment"
+                )
+                self.offset += before + RUN * self.period - t[start]
             times[start:] = t[start:] + self.offset
         return times

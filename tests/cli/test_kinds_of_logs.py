@@ -93,7 +93,61 @@ def with_time(folder: Path) -> str:
     return "--map 'q*=log.signals1.values*' --map 'tau*=log.signals2.values*' log.mat"
 
 
-KINDS = [as_lines, nested, as_columns, cells, apart, v73, hdf5, with_time]
+def pandas(path: Path, write: Callable[[dict[str, list[float]]], Any]) -> str:
+    """A file of one of the forms in which pandas writes a frame as JSON."""
+    columns = dict(zip(NAMES, ALL.T.tolist(), strict=True))
+    (path / "log.json").write_text(json.dumps(write(columns)))
+    return "log.json"
+
+
+def by_column(path: Path) -> str:
+    return pandas(
+        path, lambda x: {name: {str(k): v for k, v in enumerate(own)} for name, own in x.items()}
+    )
+
+
+def by_row(path: Path) -> str:
+    rows = [dict(zip(NAMES, own, strict=True)) for own in ALL.tolist()]
+    return pandas(path, lambda _: {str(k): row for k, row in enumerate(rows)})
+
+
+def split(path: Path) -> str:
+    return pandas(path, lambda x: {"columns": [*x], "index": [], "data": ALL.tolist()})
+
+
+def with_schema(path: Path) -> str:
+    rows = [dict(zip(NAMES, own, strict=True)) for own in ALL.tolist()]
+    fields = [{"name": name, "type": "number"} for name in NAMES]
+    return pandas(path, lambda _: {"schema": {"fields": fields}, "data": rows})
+
+
+def beside_facts(path: Path) -> str:
+    """Columns in objects of their own, beside single values."""
+    file = pandas(path, lambda x: {"rate": 100, "log": x})
+    return f"--map t=log.t --map 'q*=log.q' --map 'tau*=log.tau' {file}"
+
+
+def row_for_each_joint(path: Path) -> str:
+    file = pandas(path, lambda x: {"t": x["t"], "q": Q.T.tolist(), "tau": TAU.T.tolist()})
+    return f"--map 'q*=q[*]' --map 'tau*=tau[*]' {file}"
+
+
+KINDS = [
+    as_lines,
+    nested,
+    as_columns,
+    cells,
+    apart,
+    v73,
+    hdf5,
+    with_time,
+    by_column,
+    by_row,
+    split,
+    with_schema,
+    beside_facts,
+    row_for_each_joint,
+]
 
 
 @pytest.mark.parametrize("write", KINDS)

@@ -63,3 +63,21 @@ def test_times_that_leap_ahead_begin_no_run_where_they_return(
     found, said = joined(t, sizes)
     np.testing.assert_array_equal(found, t)
     assert not said
+
+
+@given(
+    st.sampled_from([86400.0, 2.0**32 * 1e-6, 2.0**32 * 1e-3, 2.0**16 * 1e-3]),
+    st.integers(RUN + 2, 150),
+    st.floats(0.0, 0.99),
+    st.lists(st.integers(2, 50), max_size=8),
+)
+def test_a_clock_that_wraps_goes_on(
+    wrap: float, before: int, phase: float, sizes: list[int]
+) -> None:
+    """As a time of the day at midnight, or a counter of 32 bits of microseconds."""
+    t = PERIOD * (np.arange(200) + phase)
+    logged = (t + wrap - PERIOD * before) % wrap
+    found, said = joined(logged, sizes)
+    np.testing.assert_allclose(found - found[0], t - t[0], atol=1e-6)
+    assert len(said) == 1
+    assert f"a clock that begins again after {wrap:.10g} s, which goes on" in said[0]
