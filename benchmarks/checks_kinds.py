@@ -60,7 +60,7 @@ def clean_row(robot: str, seeds: range) -> str:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=20)
-    parser.add_argument("--first", type=int, default=3000)
+    parser.add_argument("--first", type=int, default=7000)
     parser.add_argument("--kind", default="")
     args = parser.parse_args()
     seeds = range(args.first, args.first + args.seeds)

@@ -66,8 +66,9 @@ def all_torques_reversed(log: Log, _: Generator) -> tuple[Spoils, str]:
 
 
 def one_position_reversed(log: Log, rng: Generator) -> tuple[Spoils, str]:
+    """What is behind a joint may be as good as symmetric: its torque may be named as well."""
     joint = any_joint(log, rng)
-    return positions_times(*only(log, joint, -1.0)), f"position of joint {joint} by -1"
+    return positions_times(*only(log, joint, -1.0)), f"of joint {joint} "
 
 
 def pair(log: Log, rng: Generator) -> tuple[int, int]:

@@ -13,6 +13,7 @@ from scarid_cli.io.jsonio import is_json, read_json
 from scarid_cli.io.notation import Notation, notation_of
 from scarid_cli.io.roles import role_of
 from scarid_cli.io.table import Table
+from scarid_cli.stages.cells import in_their_order
 from scarid_cli.stages.recorders import expanded, known_unit, recognised, units_in_names
 from scarid_cli.stages.seconds import clock_columns, with_one_clock
 from scarid_cli.stages.side import as_role, flattened, side_by_side, texts_flattened
@@ -90,9 +91,12 @@ def _one_clock(job: Job, table: Table, named: Collection[str]) -> Table:
 
 def columns_of(
     job: Job, table: Table, pairs: dict[str, str], units: list[tuple[str, str]], wanted: str | None,
-    robot: Robot | None, joints: Sequence[str],
+    robot: Robot | None, joints: Sequence[str], cells: Sequence[str] = (),
 ) -> Columns:  # fmt: skip
-    """The columns as the options, the recorder, and the words in names say, in this order."""
+    """The columns as the options, the recorder, and the words in names say, in this order.
+
+    The names of joints in `cells` tell the order of arrays.
+    """
     names = expanded(pairs, table.columns, table.name)
     order = joints or (robot.body.joint_names if robot and robot.body else ())
     found = recognised(table.columns, wanted, order, table.name)
@@ -102,12 +106,15 @@ def columns_of(
         own = _with_torques(found.columns, robot)
         joints_found = f", joints {', '.join(found.joints)}" if found.joints else ""
         job.notes.append(f"columns of {found.name}{joints_found}")
+        own = _by_cells(job, own, cells, order)
         _tell_of_currents(job, own)
         own = {new: old for new, old in own.items() if old not in taken and new not in names}
         known = [(new, unit) for new, unit in found.units if new in own]
         return Columns({**own, **names}, [*known, *units])
     left = [column for column in table.columns if column not in taken]
-    worded, known = _in_words(job, table, left, {*names, *described}, order)
+    in_cells = {*order} <= {*cells}
+    worded, known = _in_words(job, table, left, {*names, *described}, () if in_cells else order)
+    worded = _by_cells(job, worded, cells, order)
     worded = _with_torques(worded, robot)
     _tell_of_currents(job, worded)
     known = [(new, unit) for new, unit in known if new in worded]
@@ -137,6 +144,21 @@ def _in_words(
     if found.joints and not joints:
         job.notes.append("joints in the order of their columns (another: --joints)")
     return found.columns, [*found.units]
+
+
+def _by_cells(
+    job: Job, columns: dict[str, str], cells: Sequence[str], order: Sequence[str]
+) -> dict[str, str]:
+    """The columns of arrays in the order of the joints, whose names stand in the cells."""
+    if not cells or not columns:
+        return columns
+    if not order:
+        job.notes.append(f"joints as the log names them: {', '.join(cells)} (another: --joints)")
+        return columns
+    found = in_their_order(columns, cells, order)
+    if found != columns:
+        job.notes.append(f"put in the order {', '.join(order)}: the log has {', '.join(cells)}")
+    return found
 
 
 def _with_torques(columns: dict[str, str], robot: Robot | None) -> dict[str, str]:

@@ -98,7 +98,7 @@ def _table(source: ByteSource) -> Table:
             remedy="is the file empty, or did the previous command fail?",
         )
     _refuse_json(first[:header_end], source.name)
-    names = _header(first, header_end, source.name)
+    names, repeated = _numbered(_header(first, header_end, source.name))
     header = first[:header_end].rstrip(b"\r\n").rpartition(b"\n")[2].removeprefix(BOM.encode())
     lines = _without_headers(chain([first[header_end:]], lines), header)
     body = next(lines)
@@ -107,8 +107,9 @@ def _table(source: ByteSource) -> Table:
     row = _first_row(names, body)
     schema = pa.schema(list(zip(names, _types(row), strict=True)))
     batches = _batches(body, lines, schema, source.name)
+    batches = _without_repeated(batches, repeated, source.name) if repeated else batches
     extra, carried = facts_of(row)
-    kept = [name for name in names if name and name not in carried]
+    kept = [name for name in names if name and name not in carried and name not in repeated]
     if len(kept) < len(names):
         schema = pa.schema([schema.field(name) for name in kept])
         batches = (batch.select(kept) for batch in batches)
@@ -203,8 +204,39 @@ def _header(block: bytes, end: int, name: str) -> list[str]:
     if len(names) > 2 and not names[0] and INDEX not in names:
         names[0] = INDEX
     # A line that ends in a comma has a last column without a name, which must be empty.
-    _require_different(names[:-1] if len(names) > 1 and not names[-1] else names, name)
+    inner = names[:-1] if len(names) > 1 and not names[-1] else names
+    if not all(inner):
+        raise _ambiguous("no name", name, str(inner.index("") + 1))
     return names
+
+
+def _numbered(names: list[str]) -> tuple[list[str], dict[str, str]]:
+    """The names with a mark behind those that were there before; by each marked name, the name."""
+    counts: Counter[str] = Counter()
+    found, repeated = [], {}
+    for name in names:
+        counts[name] += 1
+        if counts[name] > 1:
+            repeated[f"{name}\0{counts[name]}"] = name
+        found.append(f"{name}\0{counts[name]}" if counts[name] > 1 else name)
+    return found, repeated
+
+
+def _without_repeated(
+    batches: Iterator[pa.RecordBatch], repeated: dict[str, str], name: str
+) -> Iterator[pa.RecordBatch]:
+    """The rows, where columns of one name are equal, as clocks that stand beside each signal."""
+    row = 0
+    for batch in batches:
+        for other, own in repeated.items():
+            if not batch.column(other).equals(batch.column(own)):
+                pairs = zip(batch.column(other), batch.column(own), strict=True)
+                at = next((k for k, (a, b) in enumerate(pairs) if a != b), 0)
+                count = 1 + sum(column == own for column in repeated.values())
+                found = f"{count} columns of this name, with other values"
+                raise _ambiguous(found, name, own, row + at + 1)
+        row += batch.num_rows
+        yield batch
 
 
 def _spaced(header: str, body: bytes) -> bool:
@@ -213,20 +245,17 @@ def _spaced(header: str, body: bytes) -> bool:
     return 1 < len(header.split()) == len(row) and all(NUMERIC.match(value) for value in row)
 
 
-def _require_different(names: list[str], name: str) -> None:
-    """Refuse columns of one name, and without a name."""
-    counts = Counter(names)
-    for column in names if len(counts) < len(names) or not all(names) else ():
-        if not column or counts[column] > 1:
-            found = f"{counts[column]} columns of this name" if column else "no name"
-            raise bad_data(
-                name,
-                found,
-                expected="one name per column",
-                remedy="give each column a name of its own in the first line, or replace it: "
-                f"`tail -n +2 {shlex.quote(name)} | scarid convert --header NAMES`",
-                column=column or str(names.index(column) + 1),
-            )
+def _ambiguous(found: str, name: str, column: str, row: int | None = None) -> BadData:
+    """What to say of columns of one name, and without a name."""
+    return bad_data(
+        name,
+        found,
+        expected="one name per column",
+        remedy="give each column a name of its own in the first line, or replace it: "
+        f"`tail -n +2 {shlex.quote(name)} | scarid convert --header NAMES`",
+        row=row,
+        column=column,
+    )
 
 
 def _first_row(names: list[str], body: bytes) -> dict[str, str]:
@@ -236,12 +265,15 @@ def _first_row(names: list[str], body: bytes) -> dict[str, str]:
 
 
 def _types(row: dict[str, str]) -> list[pa.DataType]:
-    return [
-        (column_type(name) or (pa.float64() if NUMERIC.match(value) else pa.string()))
-        if name
-        else pa.null()
-        for name, value in row.items()
-    ]
+    return [_type(name, value) if name else pa.null() for name, value in row.items()]
+
+
+def _type(name: str, value: str) -> pa.DataType:
+    """That of a column that we know, unless it should be a number of a joint and is a name."""
+    known, numeric = column_type(name), bool(NUMERIC.match(value))
+    if known is not None and (numeric or not value or name != "joint"):
+        return known
+    return pa.float64() if numeric else pa.string()
 
 
 def _first_row_end(body: bytes) -> int:

@@ -59,7 +59,10 @@ CASES = {
     ),
     "missing column": (["t,position,tau1", *GOOD[1:]], "column q1: found the columns t, position"),
     "no time": (["time,q1,tau1", *GOOD[1:]], "column t: found the columns time, q1, tau1"),
-    "duplicate column": (["t,q1,q1", *GOOD[1:]], "column q1: found 2 columns of this name"),
+    "duplicate column": (
+        ["t,q1,q1", *GOOD[1:]],
+        "row 2, column q1: found 2 columns of this name, with other values",
+    ),
     "nameless column": (["t,q1,", *GOOD[1:]], "row 1, column 3: found '0.0', expected nothing, as"),
     "other separator": (["t;q1;tau1", "0;1;2"], "found the single column 't;q1;tau1', expected"),
     "white space": (["t q1 tau1", "0 1.5 2e-3"], "found the single column 't q1 tau1', expected"),

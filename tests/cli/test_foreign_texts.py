@@ -120,6 +120,37 @@ def test_texts_that_are_times_become_seconds(kind: str, shell: Shell, tmp_path: 
     np.testing.assert_allclose(found, LOG, atol=1e-9)
 
 
+def test_a_time_of_the_day_goes_on_at_midnight(shell: Shell, tmp_path: Path) -> None:
+    t = 0.01 * np.arange(100)
+    seconds = (86399.5 + t) % 86400
+    clock = [f"{x // 3600:02.0f}:{x % 3600 // 60:02.0f}:{x % 60:05.2f}" for x in seconds.tolist()]
+    rows = np.column_stack((t, np.random.default_rng(6).standard_normal((100, 4))))
+    found = converted(shell, tmp_path, written(",".join(["time", *ORDER[1:]]), clock, rows))
+    np.testing.assert_allclose(found, rows, atol=1e-9)
+
+
+@pytest.mark.parametrize("late", [0.0, 1e-4])
+def test_a_clock_beside_each_signal_is_one_if_all_are_equal(
+    late: float, shell: Shell, tmp_path: Path
+) -> None:
+    """As oscilloscopes of drives export them; where one differs, its first row is told."""
+    names = ["Time [ms]", "Pos 1 [deg]", "Time [ms]", "Pos 2 [deg]"]
+    names += ["Time [ms]", "Torque 1", "Time [ms]", "Torque 2"]
+    scaled = LOG * np.array([1e3, *DEGREES[1:]])
+    rows = np.repeat(scaled[:, :1], 8, axis=1)
+    rows[:, 1::2] = scaled[:, 1:]
+    rows[7:, 4] += 1e3 * late
+    text = "\n".join([";".join(names), *(";".join(f"{x:.17g}" for x in row) for row in rows)])
+    if not late:
+        found = converted(shell, tmp_path, text + "\n")
+        np.testing.assert_allclose(found, LOG, rtol=1e-12)
+        return
+    (tmp_path / "log.csv").write_text(text + "\n")
+    done = shell("scarid convert log.csv")
+    assert done.status == 65
+    assert "row 8, column Time [ms]: found 4 columns of this name, with other values" in done.err
+
+
 def test_a_text_among_times_is_refused_with_its_row(scarid: Run, tmp_path: Path) -> None:
     clock = [*CLOCKS["duration"][:-1], "soon"]
     Path("log.csv").write_text(written(",".join(["time", *ORDER[1:]]), clock))

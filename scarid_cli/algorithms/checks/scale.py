@@ -92,13 +92,16 @@ class Scale:
     def _beyond_a_tool(self, j: int, least: Array, most: Array) -> bool:
         """Whether the torque of joint j (from 0) is larger than a tool makes it.
 
-        The masses that are described may be wrong as well: the joints before it may need only half
-        of what they state without the tool, and joint j twice as much.
+        The masses that are described may be wrong as well: the joints before it may need less than
+        they state without the tool, as far as those of this log disagree with them, but not half,
+        and joint j twice as much.
         """
         behind = [most[k] for k in self.known if k > j]
         if behind and least[j] > WRONG * max(1.0, *behind):
             return True
-        added = [(most[k] - 1.0 / WRONG) * self.needed[k] for k in self.known if k < j]
+        off = max((max(most[k] - 1.0, 1.0 - least[k]) for k in self.known if k < j), default=0.0)
+        bare = 1.0 - min(off, 1.0 - 1.0 / WRONG)
+        added = [(most[k] - bare) * self.needed[k] for k in self.known if k < j]
         return bool(added) and (least[j] - WRONG) * self.needed[j] > WRONG * max(added)
 
 

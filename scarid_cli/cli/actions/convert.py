@@ -15,9 +15,11 @@ from scarid_cli.io.notation import Notation
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages.adapt import adapted
+from scarid_cli.stages.cells import names_in_cells
 from scarid_cli.stages.lacking import lacking
 from scarid_cli.stages.runs import runs_joined
 from scarid_cli.stages.side import episodes_joined
+from scarid_cli.stages.turns import one_row_for_all
 from scarid_cli.stages.wording import is_current
 
 if TYPE_CHECKING:
@@ -57,7 +59,9 @@ def run(
     if extension is None:
         notation = _notation(separator, header, decimal_comma=decimal_comma)
         table = read_log(job, file, source, notation, beside, named=pairs.values())
-        columns = columns_of(job, table, pairs, given, recorder, arm, order)
+        table, turns = one_row_for_all(table, job.notes.append)
+        table, names = names_in_cells(table)
+        columns = columns_of(job, table, pairs, given, recorder, arm, order, turns or names)
         _require_torques(pairs, columns, arm)
         clock = rate or (arm and arm.log and arm.log.rate)
         _tell_lacking(job, table, columns, arm, clock=bool(clock))
