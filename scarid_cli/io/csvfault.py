@@ -17,7 +17,10 @@ from scarid_cli.errors import BadData, bad_data, bad_row
 from scarid_cli.io.csvio import NUMERIC
 
 Parse = Callable[[bytes, pa.Schema], object]
-UNITS = "convert it first: `scarid convert` reads a line of units below the header"
+UNITS = (
+    "write numbers without units; `scarid convert` reads units in a line of their own below the "
+    "header"
+)
 LONGEST = 60  # characters of a value that a message shows
 
 

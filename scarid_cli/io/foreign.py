@@ -42,7 +42,7 @@ class TranslatedCsv(Wrapped):
         self._rest = b""
         source.drop_lines(notation.skip)
         source.drop_comments(COMMENTS)
-        source.drop_lines(2 if notation.units else 0)
+        source.drop_lines(2 if notation.units or notation.two_lines else 0)
         if notation.header:
             self._ahead = csv_text([notation.header])
 

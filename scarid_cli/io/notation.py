@@ -29,7 +29,8 @@ class Notation:
     """The separator (SPACE for any white space), the decimal mark, and the names of the columns.
 
     The names are empty if the file has a header, and `comment` says that it is a comment. `skip`
-    lines stand before the header. If the line behind it has `units`, it has them in its names.
+    lines stand before the header. If the line behind it has `units`, it has them in its names; a
+    header of `two_lines` has the second parts of the names there.
     """
 
     separator: str = ","
@@ -38,6 +39,7 @@ class Notation:
     comment: bool = False
     skip: int = 0
     units: tuple[str, ...] = ()
+    two_lines: bool = False
 
     @property
     def plain(self) -> bool:
@@ -53,6 +55,8 @@ class Notation:
             parts.append(f"after {self.skip} lines that are no table")
         if self.units:
             parts.append(f"units in the second line: {', '.join(filter(None, self.units))}")
+        elif self.two_lines:
+            parts.append(f"names in two lines: {','.join(self.header)}")
         elif self.header:
             names = ",".join(self.header)
             parts.append(f"names from a comment: {names}" if self.comment else f"columns {names}")
@@ -77,6 +81,8 @@ def notation_of(source: ByteSource, given: Notation | None, *, by_name: bool) ->
     if not all(is_number(field, comma=comma) for field in fields):
         units = _units(lines, separator, comma=comma)
         header = tuple(name.strip() for name in fields) if units else ()
+        if units and len({*header}) < len(header):
+            return Notation(separator, comma, _joined(header, units), skip=skip, two_lines=True)
         return Notation(separator, comma, header, skip=skip, units=units)
     names = split(comments[-1].lstrip("#% "), separator) if comments else []
     if len(names) == len(fields) and not any(is_number(n, comma=comma) for n in names):
@@ -127,6 +133,16 @@ def _units(lines: Sequence[str], separator: str, *, comma: bool) -> tuple[str, .
     numbers = sum(is_number(field, comma=comma) for field in third)
     stated = tuple(field.strip().strip("[]()") for field in second)
     return stated if any(stated) and 2 * numbers > len(third) else ()
+
+
+def _joined(first: Sequence[str], second: Sequence[str]) -> tuple[str, ...]:
+    """Names from two lines, as `position.elbow`; an empty cell has the word to its left."""
+    words, left = [], ""
+    for word in first:
+        left = word or left
+        words.append(left)
+    pairs = zip(words, second, strict=True)
+    return tuple(".".join(filter(None, pair)) for pair in pairs)
 
 
 def _first_lines(source: ByteSource) -> tuple[list[str], list[str], int]:

@@ -67,8 +67,13 @@ BY_UNIT = {"deg": POSITION, "rad": POSITION, "rev": POSITION, "deg/s": VELOCITY,
            "N mm": TORQUE, "A": CURRENT, "mA": CURRENT}  # fmt: skip
 # Units that only their device knows.
 UNSTATED = re.compile(
-    r".*[\[(]\s*(inc|incs|increments?|counts?|cnt|ticks?|pulses?|.*%|permille|LSB)\s*[\])]\s*"
+    r".*(?:[\[(]|[_ ](?=\S*\Z))\s*"
+    r"(incs?|increments?|counts?|cnt|ticks?|pulses?|[^\])_ ]*%|pct|percent|permille|LSB)"
+    r"\s*[\])]?\s*"
 )
+# Signs of formulas, and a dot or two above a q or theta, by their words.
+SIGNS = {"\u03b8": " theta ", "\u03d1": " theta ", "\u03c4": " tau ", "q\u0307": " qdot ",
+         " theta \u0307": " qdot ", "q\u0308": " ddot ", " theta \u0308": " ddot "}  # fmt: skip
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 INSIDE = re.compile(r"[^./]+[./]")  # the name of a structure, before that of its member
 
@@ -169,7 +174,10 @@ def words_of(name: str) -> tuple[str, ...]:
     if not name.isascii():
         from unicodedata import combining, normalize  # not needed otherwise
 
-        plain = "".join(c for c in normalize("NFKD", name) if not combining(c))
+        plain = normalize("NFKD", name)
+        for sign, word in SIGNS.items():
+            plain = plain.replace(sign, word)
+        plain = "".join(c for c in plain if not combining(c))
     words = (word.lower() for word in WORD.findall(plain))
     return tuple(str(int(word)) if word.isdigit() else word for word in words)
 

@@ -96,6 +96,7 @@ def test_units_below_the_header_are_used(brackets: str, shell: Shell, tmp_path: 
         "Zeitstempel,Winkel 1 [deg],Winkel 2 [deg],Drehmoment 1,Drehmoment 2",
         "temps,position axe 1 (deg),position axe 2 (deg),couple axe 1,couple axe 2",
         "tiempo,posición_1_deg,posición_2_deg,momento_1,momento_2",
+        "t,θ1 [deg],θ2 [deg],τ1,τ2",
         "tempo,posizione giunto 1 [°],posizione giunto 2 [°],coppia giunto 1,coppia giunto 2",
     ],
 )
@@ -105,6 +106,11 @@ def test_words_of_other_languages_are_known(names: str, shell: Shell, tmp_path: 
 
 
 CLOCKS = {
+    "twelve hours": [f"11:59:{59 + t:05.2f} am" if t < 1 else "" for t in T],
+    "noon": [f"12:00:{t:05.2f} PM" for t in T],
+    "month first": [f"11/27/2026 9:59:{59 + t:05.2f} AM" for t in T],
+    "day first": [f"27/11/2026 09:59:{59 + t:05.2f}" for t in T],
+    "minutes": [f"59:{59 + t:05.2f}" for t in T],
     "duration": [f"{t:.2f} sec" for t in T],
     "milliseconds": [f"{round(1e3 * t)} ms" for t in T],
     "time of the day": [f"9:59:{59 + t:05.2f}" if t < 1 else "" for t in T],
@@ -118,6 +124,25 @@ CLOCKS = {
 def test_texts_that_are_times_become_seconds(kind: str, shell: Shell, tmp_path: Path) -> None:
     found = converted(shell, tmp_path, written(",".join(["time", *ORDER[1:]]), CLOCKS[kind]))
     np.testing.assert_allclose(found, LOG, atol=1e-9)
+
+
+def test_names_in_two_lines_are_joined(shell: Shell, tmp_path: Path) -> None:
+    """As of merged cells: what stands above an empty cell is to its left."""
+    names = ",position,,effort,\ntime,shoulder,elbow,shoulder,elbow"
+    np.testing.assert_allclose(converted(shell, tmp_path, written(names)), LOG, rtol=1e-12)
+
+
+@pytest.mark.parametrize("unit", ["%", "pct", "percent", "counts", "ticks"])
+def test_a_unit_that_only_the_device_knows_is_asked_for(
+    unit: str, shell: Shell, tmp_path: Path
+) -> None:
+    names = f"time,pos1,pos2,torque1_{unit},torque2_{unit}"
+    (tmp_path / "log.csv").write_text(written(names))
+    told = shell("scarid convert log.csv").err
+    assert f"torque1_{unit} does not say what one {unit} is" in told
+    options = f"--map t=time --map 'q*=pos' --map 'tau*=torque*_{unit}' --unit 'tau*=0.5 N m'"
+    found = converted(shell, tmp_path, written(names), options)
+    np.testing.assert_allclose(found, LOG * [1, 1, 1, 0.5, 0.5], rtol=1e-12)
 
 
 def test_a_time_of_the_day_goes_on_at_midnight(shell: Shell, tmp_path: Path) -> None:

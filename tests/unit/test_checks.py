@@ -71,16 +71,24 @@ def test_any_log_has_findings_with_advice_where_something_is_wrong(
         (4.0, FAILED, "the time seems to be in ms: `scarid convert --unit t=ms`"),
         (10.0, WARNING, "record at 100 Hz or more"),
         (20.0, OK, ""),
-        (1e6, FAILED, "the time is not in seconds: convert the unit of t"),
+        (1e6, FAILED, "the time seems to be in hours: `scarid convert --unit 't=3600 s'`"),
+        (
+            8.64e6,
+            FAILED,
+            "the time seems to be in days, as Excel counts them: "
+            "`scarid convert --unit 't=86400 s'`",
+        ),
+        (1e13, FAILED, "the time is not in seconds: convert the unit of t"),
     ],
 )
-def test_a_low_rate_is_that_of_a_slow_log_or_of_a_time_in_milliseconds(
+def test_a_rate_may_be_that_of_a_slow_log_or_of_a_time_in_another_unit(
     rate: float, status: str, advice: str
 ) -> None:
     """A robot's log of 1 to 10 Hz with the time in ms would have 1 to 10 kHz."""
+    factors = {"ms": 1e-3, "hours": 3600.0, "days": 86400.0}
     finding, factor = clock.unit(clock.Clock.of(np.arange(100) / rate))
     assert (finding.status, finding.advice) == (status, advice)
-    assert factor == (1e-3 if "ms" in advice else 1.0)
+    assert factor == next((x for unit, x in factors.items() if f"in {unit}" in advice), 1.0)
 
 
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])

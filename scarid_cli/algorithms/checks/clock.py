@@ -19,6 +19,7 @@ from scarid_cli.arrays import Array, Marks, median
 # of a few rows in each give the right parameters, but far less exactly; one of fewer rows is of no
 # use, and one of more than the highest rate is no log of joints.
 LOWEST, SLOW, HIGHEST = 5.0, 20.0, 200_000.0
+LONGER = ((86400.0, "days, as Excel counts them"), (3600.0, "hours"), (60.0, "minutes"))
 UNITS = ((1e3, "ms"), (1e6, "us"), (1e9, "ns"))  # of a time that is not in seconds
 FASTER = "record at 100 Hz or more"
 JITTER = 0.01  # of the period: the limit of `differentiate`, as io.clock has it
@@ -57,6 +58,10 @@ def unit(clock: Clock) -> tuple[Finding, float]:
     if not clock.period:
         return failed("rate", "the time never increases", "give a log with a clock"), 1.0
     if clock.rate > HIGHEST:
+        for factor, name in LONGER:
+            if SLOW <= clock.rate / factor <= HIGHEST:
+                advice = f"the time seems to be in {name}: `scarid convert --unit 't={factor:g} s'`"
+                return failed("rate", f"{figure} if t is in seconds", advice), factor
         return failed("rate", figure, "the time is not in seconds: convert the unit of t"), 1.0
     if clock.rate >= SLOW:
         return ok("rate", figure), 1.0
