@@ -75,6 +75,17 @@ def test_a_robot_on_the_ceiling_is_found() -> None:
     assert finding.text.startswith("gravity: the model fits far better with gravity = [0, 0, 9.81]")
 
 
+@pytest.mark.parametrize("name", ["planar2-gravity", ARM])
+def test_torques_without_gravity_are_no_robot_on_a_wall(name: str) -> None:
+    """As the commands of a controller that adds the torque of gravity."""
+    robot = robot_named(name)
+    if robot.body is None:
+        pytest.skip("its gravity is a term of the model")
+    bare = replace(robot, body=replace(robot.body, gravity=(0.0, 0.0, 0.0)))
+    (finding,) = findings(mounted(robot, log_of(bare)).case)
+    assert finding.text.startswith("gravity: the model fits far better without gravity; are these")
+
+
 def test_an_axis_that_points_the_other_way_is_found() -> None:
     robot = robot_named("scara2")
     seen = log_of(robot)

@@ -110,6 +110,8 @@ def _identifiable(robot: Robot, found: Solution) -> Finding:
     size = np.sqrt(np.sum(found.A**2, axis=0))
     absent = [name for name, x in zip(robot.names, size, strict=True) if not x > 0.0]
     advice = "use a motion that excites it (`scarid trajgen`), or fewer parameters"
+    if absent and robot.body and not any(robot.body.gravity):  # which has been told
+        return ok("identifiability", f"without gravity, nothing determines {', '.join(absent)}")
     if absent:
         return failed("identifiability", f"nothing determines {', '.join(absent)}", advice)
     _, s, v = np.linalg.svd(found.A / size, full_matrices=False)

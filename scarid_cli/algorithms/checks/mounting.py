@@ -70,13 +70,14 @@ class Mounting:
             yield replace(self, signs=_with(self.signs, joint, -sign))
 
     def turned(self, robot: Robot) -> Iterator[Mounting]:
-        """A joint has another zero, or gravity acts along another axis of the base."""
+        """A joint has another zero, or gravity acts along another axis of the base, or not."""
         for joint, one in enumerate(robot.joints):
             if one.unit == "rad":
                 for turn in TURNS:
                     yield replace(self, turns=_with(self.turns, joint, turn))
         if robot.body and any(robot.body.gravity):
             size = float(np.linalg.norm(robot.body.gravity))
+            yield replace(self, gravity=(0.0, 0.0, 0.0))
             for axis in range(3):
                 for along in (size, -size):
                     yield replace(self, gravity=_with((0.0, 0.0, 0.0), axis, along))
@@ -133,6 +134,10 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
     if found.fit.residuals.max() > TURNED:
         other = searched(as_described, fit_of, folded)
         found = other if other.fit.misfit < found.fit.misfit + np.log(FALL) else found
+    if found.case.gravity:
+        none = replace(found.case, gravity=(0.0, 0.0, 0.0))
+        without = Explained(none, fit_of(none))
+        found = without if without.fit.misfit < found.fit.misfit + alike(robot) else found
     return as_described if found.fit.residuals.max() > UNEXPLAINED else found
 
 
@@ -170,6 +175,20 @@ def alike(robot: Robot) -> float:
     return float(np.log(ALIKE)) / len(robot.joints)
 
 
+def _gravity(gravity: tuple[float, ...], what: str) -> Finding:
+    if any(gravity):
+        vector = ", ".join(f"{x:.3g}" for x in gravity)
+        figure = f"{what} far better with gravity = [{vector}] in the frame of the base"
+        advice = "is the base on a wall or a ceiling?"
+    else:
+        figure = f"{what} far better without gravity"
+        advice = (
+            "are these commands, to which the controller adds the torque of gravity? log what was "
+            "measured. Or are all axes vertical?"
+        )
+    return failed("gravity", figure, f"{advice} State gravity in the TOML file of the robot")
+
+
 def findings(mounting: Mounting, what: str = "the model fits") -> list[Finding]:
     """What differs from the description; none if nothing does."""
     better, found = f"{what} far better with", []
@@ -184,8 +203,5 @@ def findings(mounting: Mounting, what: str = "the model fits") -> list[Finding]:
         advice = "is this its zero? state it as `zero` [rad] in the TOML file of the robot"
         found.append(failed("zeros", figure, advice))
     if mounting.gravity:
-        vector = ", ".join(f"{x:.3g}" for x in mounting.gravity)
-        figure = f"{better} gravity = [{vector}] in the frame of the base"
-        advice = "is the base on a wall or a ceiling? state gravity in the TOML file of the robot"
-        found.append(failed("gravity", figure, advice))
+        found.append(_gravity(mounting.gravity, what))
     return found
