@@ -158,6 +158,44 @@ def wrong_clock(log: Log, rng: Generator) -> tuple[Spoils, str]:
     return with_velocities(*[factor] * log.joints), "times the changes of the positions"
 
 
+def wrong_rate(_: Log, rng: Generator) -> tuple[Spoils, str]:
+    """A clock wrong by a factor, in a log without velocities."""
+    factor = float(rng.choice([0.5, 0.8, 1.25, 2.0, 4.0]))
+    return lambda log: replace(log, t=factor * log.t), "times that of the log"
+
+
+def behind_a_gear(log: Log, rng: Generator) -> tuple[Spoils, str]:
+    joint, factor = any_joint(log, rng), float(rng.choice([0.5, 2.0, 3.0, 10.0, 50.0]))
+    return positions_times(*only(log, joint, factor)), f"position of joint {joint} times"
+
+
+def inner(log: Log, rng: Generator) -> int:
+    """A joint whose axis is parallel to that of the joint before it."""
+    return int(rng.integers(3, 5)) if log.joints > 2 else 2
+
+
+def from_the_base(log: Log, rng: Generator) -> tuple[Spoils, str]:
+    joint = inner(log, rng)
+
+    def spoil(log: Log) -> Log:
+        q = log.q.copy()
+        q[joint - 1] += q[joint - 2]
+        return replace(log, q=q)
+
+    return spoil, f"position of joint {joint} less that of joint {joint - 1}"
+
+
+def of_a_belt(log: Log, rng: Generator) -> tuple[Spoils, str]:
+    joint = inner(log, rng)
+
+    def spoil(log: Log) -> Log:
+        tau = log.tau.copy()
+        tau[joint - 2] += tau[joint - 1]
+        return replace(log, tau=tau)
+
+    return spoil, f"torque of joint {joint - 1} less that of joint {joint}"
+
+
 def velocity_units(log: Log, rng: Generator) -> tuple[Spoils, str]:
     unit, factor = [("deg/s", 180 / np.pi), ("rpm", 30 / np.pi)][rng.integers(2)]
     return with_velocities(*[factor] * log.joints), f"in {unit}"
@@ -218,6 +256,10 @@ KINDS = {
     "two torques exchanged": Kind("order of joints", torques_exchanged),
     "two joints exchanged": Kind("order of joints", joints_exchanged),
     "a zero a quarter or half turn away": Kind("zeros", another_zero, ("arm", "pendulum", *SIX)),
+    "clock wrong by a factor, no velocities": Kind("clock", wrong_rate, ("arm", "pendulum", *SIX)),
+    "a position behind a gear": Kind("gears", behind_a_gear, ("arm", *SIX)),
+    "positions measured from the base": Kind("couplings", from_the_base, ("arm", "ur10", "ur10e")),
+    "torques of a belt": Kind("couplings", of_a_belt, ("arm", "ur10", "ur10e")),
     "torques times .03 to 30": Kind("scale", scaled_torques),
     "one torque times .03 to 30": Kind("scale", one_scaled_torque),
     "an angle that wraps": Kind("wraps", wrapping_angle),

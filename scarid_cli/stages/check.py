@@ -10,12 +10,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.checks import (
     clock,
     fit,
     leaps,
-    mounting,
     movement,
     scale,
     units,
@@ -26,7 +24,7 @@ from scarid_cli.algorithms.checks import (
 from scarid_cli.algorithms.checks.finding import FAILED, OK, Finding, failed, ok, several
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.motion import Motion
-from scarid_cli.algorithms.checks.search import Explained
+from scarid_cli.algorithms.checks.unlike import Unlike, unlike
 from scarid_cli.algorithms.robots.description import Robot
 
 FEWEST = 2  # rows: one has no rate
@@ -83,40 +81,34 @@ def _moving(log: Log, robot: Robot, motion: Motion, *, driven: bool) -> Iterator
     parts = motion.parts()
     speeds = np.max([np.abs(part.motion[1]).max(axis=1) for part in parts], axis=0)
     finding, factors = units.positions(log, robot, speeds)
-    yield finding
     motion = motion.scaled(factors)
     parts = motion.parts()
-    yield movement.standstill(parts)
     moved = movement.range_of_joints(parts, robot)
+    explained = driven and moved.status == OK
+    converted = bool(np.any(factors != 1.0))
+    found = unlike(robot, motion, converted=converted) if explained else None
+    if found and found.geared and converted:  # neither degrees nor mm
+        found, finding = found.scaled(factors), ok(finding.name, finding.figure)
+    yield finding
+    yield movement.standstill(parts)
     yield moved
     yield movement.bandwidths(motion)
     yield movement.resolution(factors[:, None] * log.q, motion, parts, robot)
     yield movement.repetition(motion)
-    if driven and moved.status == OK:
-        yield from _explained(log, robot, motion)
+    if explained:
+        yield from _explained(log, robot, found)
 
 
-def _explained(log: Log, robot: Robot, motion: Motion) -> Iterator[Finding]:
+def _explained(log: Log, robot: Robot, found: Unlike | None) -> Iterator[Finding]:
     """The findings that need the robot's model."""
-    samples = fit.samples_of(robot, motion)
-    if samples is None or not samples.counts.any(axis=1).all():
+    if found is None:
         figure = "no row of some joint is away from reversals and standstill"
         yield failed("model", figure, "give a longer log in which every joint moves")
         return
-    found, fitting = wiring.wired(robot, samples), mounting.mounted(robot, samples)
-    left = scale.disagreement(robot, samples.wired(found.case))
-    mounted = mounting.by_masses(robot, samples, fitting, left)
-    told = mounted is not fitting
-    differs = mounting.findings(
-        mounted.case, "the described masses fit" if told else "the model fits"
-    )
-    if differs and mounted.fit.misfit < found.fit.misfit + (mounting.alike(robot) if told else 0.0):
-        yield from differs
-        robot = mounted.case.of(robot)
-        motion = motion.mounted(np.array(mounted.case.signs), np.array(mounted.case.turns))
-        found = Explained(Wiring.same(len(robot.joints)), mounted.fit)
-    yield from wiring.findings(found, robot)
-    seconds, error, samples = fit.aligned(robot, motion, found.case)
+    yield from found.findings
+    yield from wiring.findings(found.wired, found.robot)
+    robot, motion = found.robot, found.motion
+    seconds, error, samples = fit.aligned(robot, motion, found.wired.case)
     yield fit.delay(seconds, error, motion)
     torques, size = units.torques(log, robot), scale.scale_of(robot, samples)
     if torques.status == FAILED and size.agrees:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scarid_cli.algorithms.checks import mounting, scale, wiring
+from scarid_cli.algorithms.checks import gearing, mounting, scale, wiring
 from scarid_cli.algorithms.checks.finding import FAILED, OK, TORQUES, Finding
 from scarid_cli.algorithms.checks.model import Samples, enough
 from scarid_cli.algorithms.regression.rows import Rows
@@ -55,6 +55,9 @@ def _described(samples: Samples, robot: Robot) -> list[Finding]:
         explained = signed.fit.residuals.max() <= mounting.UNEXPLAINED
         if some and explained and signed.fit.misfit < mounted.fit.misfit:
             return [wiring.signs(signed, robot)]
+        geared = gearing.geared(robot, samples)
+        if gearing.better(geared, mounted.fit, robot, samples):
+            return gearing.findings(geared.case)
     return mounting.findings(mounted.case)
 
 

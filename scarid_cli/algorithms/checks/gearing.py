@@ -1,0 +1,234 @@
+"""The clock, gears and couplings of a log, by what explains its torques.
+
+A clock that is wrong by a factor makes inertias too large beside the torques of gravity; the angle
+of a motor turns by other sines than that of its joint; and where joints are measured from the base,
+or torques are those of belts, each signal belongs to two joints. Each of these is fitted to the
+log, and one that leaves far less of the torques unexplained is preferred.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text
+from scarid_cli.algorithms.checks.model import Fit, Samples, fitted
+from scarid_cli.algorithms.checks.motion import Motion
+from scarid_cli.algorithms.checks.scale import scale_of
+from scarid_cli.algorithms.checks.search import FALL, Explained, searched
+from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.tuning.lowpassed import Segment
+from scarid_cli.arrays import Array
+
+FEW = 300  # samples that are fitted while factors are looked for
+FACTORS = 2.0 ** np.arange(-8, 9)  # that are tried first
+BETWEEN = 16  # fits by which the best of them is refined
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+SLIGHT = 0.05  # of a factor: less is another error of the model
+UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
+LEFT = 3e-4  # of the mean square torque of a joint: noise leaves as much
+GEARED = 0.02  # of the mean square torque of a joint: what a wrong gear or coupling leaves of one
+
+
+@dataclass(frozen=True)
+class Gearing:
+    """What times, positions and torques have to be multiplied by, and what is taken from them.
+
+    `time` is the factor of times, `scales` (joints) those of positions. From the position of a
+    joint that of the joint before it is taken `behind` (joints) times: 1 where it is measured from
+    the base, -1 if the axes point in opposite directions. To the torque of a joint that of the
+    next one is added `carried` (joints) times.
+    """
+
+    time: float
+    scales: tuple[float, ...]
+    behind: tuple[int, ...]
+    carried: tuple[int, ...]
+
+    @classmethod
+    def none(cls, joints: int) -> Gearing:
+        return cls(1.0, (1.0,) * joints, (0,) * joints, (0,) * joints)
+
+    def positions(self, q: Array) -> Array:
+        """The positions (joints, ...) of the joints, or their derivatives."""
+        scaled = (np.array(self.scales) * q.T).T
+        found = scaled.copy()
+        for j, times in enumerate(self.behind[1:], start=1):
+            found[j] -= times * scaled[j - 1]
+        return found
+
+    def torques(self, tau: Array) -> Array:
+        """The torques (joints, ...) of the joints."""
+        found = tau.copy()
+        for j, times in enumerate(self.carried[:-1]):
+            found[j] += times * tau[j + 1]
+        return found
+
+    def seen(self, samples: Samples) -> Samples:
+        """The samples as the joints themselves would have been logged."""
+        q, dq, ddq, tau, slope = samples.motion
+        motion = [
+            self.positions(q),
+            self.positions(dq) / self.time,
+            self.positions(ddq) / self.time**2,
+            self.torques(tau),
+            self.torques(slope) / self.time,
+        ]
+        return replace(samples, motion=np.stack(motion))
+
+    @property
+    def unscaled(self) -> bool:
+        """Whether positions are those of the log but for what another error may change."""
+        return bool(np.abs(np.log(self.scales)).max() < SLIGHT)
+
+    @property
+    def same(self) -> bool:
+        """Whether nothing differs but by what another error of the model may change."""
+        timed = abs(np.log(self.time)) >= SLIGHT
+        return self.unscaled and not timed and not any((*self.behind, *self.carried))
+
+    def motion(self, motion: Motion) -> Motion:
+        """The motion of a log as the joints themselves would have been logged."""
+        segments = tuple(
+            Segment(self.positions(x.q), self.torques(x.tau), np.abs(self.positions(x.noise)))
+            for x in motion.segments
+        )
+        return replace(
+            motion,
+            segments=segments,
+            h=self.time * motion.h,
+            bandwidths=motion.bandwidths / self.time,
+            torques=motion.torques / self.time,
+            cutoff=motion.cutoff / self.time,
+        )
+
+    def carrying(self) -> Iterator[Gearing]:
+        """One joint more has a part of the torque of the next."""
+        for j in range(len(self.scales) - 1):
+            yield from (replace(self, carried=_with(self.carried, j, x)) for x in (1, -1))
+
+    def lagging(self) -> Iterator[Gearing]:
+        """One joint more is measured from the base, or all of them are."""
+        joints = len(self.scales)
+        for sign in (1, -1):
+            for j in range(1, joints):
+                yield replace(self, behind=_with(self.behind, j, sign))
+            yield replace(self, behind=(0, *[sign] * (joints - 1)))
+
+
+def _with(values: tuple[int, ...], place: int, value: int) -> tuple[int, ...]:
+    return (*values[:place], value, *values[place + 1 :])
+
+
+def geared(robot: Robot, samples: Samples, *, suspected: bool = False) -> Explained[Gearing]:
+    """The clock, gears and couplings that explain the log: none, unless others are far better.
+
+    Gears, and positions measured from the base, are looked for only where a joint is left
+    unexplained as by a wrong one, or where they are `suspected`.
+    """
+    few = _few(samples)
+    joints = len(robot.joints)
+
+    def fit_of(case: Gearing) -> Fit:
+        return fitted(robot, case.seen(few))
+
+    def neighbours(found: Explained[Gearing]) -> list[Gearing]:
+        own = [_refined(partial(_timed, found.case), fit_of), *found.case.carrying()]
+        if found.fit.residuals.max() < GEARED and not suspected:
+            return own
+        every = [j for j, joint in enumerate(robot.joints) if joint.unit == "rad"]
+        groups = [every, *([j] for j in every)] if len(every) > 1 else [every]
+        own += [_refined(partial(_scaled, found.case, group), fit_of) for group in groups if group]
+        return [*own, *found.case.lagging()]
+
+    none = Gearing.none(joints)
+    start = Explained(none, fit_of(none))
+    found = searched(start, fit_of, neighbours)
+    if found.case.same or found.fit.residuals.max() > UNEXPLAINED:
+        return Explained(none, fitted(robot, samples))
+    return Explained(found.case, fitted(robot, found.case.seen(samples)))
+
+
+def _timed(case: Gearing, factor: float) -> Gearing:
+    return replace(case, time=factor)
+
+
+def _scaled(case: Gearing, joints: list[int], factor: float) -> Gearing:
+    return replace(
+        case, scales=tuple(factor if j in joints else x for j, x in enumerate(case.scales))
+    )
+
+
+def _few(samples: Samples) -> Samples:
+    rows = np.unique(np.linspace(0, samples.motion.shape[2] - 1, FEW).astype(np.int64))
+    return replace(samples, motion=samples.motion[:, :, rows], counts=samples.counts[:, rows])
+
+
+def _refined(case: Callable[[float], Gearing], fit_of: Callable[[Gearing], Fit]) -> Gearing:
+    """The case whose factor leaves least: the best of FACTORS, refined by golden sections."""
+
+    def misfit(factor: float) -> float:
+        return fit_of(case(float(factor))).misfit
+
+    place = int(np.argmin([misfit(x) for x in FACTORS]))
+    if place in (0, len(FACTORS) - 1):  # as if there were no gravity, or nothing else
+        return case(1.0)
+    best = float(FACTORS[place])
+    low, high = np.log(best) - np.log(2.0), np.log(best) + np.log(2.0)
+    inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)]
+    values = [misfit(np.exp(x)) for x in inner]
+    for _ in range(BETWEEN):
+        if values[0] < values[1]:
+            high, inner[1], values[1] = inner[1], inner[0], values[0]
+            inner[0] = high - GOLDEN * (high - low)
+            values[0] = misfit(np.exp(inner[0]))
+        else:
+            low, inner[0], values[0] = inner[0], inner[1], values[1]
+            inner[1] = low + GOLDEN * (high - low)
+            values[1] = misfit(np.exp(inner[1]))
+    return case(float(np.exp(inner[int(np.argmin(values))])))
+
+
+def better(found: Explained[Gearing], other: Fit, robot: Robot, samples: Samples) -> bool:
+    """Whether it leaves far less than another explanation does, or torques in other units do."""
+    unit = fitted(robot, scale_of(robot, samples).corrected(samples))
+    return bool(found.fit.misfit < min(other.misfit + np.log(FALL), unit.misfit))
+
+
+def findings(gearing: Gearing) -> list[Finding]:
+    """What differs from the log as it is; none if nothing does."""
+    found = []
+    if abs(np.log(gearing.time)) >= SLIGHT:
+        time = f"{gearing.time:.4g}"
+        figure = f"the model fits far better if the time is {time} times that of the log"
+        advice = f"is the rate of the log right? `scarid convert --unit 't={time} s'`"
+        found.append(failed("clock", figure, advice))
+    scaled = [(j, x) for j, x in enumerate(gearing.scales, 1) if abs(np.log(x)) >= SLIGHT]
+    for factor in dict.fromkeys(x for _, x in scaled):
+        own = [j for j, x in scaled if x == factor]
+        names = f"the position{'s' if len(own) > 1 else ''} of {joints_text(own)}"
+        inverse = f" (1/{1.0 / factor:.4g})" if factor < 1.0 else ""
+        units = " ".join(f"--unit 'q{j}={factor:.4g} rad'" for j in own)
+        advice = "the angle of a motor, a belt or another unit: state gear_ratio in the TOML file, "
+        figure = f"the model fits far better with {names} times {factor:.4g}{inverse}"
+        found.append(failed("gears", figure, f"{advice}or `scarid convert {units}`"))
+    taken = [
+        f"the position of joint {j} {'less' if x > 0 else 'plus'} that of joint {j - 1}"
+        for j, x in enumerate(gearing.behind, 1)
+        if x
+    ] + [
+        f"the torque of joint {j} {'plus' if x > 0 else 'less'} that of joint {j + 1}"
+        for j, x in enumerate(gearing.carried, 1)
+        if x
+    ]
+    if taken:
+        figure = f"the model fits far better with {', and '.join(taken)}"
+        advice = (
+            "are joints measured from the base, or moved by belts? state [[coupling]] in the TOML "
+            'file, with positions = "motor" or torques = "motor" in [log]'
+        )
+        found.append(failed("couplings", figure, advice))
+    return found
