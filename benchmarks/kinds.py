@@ -165,7 +165,9 @@ def wrong_rate(_: Log, rng: Generator) -> tuple[Spoils, str]:
 
 
 def behind_a_gear(log: Log, rng: Generator) -> tuple[Spoils, str]:
-    joint, factor = any_joint(log, rng), float(rng.choice([0.5, 2.0, 3.0, 10.0, 50.0]))
+    """Of an inner joint: of a vertical first and a round last one no torque tells it."""
+    joint = int(rng.integers(2, log.joints)) if log.joints > 2 else any_joint(log, rng)
+    factor = float(rng.choice([0.5, 2.0, 3.0, 10.0]))
     return positions_times(*only(log, joint, factor)), f"position of joint {joint} times"
 
 
@@ -185,8 +187,8 @@ def from_the_base(log: Log, rng: Generator) -> tuple[Spoils, str]:
     return spoil, f"position of joint {joint} less that of joint {joint - 1}"
 
 
-def of_a_belt(log: Log, rng: Generator) -> tuple[Spoils, str]:
-    joint = inner(log, rng)
+def of_a_belt(log: Log, _: Generator) -> tuple[Spoils, str]:
+    joint = min(3, log.joints)
 
     def spoil(log: Log) -> Log:
         tau = log.tau.copy()
@@ -256,7 +258,9 @@ KINDS = {
     "two torques exchanged": Kind("order of joints", torques_exchanged),
     "two joints exchanged": Kind("order of joints", joints_exchanged),
     "a zero a quarter or half turn away": Kind("zeros", another_zero, ("arm", "pendulum", *SIX)),
-    "clock wrong by a factor, no velocities": Kind("clock", wrong_rate, ("arm", "pendulum", *SIX)),
+    "clock wrong by a factor, no velocities": Kind(
+        "clock", wrong_rate, ("arm", "pendulum", "ur10", "panda")
+    ),
     "a position behind a gear": Kind("gears", behind_a_gear, ("arm", *SIX)),
     "positions measured from the base": Kind("couplings", from_the_base, ("arm", "ur10", "ur10e")),
     "torques of a belt": Kind("couplings", of_a_belt, ("arm", "ur10", "ur10e")),

@@ -16,11 +16,13 @@ from scarid_cli.algorithms.robots.reading import load
 
 ARM = load("planar2-gravity")
 SCARA = load("scara2")
+NONE = (0.0, 0.0)
 
 
 def logged(samples: Samples, case: Gearing) -> Samples:
     """What a log has of these samples whose joints are seen as `case` says."""
     q, dq, ddq, tau, slope = samples.motion.copy()
+    q -= np.array(case.zeros)[:, None]
     for x in (q, dq, ddq):
         for j, times in enumerate(case.behind[1:], start=1):
             x[j] += times * x[j - 1]
@@ -33,15 +35,17 @@ def logged(samples: Samples, case: Gearing) -> Samples:
 
 
 CASES = {
-    "time is 0.5 times": Gearing(0.5, (1.0, 1.0), (0, 0), (0, 0)),
-    "time is 2 times": Gearing(2.0, (1.0, 1.0), (0, 0), (0, 0)),
-    "time is 1.3 times": Gearing(1.3, (1.0, 1.0), (0, 0), (0, 0)),
-    "position of joint 2 times 0.5 (1/2)": Gearing(1.0, (1.0, 0.5), (0, 0), (0, 0)),
-    "positions of joints 1, 2 times 0.02 (1/50)": Gearing(1.0, (0.02, 0.02), (0, 0), (0, 0)),
-    "position of joint 2 less that of joint 1": Gearing(1.0, (1.0, 1.0), (0, 1), (0, 0)),
-    "position of joint 2 plus that of joint 1": Gearing(1.0, (1.0, 1.0), (0, -1), (0, 0)),
-    "torque of joint 1 plus that of joint 2": Gearing(1.0, (1.0, 1.0), (0, 0), (1, 0)),
-    "joint 1, and the torque of joint 1 plus": Gearing(1.0, (1.0, 1.0), (0, 1), (1, 0)),
+    "time is 0.5 times": Gearing(0.5, (1.0, 1.0), (0, 0), (0, 0), NONE),
+    "time is 2 times": Gearing(2.0, (1.0, 1.0), (0, 0), (0, 0), NONE),
+    "time is 1.3 times": Gearing(1.3, (1.0, 1.0), (0, 0), (0, 0), NONE),
+    "position of joint 2 times 0.5 (1/2)": Gearing(1.0, (1.0, 0.5), (0, 0), (0, 0), NONE),
+    "positions of joints 1, 2 times 0.02 (1/50)": Gearing(1.0, (0.02, 0.02), (0, 0), (0, 0), NONE),
+    "position of joint 2 less that of joint 1": Gearing(1.0, (1.0, 1.0), (0, 1), (0, 0), NONE),
+    "position of joint 2 plus that of joint 1": Gearing(1.0, (1.0, 1.0), (0, -1), (0, 0), NONE),
+    "torque of joint 1 plus that of joint 2": Gearing(1.0, (1.0, 1.0), (0, 0), (1, 0), NONE),
+    "joint 1 at 17.2 degrees where": Gearing(1.0, (1.0, 1.0), (0, 0), (0, 0), (0.3, 0.0)),
+    "joint 1 at -40.1 degrees where": Gearing(1.0, (1.0, 1.0), (0, 0), (0, 0), (-0.7, 0.0)),
+    "joint 1, and the torque of joint 1 plus": Gearing(1.0, (1.0, 1.0), (0, 1), (1, 0), NONE),
 }
 
 
@@ -50,12 +54,13 @@ CASES = {
     st.tuples(*[st.floats(0.1, 10.0)] * 2),
     st.sampled_from([-1, 0, 1]),
     st.sampled_from([-1, 0, 1]),
+    st.floats(-3.0, 3.0),
 )
 @settings(max_examples=25)
 def test_what_is_seen_is_what_the_joints_do(
-    time: float, scales: tuple[float, float], behind: int, carried: int
+    time: float, scales: tuple[float, float], behind: int, carried: int, zero: float
 ) -> None:
-    case = Gearing(time, scales, (0, behind), (carried, 0))
+    case = Gearing(time, scales, (0, behind), (carried, 0), (zero, 0.0))
     samples = log_of(ARM)
     seen = case.seen(logged(samples, case)).motion
     np.testing.assert_allclose(seen, samples.motion, rtol=1e-9, atol=1e-9)
@@ -67,6 +72,7 @@ def test_what_explains_the_torques_is_found_and_told(told: str) -> None:
     found = geared(ARM, logged(log_of(ARM), case)).case
     assert (found.behind, found.carried) == (case.behind, case.carried)
     assert found.time == pytest.approx(case.time, rel=0.01)
+    assert found.zeros == pytest.approx(case.zeros, abs=0.01)
     assert found.scales == pytest.approx(case.scales, rel=0.01)
     (finding,) = findings(case)
     assert told in finding.figure
@@ -82,5 +88,5 @@ def test_nothing_is_found_in_a_log_that_is_right(robot: object, seed: int) -> No
 
 
 def test_without_gravity_no_torque_tells_the_clock() -> None:
-    case = Gearing(2.0, (1.0, 1.0), (0, 0), (0, 0))
+    case = Gearing(2.0, (1.0, 1.0), (0, 0), (0, 0), NONE)
     assert geared(SCARA, logged(log_of(SCARA), case)).case.same

@@ -11,17 +11,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from math import degrees
 
 import numpy as np
 
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text
-from scarid_cli.algorithms.checks.model import Fit, Samples, fitted
+from scarid_cli.algorithms.checks.model import Fit, Samples, columns, fitted, solved
 from scarid_cli.algorithms.checks.motion import Motion
 from scarid_cli.algorithms.checks.scale import scale_of
-from scarid_cli.algorithms.checks.search import FALL, Explained, searched
+from scarid_cli.algorithms.checks.search import ALIKE, FALL, Explained, searched
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Segment
-from scarid_cli.arrays import Array
+from scarid_cli.arrays import Array, Marks
 
 FEW = 300  # samples that are fitted while factors are looked for
 FACTORS = 2.0 ** np.arange(-8, 9)  # that are tried first
@@ -29,6 +30,8 @@ BETWEEN = 16  # fits by which the best of them is refined
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 SLIGHT = 0.05  # of a factor: less is another error of the model
 UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
+STEPS, STEP, SETTLED, TINY = 8, 0.5, 1e-3, 1e-5  # of zeros: how many, and their sizes [rad]
+SMALL = 0.02  # rad: less is another error of the model
 LEFT = 3e-4  # of the mean square torque of a joint: noise leaves as much
 GEARED = 0.02  # of the mean square torque of a joint: what a wrong gear or coupling leaves of one
 
@@ -40,20 +43,26 @@ class Gearing:
     `time` is the factor of times, `scales` (joints) those of positions. From the position of a
     joint that of the joint before it is taken `behind` (joints) times: 1 where it is measured from
     the base, -1 if the axes point in opposite directions. To the torque of a joint that of the
-    next one is added `carried` (joints) times.
+    next one is added `carried` (joints) times. `zeros` (joints) [rad] are the positions of the
+    joints where the log has 0.
     """
 
     time: float
     scales: tuple[float, ...]
     behind: tuple[int, ...]
     carried: tuple[int, ...]
+    zeros: tuple[float, ...]
 
     @classmethod
     def none(cls, joints: int) -> Gearing:
-        return cls(1.0, (1.0,) * joints, (0,) * joints, (0,) * joints)
+        return cls(1.0, (1.0,) * joints, (0,) * joints, (0,) * joints, (0.0,) * joints)
 
     def positions(self, q: Array) -> Array:
-        """The positions (joints, ...) of the joints, or their derivatives."""
+        """The positions (joints, samples) of the joints [rad or m]."""
+        return np.asarray(self.moves(q) + np.array(self.zeros)[:, None])
+
+    def moves(self, q: Array) -> Array:
+        """The moves (joints, ...) of the joints, or derivatives of their positions."""
         scaled = (np.array(self.scales) * q.T).T
         found = scaled.copy()
         for j, times in enumerate(self.behind[1:], start=1):
@@ -72,8 +81,8 @@ class Gearing:
         q, dq, ddq, tau, slope = samples.motion
         motion = [
             self.positions(q),
-            self.positions(dq) / self.time,
-            self.positions(ddq) / self.time**2,
+            self.moves(dq) / self.time,
+            self.moves(ddq) / self.time**2,
             self.torques(tau),
             self.torques(slope) / self.time,
         ]
@@ -88,12 +97,13 @@ class Gearing:
     def same(self) -> bool:
         """Whether nothing differs but by what another error of the model may change."""
         timed = abs(np.log(self.time)) >= SLIGHT
-        return self.unscaled and not timed and not any((*self.behind, *self.carried))
+        moved = max(map(abs, self.zeros)) >= SMALL
+        return self.unscaled and not (timed or moved or any((*self.behind, *self.carried)))
 
     def motion(self, motion: Motion) -> Motion:
         """The motion of a log as the joints themselves would have been logged."""
         segments = tuple(
-            Segment(self.positions(x.q), self.torques(x.tau), np.abs(self.positions(x.noise)))
+            Segment(self.positions(x.q), self.torques(x.tau), np.abs(self.moves(x.noise)))
             for x in motion.segments
         )
         return replace(
@@ -137,9 +147,10 @@ def geared(robot: Robot, samples: Samples, *, suspected: bool = False) -> Explai
 
     def neighbours(found: Explained[Gearing]) -> list[Gearing]:
         own = [_refined(partial(_timed, found.case), fit_of), *found.case.carrying()]
+        every = [j for j, joint in enumerate(robot.joints) if joint.unit == "rad"]
+        own += [_zeroed(robot, found.case, few, fit_of, every)] if every else []
         if found.fit.residuals.max() < GEARED and not suspected:
             return own
-        every = [j for j, joint in enumerate(robot.joints) if joint.unit == "rad"]
         groups = [every, *([j] for j in every)] if len(every) > 1 else [every]
         own += [_refined(partial(_scaled, found.case, group), fit_of) for group in groups if group]
         return [*own, *found.case.lagging()]
@@ -192,6 +203,50 @@ def _refined(case: Callable[[float], Gearing], fit_of: Callable[[Gearing], Fit])
     return case(float(np.exp(inner[int(np.argmin(values))])))
 
 
+def _zeroed(
+    robot: Robot,
+    case: Gearing,
+    samples: Samples,
+    fit_of: Callable[[Gearing], Fit],
+    turning: list[int],
+) -> Gearing:
+    """The case with the zeros of the turning joints (from 0) that leave least.
+
+    They are found by Gauss and Newton's steps. Zeros that are small, or that change nothing, as
+    that of a last link whose first moments are estimated, stay 0.
+    """
+    for _ in range(STEPS):
+        motion = case.seen(samples).motion
+        step = _step(robot, motion, samples.counts, turning)
+        case = _moved(case, {j: case.zeros[j] + x for j, x in zip(turning, step, strict=True)})
+        if np.abs(step).max(initial=0.0) < SETTLED:
+            break
+    most = fit_of(case).misfit + np.log(ALIKE) / len(robot.joints)
+    for j in sorted(turning, key=lambda j: abs(case.zeros[j])):
+        without = _moved(case, {j: 0.0})
+        if abs(case.zeros[j]) < SMALL or fit_of(without).misfit < most:
+            case = without
+    return case
+
+
+def _moved(case: Gearing, zeros: dict[int, float]) -> Gearing:
+    return replace(case, zeros=tuple(zeros.get(j, x) for j, x in enumerate(case.zeros)))
+
+
+def _step(robot: Robot, motion: Array, counts: Marks, turning: list[int]) -> Array:
+    """By how much the zeros of joints (from 0) should move [rad], at most STEP."""
+    wide = columns(robot, motion)
+    theta = solved(wide, motion[3], counts).theta
+    before, found = wide @ theta, []
+    for j in turning:
+        moved = motion.copy()
+        moved[0, j] += TINY
+        found.append((columns(robot, moved) @ theta - before) / TINY)
+    both = np.concatenate((wide, np.stack(found, axis=2)), axis=2)
+    step = solved(both, motion[3], counts).theta[-len(turning) :]
+    return np.clip(step, -STEP, STEP)
+
+
 def better(found: Explained[Gearing], other: Fit, robot: Robot, samples: Samples) -> bool:
     """Whether it leaves far less than another explanation does, or torques in other units do."""
     unit = fitted(robot, scale_of(robot, samples).corrected(samples))
@@ -206,6 +261,14 @@ def findings(gearing: Gearing) -> list[Finding]:
         figure = f"the model fits far better if the time is {time} times that of the log"
         advice = f"is the rate of the log right? `scarid convert --unit 't={time} s'`"
         found.append(failed("clock", figure, advice))
+    moved = [(j, degrees(x)) for j, x in enumerate(gearing.zeros, 1) if abs(x) >= SMALL]
+    if moved:
+        names = " and ".join(f"joint {j} at {x:.3g} degrees" for j, x in moved)
+        figure = f"the model fits far better with {names} where the log has a position of 0"
+        values = ", ".join(f"{x:.3g} for joint {j}" for j, x in enumerate(gearing.zeros, 1)
+                           if abs(x) >= SMALL)  # fmt: skip
+        advice = f"is this its zero? state it in the TOML file of the robot: zero = {values} [rad]"
+        found.append(failed("zeros", figure, advice))
     scaled = [(j, x) for j, x in enumerate(gearing.scales, 1) if abs(np.log(x)) >= SLIGHT]
     for factor in dict.fromkeys(x for _, x in scaled):
         own = [j for j, x in scaled if x == factor]
