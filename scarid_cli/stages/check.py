@@ -105,12 +105,16 @@ def _explained(log: Log, robot: Robot, found: Unlike | None) -> Iterator[Finding
         figure = "no row of some joint is away from reversals and standstill"
         yield failed("model", figure, "give a longer log in which every joint moves")
         return
-    yield from found.findings
-    yield from wiring.findings(found.wired, found.robot)
     robot, motion = found.robot, found.motion
     seconds, error, samples = fit.aligned(robot, motion, found.wired.case)
-    yield fit.delay(seconds, error, motion)
     torques, size = units.torques(log, robot), scale.scale_of(robot, samples)
+    motors = found.motors(size)
+    yield from found.told(motors)
+    yield from wiring.findings(found.wired, robot)
+    yield fit.delay(seconds, error, motion)
+    if motors and not {*size.low, *size.high} - {*motors}:  # which has been told
+        samples = size.corrected(samples)
+        size = scale.scale_of(robot, samples)
     if torques.status == FAILED and size.agrees:
         torques = ok(torques.name, torques.figure)  # placeholders, as the masses need just these
     yield torques

@@ -22,6 +22,9 @@ FAULTS = {
     "a second run": "awk -F, -v OFS=, 'NR > 900 { $1 -= 4.5 } 1'",
     "two logs by cat": "awk -F, -v OFS=, 'NR == 1 { names = $0 } NR == 900 { print names }"
     " NR >= 900 { $1 -= 4.5 } 1'",
+    "signals of motors": "awk -F, -v OFS=, 'NR > 1 { $2 *= 50; $3 *= 50; $4 /= 50; $5 /= 50 } 1'",
+    "a pulley": "awk -F, -v OFS=, 'NR > 1 { $3 *= 2 } 1'",
+    "a clock at half its rate": "awk -F, -v OFS=, 'NR > 1 { $1 *= 2 } 1'",
     "several": "awk -F, -v OFS=, 'NR > 1 { $1 *= 1000; $2 *= 57.29577951; $3 *= 57.29577951 }"
     " NR < 100 || NR % 17'",
 }

@@ -8,7 +8,7 @@ log, and one that leaves far less of the torques unexplained is preferred.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from math import degrees
@@ -18,12 +18,13 @@ import numpy as np
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text
 from scarid_cli.algorithms.checks.model import Fit, Samples, columns, fitted, solved
 from scarid_cli.algorithms.checks.motion import Motion
-from scarid_cli.algorithms.checks.scale import scale_of
+from scarid_cli.algorithms.checks.scale import Scale, scale_of
 from scarid_cli.algorithms.checks.search import ALIKE, FALL, Explained, searched
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Segment
 from scarid_cli.arrays import Array, Marks
 
+BETTER = "the model fits far better"
 FEW = 300  # samples that are fitted while factors are looked for
 FACTORS = 2.0 ** np.arange(-8, 9)  # that are tried first
 BETWEEN = 16  # fits by which the best of them is refined
@@ -253,31 +254,69 @@ def better(found: Explained[Gearing], other: Fit, robot: Robot, samples: Samples
     return bool(found.fit.misfit < min(other.misfit + np.log(FALL), unit.misfit))
 
 
-def findings(gearing: Gearing) -> list[Finding]:
-    """What differs from the log as it is; none if nothing does."""
-    found = []
+def motors(gearing: Gearing, size: Scale) -> list[int]:
+    """The joints (from 0) whose positions and torques are those of a motor behind one gear."""
+    return [
+        j
+        for j in size.known
+        if abs(np.log(gearing.scales[j])) >= SLIGHT
+        and abs(np.log(np.abs(size.factors[j]) / gearing.scales[j])) < 2.0 * SLIGHT
+    ]
+
+
+def findings(gearing: Gearing, of_motors: Collection[int] = ()) -> list[Finding]:
+    """What differs from the log as it is; none if nothing does.
+
+    The signals of some joints (from 0) may be those of their motors.
+    """
+    return [
+        *_clock(gearing),
+        *_zeros(gearing),
+        *_gears(gearing, of_motors),
+        *_couplings(gearing),
+    ]
+
+
+def _clock(gearing: Gearing) -> Iterator[Finding]:
     if abs(np.log(gearing.time)) >= SLIGHT:
         time = f"{gearing.time:.4g}"
-        figure = f"the model fits far better if the time is {time} times that of the log"
+        figure = f"{BETTER} if the time is {time} times that of the log"
         advice = f"is the rate of the log right? `scarid convert --unit 't={time} s'`"
-        found.append(failed("clock", figure, advice))
-    moved = [(j, degrees(x)) for j, x in enumerate(gearing.zeros, 1) if abs(x) >= SMALL]
+        yield failed("clock", figure, advice)
+
+
+def _zeros(gearing: Gearing) -> Iterator[Finding]:
+    moved = [(j, x) for j, x in enumerate(gearing.zeros, 1) if abs(x) >= SMALL]
     if moved:
-        names = " and ".join(f"joint {j} at {x:.3g} degrees" for j, x in moved)
-        figure = f"the model fits far better with {names} where the log has a position of 0"
-        values = ", ".join(f"{x:.3g} for joint {j}" for j, x in enumerate(gearing.zeros, 1)
-                           if abs(x) >= SMALL)  # fmt: skip
+        names = " and ".join(f"joint {j} at {degrees(x):.3g} degrees" for j, x in moved)
+        values = ", ".join(f"{x:.3g} for joint {j}" for j, x in moved)
         advice = f"is this its zero? state it in the TOML file of the robot: zero = {values} [rad]"
-        found.append(failed("zeros", figure, advice))
-    scaled = [(j, x) for j, x in enumerate(gearing.scales, 1) if abs(np.log(x)) >= SLIGHT]
-    for factor in dict.fromkeys(x for _, x in scaled):
-        own = [j for j, x in scaled if x == factor]
-        names = f"the position{'s' if len(own) > 1 else ''} of {joints_text(own)}"
+        yield failed("zeros", f"{BETTER} with {names} where the log has a position of 0", advice)
+
+
+def _gears(gearing: Gearing, of_motors: Collection[int]) -> Iterator[Finding]:
+    scaled = [(j, x) for j, x in enumerate(gearing.scales) if abs(np.log(x)) >= SLIGHT]
+    for factor, motor in dict.fromkeys((x, j in of_motors) for j, x in scaled):
+        own = [j + 1 for j, x in scaled if (x, j in of_motors) == (factor, motor)]
         inverse = f" (1/{1.0 / factor:.4g})" if factor < 1.0 else ""
+        names = f"the position{'s' if len(own) > 1 else ''} of {joints_text(own)}"
+        figure = f"{BETTER} with {names} times {factor:.4g}{inverse}"
         units = " ".join(f"--unit 'q{j}={factor:.4g} rad'" for j in own)
-        advice = "the angle of a motor, a belt or another unit: state gear_ratio in the TOML file, "
-        figure = f"the model fits far better with {names} times {factor:.4g}{inverse}"
-        found.append(failed("gears", figure, f"{advice}or `scarid convert {units}`"))
+        if motor:
+            figure += f" and {'their torques' if len(own) > 1 else 'its torque'} over the same"
+            units += "".join(f" --unit 'tau{j}={1.0 / factor:.4g} N m'" for j in own)
+            advice = (
+                f"signals of motors: state gear_ratio = {1.0 / factor:.4g} in the TOML file, with "
+                'positions = "motor" and torques = "motor" in [log], '
+            )
+        else:
+            advice = (
+                "the angle of a motor, a belt, another unit: state gear_ratio in the TOML file, "
+            )
+        yield failed("gears", figure, f"{advice}or `scarid convert {units}`")
+
+
+def _couplings(gearing: Gearing) -> Iterator[Finding]:
     taken = [
         f"the position of joint {j} {'less' if x > 0 else 'plus'} that of joint {j - 1}"
         for j, x in enumerate(gearing.behind, 1)
@@ -288,10 +327,8 @@ def findings(gearing: Gearing) -> list[Finding]:
         if x
     ]
     if taken:
-        figure = f"the model fits far better with {', and '.join(taken)}"
         advice = (
             "are joints measured from the base, or moved by belts? state [[coupling]] in the TOML "
             'file, with positions = "motor" or torques = "motor" in [log]'
         )
-        found.append(failed("couplings", figure, advice))
-    return found
+        yield failed("couplings", f"{BETTER} with {', and '.join(taken)}", advice)

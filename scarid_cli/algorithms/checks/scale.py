@@ -174,7 +174,7 @@ def finding(robot: Robot, scale: Scale) -> Finding:
     figure = f"{whose} {_listed(scale, wrong)} of what the described masses need"
     if every and (prefix := _prefix(scale)):
         return failed("scale", figure, prefixed(prefix, robot))
-    return failed("scale", figure, _advice(robot, wrong, every=every))
+    return failed("scale", figure, _advice(robot, scale, wrong, every=every))
 
 
 def _prefix(scale: Scale) -> str:
@@ -194,12 +194,14 @@ def _listed(scale: Scale, joints: list[int]) -> str:
     )
 
 
-def _advice(robot: Robot, wrong: list[int], *, every: bool) -> str:
+def _advice(robot: Robot, scale: Scale, wrong: list[int], *, every: bool) -> str:
     """What to state: the torque that one unit of the log is, from a data sheet."""
     columns = "'tau*" if every else f"'tau{wrong[0] + 1}"
+    unit = robot.joints[wrong[0]].torque_unit
+    about = ", ".join(f"{1.0 / scale.factors[j]:.3g}" for j in wrong)
     return (
-        "currents, percent or another unit (or a wrong clock)? State the torque of one unit: "
-        f"`scarid convert --unit {columns}=X {robot.joints[wrong[0]].torque_unit}'`, or "
+        "currents, percent or another unit (or a wrong clock)? State the torque of one unit (by "
+        f"these masses about {about} {unit}): `scarid convert --unit {columns}=X {unit}'`, or "
         "torque_constant in [log] of the TOML file; if the masses are no real ones, masses = "
         '"placeholder" in it'
     )

@@ -12,6 +12,7 @@ from scarid_cli.algorithms.checks.finding import Finding
 from scarid_cli.algorithms.checks.gearing import Gearing
 from scarid_cli.algorithms.checks.model import Samples
 from scarid_cli.algorithms.checks.motion import Motion
+from scarid_cli.algorithms.checks.scale import Scale
 from scarid_cli.algorithms.checks.search import Explained
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
@@ -21,8 +22,8 @@ from scarid_cli.arrays import Array
 class Unlike:
     """What differs, and the log without it.
 
-    `findings` tell the mounting or the gearing, if there is one, and `wired` has the wiring with
-    which the `motion` fits the `robot`.
+    `findings` tell the mounting, `gears` are None if there are none, and `wired` has the wiring
+    with which the `motion` fits the `robot`.
     """
 
     robot: Robot
@@ -41,7 +42,15 @@ class Unlike:
         if self.gears is None:
             return self
         scales = tuple((factors * self.gears.scales).tolist())
-        return replace(self, findings=tuple(gearing.findings(replace(self.gears, scales=scales))))
+        return replace(self, gears=replace(self.gears, scales=scales))
+
+    def motors(self, size: Scale) -> list[int]:
+        """The joints (from 0) whose signals are those of motors, by the size of their torques."""
+        return gearing.motors(self.gears, size) if self.gears else []
+
+    def told(self, of_motors: list[int]) -> list[Finding]:
+        """The findings on the mounting, or on the gearing."""
+        return gearing.findings(self.gears, of_motors) if self.gears else [*self.findings]
 
 
 def unlike(robot: Robot, motion: Motion, *, converted: bool = False) -> Unlike | None:
@@ -62,8 +71,7 @@ def unlike(robot: Robot, motion: Motion, *, converted: bool = False) -> Unlike |
     if gears.case.same or not gearing.better(gears, found.wired.fit, robot, samples):
         return found
     same = Explained(Wiring.same(len(robot.joints)), gears.fit)
-    told = tuple(gearing.findings(gears.case))
-    return Unlike(robot, gears.case.motion(motion), same, told, gears.case)
+    return Unlike(robot, gears.case.motion(motion), same, gears=gears.case)
 
 
 def _mounted(robot: Robot, motion: Motion, samples: Samples) -> Unlike:
