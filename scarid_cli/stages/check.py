@@ -85,9 +85,9 @@ def _moving(log: Log, robot: Robot, motion: Motion, *, driven: bool) -> Iterator
     parts = motion.parts()
     moved = movement.range_of_joints(parts, robot)
     explained = driven and moved.status == OK
-    converted = bool(np.any(factors != 1.0))
-    found = unlike(robot, motion, converted=converted) if explained else None
-    if found and found.geared and converted:  # neither degrees nor mm
+    suspected = finding.status == FAILED
+    found = unlike(robot, motion, suspected=suspected) if explained else None
+    if found and found.geared and suspected:  # neither degrees nor mm
         found, finding = found.scaled(factors), ok(finding.name, finding.figure)
     yield finding
     yield movement.standstill(parts)

@@ -26,13 +26,17 @@ from scarid_cli.arrays import Array, Marks
 
 BETTER = "the model fits far better"
 FEW = 300  # samples that are fitted while factors are looked for
-FACTORS = 2.0 ** np.arange(-8, 9)  # that are tried first
+FACTORS: Array = np.exp2(np.arange(-8.0, 9.0))  # that are tried first
+COUNTS: Array = np.exp2(
+    np.arange(-22.0, -8.0)
+)  # and for positions that may be counts of an encoder
 BETWEEN = 16  # fits by which the best of them is refined
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 SLIGHT = 0.05  # of a factor: less is another error of the model
 UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
 STEPS, STEP, SETTLED, TINY = 8, 0.5, 1e-3, 1e-5  # of zeros: how many, and their sizes [rad]
 SMALL = 0.02  # rad: less is another error of the model
+ROUGH = 0.05  # the same with other gears: more is left where zeros differ as well
 LEFT = 3e-4  # of the mean square torque of a joint: noise leaves as much
 GEARED = 0.02  # of the mean square torque of a joint: what a wrong gear or coupling leaves of one
 
@@ -153,13 +157,19 @@ def geared(robot: Robot, samples: Samples, *, suspected: bool = False) -> Explai
         if found.fit.residuals.max() < GEARED and not suspected:
             return own
         groups = [every, *([j] for j in every)] if len(every) > 1 else [every]
-        own += [_refined(partial(_scaled, found.case, group), fit_of) for group in groups if group]
+        factors = np.concatenate((COUNTS, FACTORS)) if suspected else FACTORS
+        own += [
+            _refined(partial(_scaled, found.case, group), fit_of, factors)
+            for group in groups
+            if group
+        ]
         return [*own, *found.case.lagging()]
 
     none = Gearing.none(joints)
     start = Explained(none, fit_of(none))
     found = searched(start, fit_of, neighbours)
-    if found.case.same or found.fit.residuals.max() > UNEXPLAINED:
+    most = UNEXPLAINED if found.case.unscaled else ROUGH
+    if found.case.same or found.fit.residuals.max() > most:
         return Explained(none, fitted(robot, samples))
     return Explained(found.case, fitted(robot, found.case.seen(samples)))
 
@@ -179,16 +189,18 @@ def _few(samples: Samples) -> Samples:
     return replace(samples, motion=samples.motion[:, :, rows], counts=samples.counts[:, rows])
 
 
-def _refined(case: Callable[[float], Gearing], fit_of: Callable[[Gearing], Fit]) -> Gearing:
-    """The case whose factor leaves least: the best of FACTORS, refined by golden sections."""
+def _refined(
+    case: Callable[[float], Gearing], fit_of: Callable[[Gearing], Fit], factors: Array = FACTORS
+) -> Gearing:
+    """The case whose factor leaves least: the best of the factors, refined by golden sections."""
 
     def misfit(factor: float) -> float:
         return fit_of(case(float(factor))).misfit
 
-    place = int(np.argmin([misfit(x) for x in FACTORS]))
-    if place in (0, len(FACTORS) - 1):  # as if there were no gravity, or nothing else
+    place = int(np.argmin([misfit(x) for x in factors]))
+    if place in (0, len(factors) - 1):  # as if there were no gravity, or nothing else
         return case(1.0)
-    best = float(FACTORS[place])
+    best = float(factors[place])
     low, high = np.log(best) - np.log(2.0), np.log(best) + np.log(2.0)
     inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)]
     values = [misfit(np.exp(x)) for x in inner]
@@ -303,7 +315,7 @@ def _gears(gearing: Gearing, of_motors: Collection[int]) -> Iterator[Finding]:
         figure = f"{BETTER} with {names} times {factor:.4g}{inverse}"
         units = " ".join(f"--unit 'q{j}={factor:.4g} rad'" for j in own)
         if motor:
-            figure += f" and {'their torques' if len(own) > 1 else 'its torque'} over the same"
+            figure += f" and {'their torques' if len(own) > 1 else 'its torque'} divided by it"
             units += "".join(f" --unit 'tau{j}={1.0 / factor:.4g} N m'" for j in own)
             advice = (
                 f"signals of motors: state gear_ratio = {1.0 / factor:.4g} in the TOML file, with "

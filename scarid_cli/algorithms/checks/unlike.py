@@ -53,10 +53,10 @@ class Unlike:
         return gearing.findings(self.gears, of_motors) if self.gears else [*self.findings]
 
 
-def unlike(robot: Robot, motion: Motion, *, converted: bool = False) -> Unlike | None:
+def unlike(robot: Robot, motion: Motion, *, suspected: bool = False) -> Unlike | None:
     """What differs by the motion of a log; None if too few of its rows can be fitted.
 
-    Its positions may have been `converted`, from what seemed to be another unit.
+    Its positions may be `suspected` of another unit, because of the limits of the robot.
 
     Axes, zeros and gravity are preferred where they explain the torques as well as other signs and
     orders; a clock, gears and couplings where they explain them far better than all of these.
@@ -67,7 +67,7 @@ def unlike(robot: Robot, motion: Motion, *, converted: bool = False) -> Unlike |
     found = _mounted(robot, motion, samples)
     if found.wired.fit.residuals.max() <= gearing.LEFT:
         return found
-    gears = gearing.geared(robot, samples, suspected=converted)
+    gears = gearing.geared(robot, samples, suspected=suspected)
     if gears.case.same or not gearing.better(gears, found.wired.fit, robot, samples):
         return found
     same = Explained(Wiring.same(len(robot.joints)), gears.fit)
