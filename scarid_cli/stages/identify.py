@@ -29,7 +29,7 @@ from scarid_cli.stages.corrected import TORQUE_GAINS
 from scarid_cli.stages.parameters import parameters
 from scarid_cli.stages.reach import Reach
 from scarid_cli.stages.rows import treated
-from scarid_cli.stages.suspicions import of_model, without_placeholders
+from scarid_cli.stages.suspicions import of_model, of_velocities, without_placeholders
 from scarid_cli.stages.times import Times
 
 if TYPE_CHECKING:  # cvxpy takes a second to import
@@ -115,7 +115,7 @@ def _judged(
     further = reach.findings(robot, table.period)
     if not estimator.FOLLOWS:
         rows = regressed(checkpoint.subsample.rows(), robot)
-        further = without_placeholders(further, rows, robot)
+        further = without_placeholders(further, rows, robot) + of_velocities(rows)
         if all(finding.status != FAILED for finding in (*findings, *further)):
             further += of_model(rows, robot)
     every = [*findings, *further]

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from scarid_cli.algorithms.checks import gearing, mounting, scale, wiring
+from scarid_cli.algorithms.checks import gearing, mounting, scale, velocities, wiring
 from scarid_cli.algorithms.checks.finding import FAILED, OK, TORQUES, Finding
+from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.model import Samples, enough
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 
+OFF = 1.5  # times the changes of positions: velocities that are further off are others
 FEWEST = 100  # rows of each joint with which the description is put to the test
 
 
@@ -21,6 +23,23 @@ def without_placeholders(findings: list[Finding], rows: Rows, robot: Robot) -> l
     if samples is None or not scale.scale_of(robot, samples).agrees:
         return findings
     return [finding for finding in findings if finding.name != TORQUES]
+
+
+def of_velocities(rows: Rows) -> list[Finding]:
+    """Velocities of a motion that are no changes of its positions: another unit, sign or joint.
+
+    What filters leave of fast motions is less, but not by half.
+    """
+    q, dq = rows.motion[0], rows.motion[1]
+    log = Log(np.asarray(rows.h * rows.at, np.float64), q, rows.motion[3], dq=dq)
+    relation = velocities.relation(log, rows.h)
+    if relation is None:
+        return []
+    apart = any(j != k for k, j in enumerate(relation.joint)) or np.any(relation.slope < 0.0)
+    if not apart and np.all(np.abs(np.log(relation.slope)) < np.log(OFF)):
+        return []
+    found = velocities.finding(relation, rows.h)
+    return [found] if found.status == FAILED else []
 
 
 def of_model(rows: Rows, robot: Robot) -> list[Finding]:

@@ -36,7 +36,10 @@ def spoiled(log: Path, path: Path, factors: dict[str, float]) -> Path:
     names, *rows = log.read_text("utf-8").splitlines()
     scales = [factors.get(name, 1.0) for name in names.split(",")]
     cells = (
-        ",".join(str(float(x) * scale) for x, scale in zip(row.split(","), scales, strict=True))
+        ",".join(
+            x if scale == 1.0 else str(float(x) * scale)
+            for x, scale in zip(row.split(","), scales, strict=True)
+        )
         for row in rows
     )
     path.write_text("\n".join([names, *cells, ""]))
@@ -65,6 +68,26 @@ def test_a_check_that_fails_makes_the_verdict_doubtful(
 ) -> None:
     log = spoiled(samples / "scara2.csv", tmp_path / "log.csv", factors)
     assert verdict(scarid("identify", "--robot", "scara2", log)).startswith(told)
+
+
+@pytest.mark.parametrize(
+    ("factors", "told"),
+    [
+        ({}, "good: "),
+        ({"dq1": 57.29578, "dq2": 57.29578}, "doubtful: velocities: 57.3, 57.3 times the changes"),
+        ({"dq1": -1.0}, "doubtful: velocities: the velocity of joint 1 has the other sign"),
+        ({"dq1": 2.0, "dq2": 2.0}, "doubtful: clock: velocities 2, 2 times the changes"),
+        ({"dq1": 0.8, "dq2": 0.8}, ""),  # as of a soft sensor that smooths too much
+    ],
+)
+def test_velocities_of_a_motion_are_changes_of_its_positions(
+    factors: dict[str, float], told: str, samples: Path, tmp_path: Path, scarid: Run
+) -> None:
+    motion = tmp_path / "motion.csv"
+    scarid("differentiate", "--method", "rts", samples / "scara2.csv", "-o", motion)
+    found = verdict(scarid("identify", "--robot", "scara2", spoiled(motion, motion, factors)))
+    assert found.startswith(told)
+    assert told or "velocities" not in found.partition("; ")[0]
 
 
 def test_a_reversed_torque_of_a_joint_that_moves_no_other_is_told(
