@@ -30,8 +30,7 @@ FACTORS: Array = np.exp2(np.arange(-8.0, 9.0))  # that are tried first
 COUNTS: Array = np.exp2(
     np.arange(-22.0, -8.0)
 )  # and for positions that may be counts of an encoder
-BETWEEN = 16  # fits by which the best of them is refined
-GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+PRECISE = 1e-4  # of a factor, to which the best of them is refined
 SLIGHT = 0.05  # of a factor: less is another error of the model
 UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
 STEPS, STEP, SETTLED, TINY = 8, 0.5, 1e-3, 1e-5  # of zeros: how many, and their sizes [rad]
@@ -192,28 +191,19 @@ def _few(samples: Samples) -> Samples:
 def _refined(
     case: Callable[[float], Gearing], fit_of: Callable[[Gearing], Fit], factors: Array = FACTORS
 ) -> Gearing:
-    """The case whose factor leaves least: the best of the factors, refined by golden sections."""
+    """The case whose factor leaves least: the best of the factors, refined between those beside."""
+    from scipy.optimize import minimize_scalar  # not needed where the model explains the log
 
-    def misfit(factor: float) -> float:
-        return fit_of(case(float(factor))).misfit
+    def misfit(logarithm: float) -> float:
+        return fit_of(case(float(np.exp(logarithm)))).misfit
 
-    place = int(np.argmin([misfit(x) for x in factors]))
-    if place in (0, len(factors) - 1):  # as if there were no gravity, or nothing else
+    places = np.log(factors)
+    best = int(np.argmin([misfit(x) for x in places]))
+    if best in (0, len(factors) - 1):  # as if there were no gravity, or nothing else
         return case(1.0)
-    best = float(factors[place])
-    low, high = np.log(best) - np.log(2.0), np.log(best) + np.log(2.0)
-    inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)]
-    values = [misfit(np.exp(x)) for x in inner]
-    for _ in range(BETWEEN):
-        if values[0] < values[1]:
-            high, inner[1], values[1] = inner[1], inner[0], values[0]
-            inner[0] = high - GOLDEN * (high - low)
-            values[0] = misfit(np.exp(inner[0]))
-        else:
-            low, inner[0], values[0] = inner[0], inner[1], values[1]
-            inner[1] = low + GOLDEN * (high - low)
-            values[1] = misfit(np.exp(inner[1]))
-    return case(float(np.exp(inner[int(np.argmin(values))])))
+    bounds = places[best - 1], places[best + 1]
+    found = minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": PRECISE})
+    return case(float(np.exp(found.x)))
 
 
 def _zeroed(
