@@ -176,25 +176,26 @@ def inner(log: Log, rng: Generator) -> int:
     return int(rng.integers(3, 5)) if log.joints > 2 else 2
 
 
-def from_the_base(log: Log, rng: Generator) -> tuple[Spoils, str]:
-    joint = inner(log, rng)
+def added(signals: str, to: int, of: int) -> Spoils:
+    """To a signal of joint `to`, q or tau, that of joint `of` is added."""
 
     def spoil(log: Log) -> Log:
-        q = log.q.copy()
-        q[joint - 1] += q[joint - 2]
-        return replace(log, q=q)
+        values = getattr(log, signals).copy()
+        values[to - 1] += values[of - 1]
+        return replace(log, **{signals: values})
 
+    return spoil
+
+
+def from_the_base(log: Log, rng: Generator) -> tuple[Spoils, str]:
+    joint = inner(log, rng)
+    spoil = added("q", joint, joint - 1)
     return spoil, f"position of joint {joint} less that of joint {joint - 1}"
 
 
 def of_a_belt(log: Log, _: Generator) -> tuple[Spoils, str]:
     joint = min(3, log.joints)
-
-    def spoil(log: Log) -> Log:
-        tau = log.tau.copy()
-        tau[joint - 2] += tau[joint - 1]
-        return replace(log, tau=tau)
-
+    spoil = added("tau", joint - 1, joint)
     return spoil, f"torque of joint {joint - 1} less that of joint {joint}"
 
 

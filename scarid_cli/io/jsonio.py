@@ -116,12 +116,16 @@ def _rows(source: ByteSource) -> Iterator[Any]:
         row = json.loads(first)
     except ValueError:
         row = None
-    if isinstance(row, dict) and not (_columns(row) or len(_objects(row)) > NESTED):
-        yield row
-        for number, line in enumerate(lines, start=2):
-            yield _parsed(line, source.name, number)
+    whole = not isinstance(row, dict)
+    if isinstance(row, dict) and (_columns(row) or len(_objects(row)) > NESTED):
+        second = next(lines, None)  # a message of a robot with many motors is followed by others
+        whole, lines = second is None, chain([] if second is None else [second], lines)
+    if whole:
+        yield from _of_document(_whole(first, lines, source.name), source.name)
         return
-    yield from _of_document(_whole(first, lines, source.name), source.name)
+    yield row
+    for number, line in enumerate(lines, start=2):
+        yield _parsed(line, source.name, number)
 
 
 def _parsed(line: bytes, name: str, row: int) -> Any:

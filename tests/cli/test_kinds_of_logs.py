@@ -174,6 +174,22 @@ def test_lines_of_json_come_back(rows: list[tuple[float, list[float]]]) -> None:
     assert values == [[t, *q] for t, q in rows]
 
 
+@pytest.mark.parametrize("motors", [2, 29])
+def test_lines_of_a_robot_with_many_motors_are_lines(
+    motors: int, shell: Shell, tmp_path: Path
+) -> None:
+    """As of a humanoid: neither its arrays nor its list of objects are the rows of a document."""
+    each = range(motors)
+    rows = [{"a": [k + i for i in each], "s": [{"b": k - i} for i in each]} for k in range(3)]
+    (tmp_path / "log.jsonl").write_text("\n".join(json.dumps(row) for row in rows))
+    done = shell("scarid convert --rate 100 log.jsonl")
+    assert done.status == 0, done.err
+    names, values = table(done.out)
+    assert names == ["t", *(f"a[{i}]" for i in each), *(f"s[{i}].b" for i in each)]
+    expected = [[k + i for i in each] + [k - i for i in each] for k in range(3)]
+    np.testing.assert_array_equal(values[:, 1:], expected)
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [

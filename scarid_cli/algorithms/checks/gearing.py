@@ -27,15 +27,13 @@ from scarid_cli.arrays import Array, Marks
 BETTER = "the model fits far better"
 FEW = 300  # samples that are fitted while factors are looked for
 FACTORS: Array = np.exp2(np.arange(-8.0, 9.0))  # that are tried first
-COUNTS: Array = np.exp2(
-    np.arange(-22.0, -8.0)
-)  # and for positions that may be counts of an encoder
+COUNTS: Array = np.exp2(np.arange(-22.0, -8.0))  # and where positions may be an encoder's counts
 PRECISE = 1e-4  # of a factor, to which the best of them is refined
 SLIGHT = 0.05  # of a factor: less is another error of the model
 UNEXPLAINED = 0.2  # of the mean square torque of a joint that a model leaves which does not fit
+ROUGH = 0.05  # the same with other gears: more is left where zeros differ as well
 STEPS, STEP, SETTLED, TINY = 8, 0.5, 1e-3, 1e-5  # of zeros: how many, and their sizes [rad]
 SMALL = 0.02  # rad: less is another error of the model
-ROUGH = 0.05  # the same with other gears: more is left where zeros differ as well
 LEFT = 3e-4  # of the mean square torque of a joint: noise leaves as much
 GEARED = 0.02  # of the mean square torque of a joint: what a wrong gear or coupling leaves of one
 
@@ -143,7 +141,7 @@ def geared(robot: Robot, samples: Samples, *, suspected: bool = False) -> Explai
     Gears, and positions measured from the base, are looked for only where a joint is left
     unexplained as by a wrong one, or where they are `suspected`.
     """
-    few = _few(samples)
+    few = samples.spread(FEW)
     joints = len(robot.joints)
 
     def fit_of(case: Gearing) -> Fit:
@@ -169,7 +167,7 @@ def geared(robot: Robot, samples: Samples, *, suspected: bool = False) -> Explai
     found = searched(start, fit_of, neighbours)
     most = UNEXPLAINED if found.case.unscaled else ROUGH
     if found.case.same or found.fit.residuals.max() > most:
-        return Explained(none, fitted(robot, samples))
+        return start
     return Explained(found.case, fitted(robot, found.case.seen(samples)))
 
 
@@ -181,11 +179,6 @@ def _scaled(case: Gearing, joints: list[int], factor: float) -> Gearing:
     return replace(
         case, scales=tuple(factor if j in joints else x for j, x in enumerate(case.scales))
     )
-
-
-def _few(samples: Samples) -> Samples:
-    rows = np.unique(np.linspace(0, samples.motion.shape[2] - 1, FEW).astype(np.int64))
-    return replace(samples, motion=samples.motion[:, :, rows], counts=samples.counts[:, rows])
 
 
 def _refined(
@@ -252,6 +245,8 @@ def _step(robot: Robot, motion: Array, counts: Marks, turning: list[int]) -> Arr
 
 def better(found: Explained[Gearing], other: Fit, robot: Robot, samples: Samples) -> bool:
     """Whether it leaves far less than another explanation does, or torques in other units do."""
+    if found.case.same:
+        return False
     unit = fitted(robot, scale_of(robot, samples).corrected(samples))
     return bool(found.fit.misfit < min(other.misfit + np.log(FALL), unit.misfit))
 

@@ -18,7 +18,7 @@ from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.regression.normal_equations import inverse, roots
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.arrays import Array, Marks
+from scarid_cli.arrays import Array, Marks, Numbers
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.tuning.lowpassed import Lowpassed
@@ -52,7 +52,7 @@ class Samples:
         step = span / kept
         motion = np.concatenate([_with_derivative(part, step) for part in parts], axis=2)
         counts = np.concatenate([part.counts for part in parts], axis=1)
-        chosen = np.unique(np.linspace(0, kept - 1, samples).astype(np.int64))
+        chosen = _spread(kept, samples)
         independent = min(1.0, 2.0 * cutoff * span / len(chosen))
         return cls(motion[:, :, chosen], counts[:, chosen], independent)
 
@@ -61,9 +61,14 @@ class Samples:
         """So many of the rows of a regression, spread over the record."""
         tau = rows.motion[3]
         slope = np.gradient(tau, rows.h * rows.at, axis=1)
-        chosen = np.unique(np.linspace(0, rows.samples - 1, samples).astype(np.int64))
+        chosen = _spread(rows.samples, samples)
         motion = np.stack((*rows.motion, slope))[:, :, chosen]
         return cls(motion, rows.scales[chosen].T > 0.0, 1.0)
+
+    def spread(self, samples: int) -> Samples:
+        """So many of the samples, spread over the record."""
+        chosen = _spread(self.counts.shape[1], samples)
+        return replace(self, motion=self.motion[:, :, chosen], counts=self.counts[:, chosen])
 
     def wired(self, wiring: Wiring) -> Samples:
         """The samples with the signals that each joint has by this wiring."""
@@ -71,6 +76,11 @@ class Samples:
         _, slope = wiring.signals(self.motion[[0, 1, 2, 4]])
         counts = self.counts[list(wiring.places[0])]
         return replace(self, motion=np.stack((*kinematics, tau, slope)), counts=counts)
+
+
+def _spread(rows: int, samples: int) -> Numbers:
+    """The places of so many samples, or of all, spread over the rows."""
+    return np.unique(np.linspace(0, rows - 1, samples).astype(np.int64))
 
 
 def _with_derivative(part: Lowpassed, step: float) -> Array:

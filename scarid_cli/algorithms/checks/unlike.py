@@ -68,7 +68,7 @@ def unlike(robot: Robot, motion: Motion, *, suspected: bool = False) -> Unlike |
     if found.wired.fit.residuals.max() <= gearing.LEFT:
         return found
     gears = gearing.geared(robot, samples, suspected=suspected)
-    if gears.case.same or not gearing.better(gears, found.wired.fit, robot, samples):
+    if not gearing.better(gears, found.wired.fit, robot, samples):
         return found
     same = Explained(Wiring.same(len(robot.joints)), gears.fit)
     return Unlike(robot, gears.case.motion(motion), same, gears=gears.case)

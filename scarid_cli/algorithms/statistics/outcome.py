@@ -308,7 +308,7 @@ def _explained(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnos
     diagnostics = plain.diagnostics(gain_errors)
     if not (given.align and plain.model):
         return plain, diagnostics
-    suspected = frozenset(effect.name for effect in clear(diagnostics.effects))
+    suspected = _suspected(diagnostics)
     candidates = [*diagnostics.explanations, *diagnostics.mismatches]
     for explanation in sorted(candidates, key=lambda x: -x.clearness):
         try:
@@ -356,10 +356,15 @@ def _regauged(
         other = _problem(given, _beside(given, plain, plain.model, (*rest, *added)))
     except NotIdentifiableError:
         return wider, found
-    suspected = frozenset(effect.name for effect in clear(before.effects))
+    suspected = _suspected(before)
     diagnostics = other.diagnostics(gain_errors, suspected)
     more = {x.name for x in clear(diagnostics.effects)} - {x.name for x in clear(found.effects)}
     return (wider, found) if more else (other, diagnostics)
+
+
+def _suspected(diagnostics: Diagnostics) -> frozenset[str]:
+    """The names of the alternatives that are clear."""
+    return frozenset(effect.name for effect in clear(diagnostics.effects))
 
 
 def _with_friction(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnostics]:
@@ -376,7 +381,7 @@ def _with_friction(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Dia
         first = replace(first, rows=first.compared)  # without offsets, which may be among those
         shapes = _beside(given, first, plain.model, (*plain.additions, *added))
         problem = _problem(given, shapes)
-        suspected = frozenset(effect.name for effect in clear(diagnostics.effects))
+        suspected = _suspected(diagnostics)
         diagnostics = problem.diagnostics(gain_errors, suspected)
     extra = {**problem.found.extra, "friction": [worth.extra for worth in worths]}
     return replace(problem, found=replace(problem.found, extra=extra)), diagnostics
