@@ -51,7 +51,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
+.PHONY: all paper paper-montecarlo repetition test test-all docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -79,6 +79,10 @@ TESTING := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE=
 
 test: $(VENV)/tested
 	$(TESTING) $(BIN)/python -m pytest -n auto --maxprocesses 4
+
+# Statistical tests over as many seeds as their words say, and the slow blocks of the pages.
+test-all: $(VENV)/tested
+	SCARID_TESTS=all SCARID_DOCS=all $(TESTING) $(BIN)/python -m pytest -n auto --maxprocesses 4
 
 docs-test: $(VENV)/tested
 	SCARID_DOCS=all $(TESTING) $(BIN)/python -m pytest -n auto --maxprocesses 4 tests/docs

@@ -21,9 +21,18 @@ from scarid_cli.__main__ import main
 hypothesis.settings.register_profile("patient", hypothesis.settings(), deadline=None)
 hypothesis.settings.load_profile("patient")
 
+# `make test-all` runs every test to its full size: statistics over many seeds, slow pages.
+ALL = os.environ.get("SCARID_TESTS") == "all"
+long = pytest.mark.skipif(not ALL, reason="long: make test-all")
+
 ROOT = Path(__file__).parent.parent
 SHARED = ROOT.parent / "shared"
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?(?![\w.])")
+
+
+def seeds(few: int, many: int) -> range:
+    """The seeds of a statistical test: few of them, or many with `make test-all`."""
+    return range(many if ALL else few)
 
 
 @dataclass(frozen=True)

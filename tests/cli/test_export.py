@@ -46,7 +46,7 @@ def identified(scarid: Run, folder: Path, name: str) -> Path:
     table = folder / f"{name}.parquet"
     if not table.exists():
         words = ("--robot", folder / f"{name}.toml")
-        motion = ("trajgen", "-q", *words, "--duration", 12, "--ddq-max", 10, "--seed", 1)
+        motion = ("trajgen", "-q", *words, "--duration", 6, "--ddq-max", 10, "--seed", 1)
         log = folder / f"{name}-log.parquet"
         assert scarid(*motion, "then", "simulate", "-q", *words, "-o", log).status == 0
         assert scarid("identify", "-q", *words, log, "-o", table).status == 0

@@ -44,13 +44,8 @@ CHAINS = [
 ]
 
 
-# One of each command, run as processes too; these spend most of their time on imports
-IN_A_SHELL = [
-    "scarid differentiate LOG",
-    "scarid differentiate LOG | scarid identify -q --all-rows --estimator ls",
-    CHAINS[-3],
-    CHAINS[-1],
-]
+# Run as processes too; these spend most of their time on imports
+IN_A_SHELL = [CHAINS[-3], CHAINS[-1]]
 
 
 @pytest.fixture(scope="module")

@@ -68,7 +68,7 @@ def test_a_signal_ends_the_log_which_is_whole(reference: Path) -> None:
 
 
 def test_a_run_that_is_too_slow_says_by_how_much(reference: Path) -> None:
-    words = ("--realtime", "--control-rate", "10000", "--substeps", "300", str(reference))
+    words = ("--realtime", "--control-rate", "10000", "--substeps", "150", str(reference))
     with started(*words) as run:
         assert run.stderr
         said = run.communicate()[1].decode()

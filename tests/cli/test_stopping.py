@@ -17,6 +17,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
+from conftest import seeds
 
 from scarid_cli.io.stop import Stop, Terminated
 
@@ -86,7 +87,7 @@ def wait_for_output(folder: Path) -> None:
 
 @pytest.mark.parametrize("number", SIGNALS)
 @pytest.mark.parametrize("form", ["csv", "arrow"])
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", seeds(1, 2))
 def test_a_pipe_that_is_stopped_at_any_time_keeps_its_result(
     seed: int, form: str, number: int, rows: list[bytes], tmp_path: Path
 ) -> None:

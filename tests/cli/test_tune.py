@@ -19,9 +19,9 @@ def log(samples: Path) -> Path:
 
 @pytest.fixture
 def short(log: Path, tmp_path: Path) -> Path:
-    """The first two seconds of the log, where it does not matter how good the settings are."""
+    """The start of the log, where it does not matter how good the settings are."""
     path = tmp_path / "short.csv"
-    path.write_text("".join(log.read_text("utf-8").splitlines(keepends=True)[:201]))
+    path.write_text("".join(log.read_text("utf-8").splitlines(keepends=True)[:121]))
     return path
 
 

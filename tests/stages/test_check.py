@@ -9,7 +9,7 @@ import pytest
 from checks import LOGS, ROBOTS, URDF, clean, named, read, remarks
 from checks_kinds import trial
 from cli.real import TX40, ur10_log
-from conftest import ROOT
+from conftest import ROOT, seeds
 from kinds import KINDS
 from spoiled import SPOILED, Spoiled, torques_times, turned
 
@@ -65,7 +65,7 @@ def test_reversed_torques_are_named_by_the_masses_where_there_is_no_friction(nam
 
 def test_scaled_torques_are_not_told_to_be_reversed() -> None:
     """Each in a unit of its own, they contradict the model: its friction may drive joints then."""
-    for seed in range(3):
+    for seed in seeds(1, 3):
         log = clean("ur10e", seed)
         factors = 0.1 * np.random.default_rng(seed).uniform(0.8, 1.25, log.joints)
         found = check(torques_times(*factors)(log), load(ROBOTS["ur10e"]))

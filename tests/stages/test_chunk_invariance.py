@@ -86,7 +86,7 @@ STAGES: dict[str, Stage] = {
 
 @pytest.mark.parametrize("name", STAGES)
 @given(sizes=SIZES)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=4, deadline=None)
 def test_a_stage_gives_the_same_bits_however_its_rows_arrive(name: str, sizes: list[int]) -> None:
     assert collected(STAGES[name](table(source_of(name), sizes))).equals(at_once(name))
 

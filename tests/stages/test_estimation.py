@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 import pytest
+from conftest import seeds
 from crossvalidation import log, seen
 from defaults import PERIOD
 
@@ -82,8 +83,9 @@ def test_an_unmatched_soft_sensor_is_called_biased_by_every_estimator(
 
 
 def with_forgetting(late: int) -> list[Table]:
-    """The parameters of ten experiments with forgetting, the torques late by so many samples."""
-    return [found(motion(seed=n, late=late), "rls", {"forgetting": 0.999}) for n in range(1, 11)]
+    """The parameters of experiments with forgetting, the torques late by so many samples."""
+    settings = {"forgetting": 0.999}
+    return [found(motion(seed=n + 1, late=late), "rls", settings) for n in seeds(4, 10)]
 
 
 def blamed(extra: dict[str, Any]) -> bool:
@@ -95,7 +97,7 @@ def blamed(extra: dict[str, Any]) -> bool:
 def test_torques_10_ms_late_do_not_mislead_with_forgetting() -> None:
     """Most are called so, and all intervals allow for it; on time the signals are never blamed."""
     late, on_time = with_forgetting(late=2), with_forgetting(late=0)
-    assert sum(blamed(result.meta.extra) for result in late) > 5
+    assert sum(blamed(result.meta.extra) for result in late) > len(late) // 2
     for result in late:
         off = np.abs(column(result, "estimate") - SCARA.apriori)
         assert np.all(off < 3.0 * column(result, "robust_error"))

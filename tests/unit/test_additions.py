@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import seeds
 from unit.pendulum import ARM, MODEL, H, motion
 from unit.regressions import estimated
 
@@ -127,11 +128,12 @@ def test_of_several_causes_none_explains_the_torques_alone() -> None:
 
 def test_noise_is_seldom_explained() -> None:
     """Of 100 logs 1 is expected; more than 4 come by chance once in 250 times."""
-    found = [diagnosed(log(nothing, seed)) for seed in range(100)]
-    assert sum(bool(one.explanations) for one in found) <= 4
+    found = [diagnosed(log(nothing, seed)) for seed in seeds(25, 100)]
+    most = len(found) // 25
+    assert sum(bool(one.explanations) for one in found) <= most
     ripples = [effect for one in found for effect in one.effects if effect.name == RIPPLE]
-    assert len(ripples) == 100
-    assert sum(effect.significant() for effect in ripples) <= 4  # of hundreds that are tried
+    assert len(ripples) == len(found)
+    assert sum(effect.significant() for effect in ripples) <= most  # of hundreds that are tried
 
 
 def explained(rows: Rows, without: Diagnostics) -> tuple[Array, Diagnostics]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import changed
 import pytest
+from conftest import long
 
 pytest.importorskip("pinocchio")
 
 
-@pytest.mark.parametrize("seed", [100, 101])
+@pytest.mark.parametrize("seed", [100, pytest.param(101, marks=long)])
 def test_what_changed_between_two_logs_is_called_by_its_name(seed: int) -> None:
     arms, _ = changed.TUNING
     found = dict(changed.verdicts(arms, seed))

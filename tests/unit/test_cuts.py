@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import seeds
 from unit.regressions import estimated
 from unit.slow_motions import THETA, P, regression
 from unit.test_effects import axis, diagnosed
@@ -79,7 +80,7 @@ def test_the_time_of_the_payload_is_found(share: float) -> None:
 def test_a_robot_that_stays_the_same_is_not_called_changed() -> None:
     """The differences of the halves are as large as their errors say."""
     ratios = []
-    for seed in range(60):
+    for seed in seeds(30, 60):
         found = halves(axis(seed=seed))
         assert not any(cut.differ(ALL).any() for _, cut in diagnosed(axis(seed=seed)).cuts)
         ratios.append((found.after - found.before) / found.errors)

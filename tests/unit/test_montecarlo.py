@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import verdicts
+from conftest import seeds
 from crossvalidation import log
 from defaults import ROBOT
 from montecarlo import Z95, identified
@@ -12,11 +13,11 @@ from verdicts import CONDITIONS, motion
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 
-RUNS = range(500, 530)
+RUNS = [500 + seed for seed in seeds(12, 30)]
 
 
 def test_the_stated_intervals_contain_the_truth_and_those_of_white_residuals_do_not() -> None:
-    """30 experiments: 90 to 99 % of 240 intervals; each parameter in at least 24 of 30."""
+    """90 to 99 % of the intervals of 8 parameters; each in at least 80 % of the experiments."""
     truth = ROBOT.apriori
     kalman = DIFFERENTIATORS.load("kalman")()
     inside, white = [], []
@@ -26,7 +27,7 @@ def test_the_stated_intervals_contain_the_truth_and_those_of_white_residuals_do_
         white.append(np.abs(estimates - truth) <= Z95 * errors)
         assert extra["delay"] == pytest.approx(5e-4, abs=5e-4)
     assert 0.9 <= np.mean(inside) <= 0.99
-    assert np.sum(inside, axis=0).min() >= 24
+    assert np.mean(inside, axis=0).min() >= 0.8
     assert np.mean(white) < 0.7
 
 
