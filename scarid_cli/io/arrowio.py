@@ -17,8 +17,10 @@ from scarid_cli.io.messages import MAGIC, PREFIX, RECORDS, Message
 from scarid_cli.io.parts import parts
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.stop import STOP
-from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast
+from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast, concatenated
 from scarid_cli.io.weight import Blocks
+
+FEW = 64  # rows, above which batches are not joined
 
 
 def read_stream(source: ByteSource) -> Table:
@@ -33,7 +35,7 @@ def read_stream(source: ByteSource) -> Table:
 
     def batches() -> Iterator[pa.RecordBatch]:
         try:
-            yield from reader
+            yield from _gathered(reader, source)
         except (pa.ArrowException, OSError):
             if STOP.number:  # in the middle of a batch
                 return
@@ -42,6 +44,27 @@ def read_stream(source: ByteSource) -> Table:
             incoming.require_whole()
 
     return of_arrow(source.name, reader.schema, batches())
+
+
+def _gathered(reader: ipc.RecordBatchStreamReader, source: ByteSource) -> Iterator[pa.RecordBatch]:
+    """The batches; small ones that wait already are joined, so that who is late catches up."""
+    if not all(pa.types.is_primitive(field.type) for field in reader.schema):
+        yield from reader
+        return
+    held: list[pa.RecordBatch] = []
+    try:
+        for batch in reader:
+            held.append(batch)
+            if sum(map(len, held)) < FEW and source.waits():
+                continue
+            yield concatenated(held)
+            held = []
+    except BaseException:
+        if held:
+            yield concatenated(held)
+        raise
+    if held:
+        yield concatenated(held)
 
 
 class Handed(ByteSource):

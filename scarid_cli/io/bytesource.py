@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import stat
 from typing import BinaryIO
 
@@ -11,6 +12,7 @@ from scarid_cli.io.stop import STOP
 
 STDIN = "<stdin>"
 CHUNK = 1 << 20
+PIPE = 1 << 16  # bytes that a pipe holds; room for more would be made and given back at each row
 GZIP, GZIP_BITS = b"\x1f\x8b", 31  # its first bytes, and the format as zlib knows it
 UTF_16 = (b"\xff\xfe", b"\xfe\xff")  # how such text begins
 MAX_BATCH = 1 << 29  # bytes
@@ -109,10 +111,18 @@ class ByteSource:
     def read_some(self, size: int = CHUNK) -> bytes:
         """What has arrived: at least one byte, or none at the end."""
         if not self._ahead:
-            self._ahead = self._fetch(size)
+            self._ahead = self._fetch(max(size, PIPE) if self._live else size)
         data, self._ahead = self._ahead[:size], self._ahead[size:]
         self.last = (self.last + data[-8:])[-8:]
         return data
+
+    def waits(self) -> bool:
+        """Whether more of a pipe has arrived already."""
+        if not self._live:
+            return False
+        poll = select.poll()
+        poll.register(self.fd, select.POLLIN)
+        return bool(self._ahead or poll.poll(0))
 
     def filled(self, size: int) -> bytearray:
         """Exactly `size` bytes, fewer only at the end, like `read`, but without copies of them."""
@@ -195,7 +205,7 @@ class ByteSource:
         if not self._arrives():
             return b""
         try:
-            data = os.read(self.fd, size)
+            data = os.read(self.fd, min(size, PIPE) if self._live else size)
         except OSError as error:
             raise OutputFailure(f"{self.name}: {error.strerror}") from None
         STOP.live |= bool(self._live and data)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import pyarrow as pa
@@ -63,6 +64,7 @@ class Carried:
         )
 
 
+@lru_cache(maxsize=16)
 def _column(value: float | str, rows: int, *, first: bool) -> pa.Array:
     if isinstance(value, str):
         return pa.array([value if first and k == 0 else "" for k in range(rows)], pa.string())

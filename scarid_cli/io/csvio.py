@@ -16,6 +16,7 @@ import pyarrow.csv as pacsv
 from scarid_cli.errors import BadData, bad_data, cut_short
 from scarid_cli.io.bytesource import ByteSource, require_moderate_row
 from scarid_cli.io.carried import Carried, facts_of
+from scarid_cli.io.few import Few
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.stop import STOP
 from scarid_cli.io.table import Metadata, Table
@@ -290,11 +291,12 @@ def _first_row_end(body: bytes) -> int:
 def _batches(
     body: bytes, lines: Iterator[bytes], schema: pa.Schema, name: str
 ) -> Iterator[pa.RecordBatch]:
-    row = 0
+    row, few = 0, Few(schema)
     for block in chain([body], lines):
         if CUT in block:
             raise cut_short(name)
-        for batch in _parse(block, schema, name, row):
+        found = few.parsed(block)
+        for batch in _parse(block, schema, name, row) if found is None else [found]:
             yield batch
             row += batch.num_rows
 
@@ -336,13 +338,16 @@ class CsvWriter:
         self._write = write
         self._carried, self._first = Carried.of(schema), True
         schema = self._carried.schema(schema)
-        self._numeric = not _has_text(schema)
+        self._numeric, self._few = not _has_text(schema), Few(schema)
         self._write(csv_text([schema.names]))
 
     def write(self, batch: pa.RecordBatch) -> None:
         batch = self._carried.beside(batch, first=self._first)
         self._first = self._first and not batch.num_rows
-        self._write(_numbers(batch) if self._numeric else self._texts(batch))
+        if (few := self._few.text(batch)) is not None:
+            self._write(few)
+        else:
+            self._write(_numbers(batch) if self._numeric else self._texts(batch))
 
     def close(self) -> None:
         """CSV has no end mark."""

@@ -11,6 +11,7 @@ from scarid_cli.io.bytesource import require_moderate, require_moderate_row
 
 READ_ROWS = 1 << 13
 PART = 1 << 24  # bytes
+WIDEST = 32  # bytes of a value that is no text and no list
 VIEW = 16  # bytes of a text view, the first four of which are its length
 
 
@@ -19,6 +20,10 @@ def parts(batch: pa.RecordBatch, name: str) -> Iterator[pa.RecordBatch]:
 
     A row that takes more bytes is a part by itself; one that takes far too many is BadData.
     """
+    small = WIDEST * batch.num_rows * batch.num_columns <= PART and batch.num_rows <= READ_ROWS
+    if small and all(pa.types.is_primitive(field.type) for field in batch.schema):
+        yield batch
+        return
     require_moderate(name, batch.num_rows)  # rows of nothing take no memory before they are written
     for start in range(0, batch.num_rows, READ_ROWS):
         part = batch.slice(start, READ_ROWS)

@@ -22,6 +22,7 @@ from scarid_cli.io.table import SEGMENT, Table, cast
 Reads = Callable[[list[str]], Iterable[str]]
 Fault = tuple[str, str, str, str]  # the column, what was found, expected, and the remedy
 LARGEST = 1e100  # of a value: no robot has such a value, and the product of three does not overflow
+FEW = 64  # rows, of which one array of all columns is made faster than one of each
 ROW_MARKS = ("t", SEGMENT, "settled")  # columns that every command reads
 
 
@@ -175,7 +176,7 @@ def _valued(table: Table, columns: list[str], remedy: Remedy) -> Iterator[pa.Rec
     """Pass batches on; a value of these columns that is missing or not finite is an error."""
     row = 0
     for batch in table.batches:
-        for column in columns:
+        for column in () if _sound_at_once(batch, columns) else columns:
             if fault := _fault_of(batch.column(column)):
                 at, found, expected = fault
                 raise bad_data(
@@ -188,6 +189,14 @@ def _valued(table: Table, columns: list[str], remedy: Remedy) -> Iterator[pa.Rec
                 )
         yield batch
         row += batch.num_rows
+
+
+def _sound_at_once(batch: pa.RecordBatch, columns: list[str]) -> bool:
+    """Whether there are few rows, as beside a robot, of which all these columns are sound."""
+    found = [batch.column(name) for name in columns] if batch.num_rows <= FEW else []
+    if not found or any(x.null_count or x.type != pa.float64() for x in found):
+        return False
+    return bool(np.abs(np.concatenate([x.to_numpy() for x in found])).max(initial=0.0) < LARGEST)
 
 
 def _fault_of(column: pa.Array) -> tuple[int, str, str] | None:

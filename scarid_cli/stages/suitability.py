@@ -48,7 +48,7 @@ class Watch:
         for batch in batches:
             q = matrix(batch, names)
             before = q[:, :1] if self.last is None else self.last
-            steps = np.abs(np.diff(q, axis=1, prepend=before))
+            steps = np.abs(q - np.concatenate((before, q[:, :-1]), axis=1))
             least = np.where(steps > 0.0, steps, np.inf).min(axis=1, initial=np.inf)
             self.steps = np.minimum(self.steps, least)
             self.last = q[:, -1:]

@@ -73,7 +73,8 @@ class CentralDifferences(AfterLowpass, MatchedForm):
 
     def outputs(self, samples: Array, h: float) -> tuple[Array, ...]:
         v = (samples[2:] - samples[:-2]) / (2.0 * h)
-        return samples[1:-1], v, np.diff(np.diff(samples)) / h**2
+        steps = samples[1:] - samples[:-1]
+        return samples[1:-1], v, (steps[1:] - steps[:-1]) / h**2
 
 
 @dataclass(frozen=True)

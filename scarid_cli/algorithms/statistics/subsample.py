@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +15,7 @@ MOST_HELD = 4_000_000  # numbers, before a record that is held is thinned
 MOST_COVERED = 20_000_000  # numbers, before only some segments are kept
 FEWEST_SAMPLES = 4096
 MOST_SEGMENTS = 8
+GATHERED = 512  # samples of a part, above which it stays as it is
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,7 @@ class Subsample:
             stop = start + int((rows.at[start:] < (number + 1) * segment).sum())
             if number % stride == 0:
                 parts += _thinned([rows.part(slice(start, stop))], thin)
+                _gather(parts, segment)
             while len({int(part.at[0]) // segment for part in parts}) > MOST_SEGMENTS:
                 if 2 * thin <= self.thinnest:
                     thin, segment = 2 * thin, 2 * segment
@@ -81,7 +84,7 @@ class Subsample:
     @property
     def size(self) -> int:
         """How many numbers the arrays hold."""
-        return sum(part.samples * self._size(part) for part in self.parts)
+        return _numbers(self.parts, self._size)
 
     def packed(self) -> Subsample:
         """The same in one part, of which `rows` makes no copy, and to which nothing is added."""
@@ -89,7 +92,7 @@ class Subsample:
 
     def _is_too_large(self, parts: list[Rows]) -> bool:
         """Whether these parts have more numbers than a subsample that covers the record may."""
-        return 0 < self.covers < sum(x.samples * self._size(x) for x in parts)
+        return 0 < self.covers < _numbers(parts, self._size)
 
     def _size(self, rows: Rows) -> int:
         """How many numbers the arrays hold for one sample."""
@@ -101,6 +104,24 @@ class Subsample:
         """The rows of the subsample, with `at` and `h` those of the thinned record."""
         kept = joined(self.parts)
         return replace(kept, at=kept.at // self.thin, h=kept.h * self.thin)
+
+
+def _numbers(parts: Sequence[Rows], size: Callable[[Rows], int]) -> int:
+    """How many numbers parts of one record hold, of which each sample has as many."""
+    return sum(part.samples for part in parts) * size(parts[0]) if parts else 0
+
+
+def _gather(parts: list[Rows], segment: int) -> None:
+    """Join what arrived a few rows at a time, such that a row is copied a few times at most.
+
+    Whoever looks at each part, for each row that arrives, then looks at few.
+    """
+    while len(parts) > 1:
+        before, last = parts[-2:]
+        apart = before.at[0] // segment != last.at[0] // segment
+        if apart or last.samples < before.samples or before.samples >= GATHERED:
+            break
+        parts[-2:] = [joined((before, last))]
 
 
 def _thinned(parts: list[Rows], thin: int) -> list[Rows]:
