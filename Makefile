@@ -119,7 +119,8 @@ bench-identify: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python benchmarks/identify_steps.py
 
 bench-latency: $(VENV)/tested
-	$(BIN)/python benchmarks/latency.py
+	$(BIN)/python benchmarks/latency.py 200
+	$(BIN)/python benchmarks/latency.py 1000
 
 bench-excitation: $(VENV)/tested
 	$(BIN)/python benchmarks/excitation.py

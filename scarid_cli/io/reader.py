@@ -194,9 +194,10 @@ def _valued(table: Table, columns: list[str], remedy: Remedy) -> Iterator[pa.Rec
 def _sound_at_once(batch: pa.RecordBatch, columns: list[str]) -> bool:
     """Whether there are few rows, as beside a robot, of which all these columns are sound."""
     found = [batch.column(name) for name in columns] if batch.num_rows <= FEW else []
-    if not found or any(x.null_count or x.type != pa.float64() for x in found):
+    if not found or any(x.null_count or not pa.types.is_primitive(x.type) for x in found):
         return False
-    return bool(np.abs(np.concatenate([x.to_numpy() for x in found])).max(initial=0.0) < LARGEST)
+    values = [x.to_numpy() for x in found if pa.types.is_floating(x.type)]
+    return not values or bool(np.abs(np.concatenate(values)).max(initial=0.0) < LARGEST)
 
 
 def _fault_of(column: pa.Array) -> tuple[int, str, str] | None:

@@ -265,6 +265,9 @@ def segments(table: Table) -> Iterator[Table]:
 
 
 def _pieces(batch: pa.RecordBatch) -> Iterator[tuple[int, pa.RecordBatch]]:
+    if SEGMENT not in batch.schema.names and batch.num_rows:
+        yield 0, batch
+        return
     numbers = segments_of(batch)
     edges = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), batch.num_rows]
     for start, end in pairwise(edges):
@@ -296,5 +299,8 @@ def _settled(batch: pa.RecordBatch) -> Iterator[tuple[int, int]]:
         yield 0, batch.num_rows
         return
     marks = batch.column("settled").to_numpy(zero_copy_only=False) != 0
+    if marks.all() and len(marks):  # most batches; this is the fast way for a single row
+        yield 0, len(marks)
+        return
     ends = np.flatnonzero(np.diff(marks, prepend=False, append=False))
     yield from map(tuple, ends.reshape(-1, 2).tolist())
