@@ -57,9 +57,9 @@ def _gathered(reader: ipc.RecordBatchStreamReader, source: ByteSource) -> Iterat
             held.append(batch)
             if sum(map(len, held)) < FEW and source.waits():
                 continue
-            yield concatenated(held)
-            held = []
-    except BaseException:
+            together, held = concatenated(held), []
+            yield together
+    except Exception:  # what came before the damage has been read
         if held:
             yield concatenated(held)
         raise

@@ -26,6 +26,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     RIPPLE,
     SHAPES,
     SPRING,
+    TILT,
     Model,
     Signals,
 )
@@ -37,12 +38,16 @@ from scarid_cli.algorithms.statistics.mismatches import (
 from scarid_cli.arrays import Array
 
 REFITS = 4  # gains of .6 are then as large at the next fit, to a tenth of their errors
-COMPARED = (GAIN, OFFSET)  # a comparison of logs has columns for these by itself
+COMPARED = (GAIN, OFFSET, TILT)  # a comparison of logs has columns for these by itself
+# Whose columns depend on the estimates beside them, so that they are fitted again.
+RELATIVE = (GAIN, TILT)
 
 
 @dataclass(frozen=True)
 class Addition:
     """A torque of a joint (from 0): `size` times one of the SHAPES, whose name it has.
+
+    A tilt of the base is that of all joints, and has a column of it in place of the joint.
 
     `usual` [rad/s or m/s] is the speed by which the shape scales velocities, and `cycles` the
     periods of a ripple per rad or m, 0 for others. `error` is the standard error of the size. A
@@ -97,7 +102,7 @@ def of_explanation(
     }
     plain = {(name, j, 0.0) for name, j in found | slack if name not in PARTS}
     return tuple(
-        Addition(name, j, float(usual[j]), cycles=cycles)
+        Addition(name, j, 1.0 if name == TILT else float(usual[j]), cycles=cycles)
         for name, j, cycles in sorted(plain | parts)
     )
 
@@ -147,7 +152,7 @@ class Shapes:
     @property
     def refits(self) -> int:
         """The fits until columns that depend on the estimates beside them no longer change."""
-        return REFITS if self.curved or any(x.name == GAIN for x in self.additions) else 1
+        return REFITS if self.curved or any(x.name in RELATIVE for x in self.additions) else 1
 
     @property
     def constant(self) -> list[int]:
@@ -162,7 +167,9 @@ class Shapes:
         """The rows as logs are compared: without their gains, beside what no comparison fits."""
         others = [addition for addition in self.additions if addition.name not in COMPARED]
         wide = replace(self, additions=others).beside(rows) if others else rows
-        return replace(wide, y=wide.y / gains(self.additions, wide.y.shape[1]))
+        tilts = replace(self, additions=[x for x in self.additions if x.name == TILT])
+        y = wide.y - tilts.torques(rows) if tilts.additions else wide.y
+        return replace(wide, y=y / gains(self.additions, wide.y.shape[1]))
 
     def columns(self, rows: Rows) -> Array:
         """The shapes (samples, joints, additions)."""
@@ -171,15 +178,25 @@ class Shapes:
         joints = np.ones(rows.y.shape[1])
         mismatches = Mismatches(rows, self.model, self.theta)
         signals = replace(signals, turns=joints > 0.0)  # those of the log that shows them
+        tilted = self._tilted(rows)
         for k, addition in enumerate(self.additions):
             usual, cycles = addition.usual * joints, addition.cycles * joints
             if addition.mismatch:
                 of = addition.name, addition.joint, addition.size
                 columns[:, :, k] = mismatches.column(*of)
                 continue
+            if addition.name == TILT:
+                columns[:, :, k] = 0.0 if tilted is None else tilted[:, :, addition.joint]
+                continue
             own = replace(signals, usual=usual, cycles=cycles)
             columns[:, addition.joint, k] = SHAPES[addition.name](own)[:, addition.joint]
         return columns
+
+    def _tilted(self, rows: Rows) -> Array | None:
+        """The columns of a base that is tilted, if it is; None without gravity."""
+        if not any(addition.name == TILT for addition in self.additions):
+            return None
+        return self.model.leaning(rows.motion[0], self.theta)
 
     def torques(self, rows: Rows) -> Array:
         """The torques (samples, joints) of the additions that belong to the robot."""

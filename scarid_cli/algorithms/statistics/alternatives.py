@@ -120,6 +120,20 @@ class Model:
         torques = [replace(self, robot=r).link_torques(still, theta) for r in robots]
         return np.stack(torques, axis=2)
 
+    def leaning(self, q: Array, theta: Array) -> Array | None:
+        """The columns (samples, joints, 4) of a tilted base: `tilted`, and two of joint 1.
+
+        Where the axis of joint 1 is vertical, no parameter has the first moments of what it turns,
+        which pull at it when it leans. Where it is not, parameters have these columns already.
+        """
+        torques = self.tilted(q, theta)
+        if torques is None:
+            return None
+        found = np.concatenate((torques, np.zeros_like(torques)), axis=2)
+        if self.robot.joints[0].unit == "rad":
+            found[:, 0, 2], found[:, 0, 3] = np.cos(q[0]), np.sin(q[0])
+        return found
+
     def _marks(self, chosen: Callable[[Term], bool]) -> Marks:
         return np.array([chosen(self.robot.parameters[i].term) for i in self.kept], dtype=bool)
 
@@ -241,7 +255,7 @@ def torque_columns(
         parts = [diagonal(wave(ripple)) for ripple in ripples for wave in waves]
         columns[RIPPLE] = np.concatenate(parts, axis=2)
     columns[UNEVEN] = np.concatenate(uneven, axis=2)
-    tilt = model.tilted(rows.motion[0], estimates[: len(model.kept)]) if model else None
+    tilt = model.leaning(rows.motion[0], estimates[: len(model.kept)]) if model else None
     if tilt is not None:
         columns[TILT] = tilt
     return columns

@@ -18,6 +18,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     RIPPLE,
     SLOW,
     STRIBECK,
+    TILT,
     Model,
     Signals,
     away_from_reversals,
@@ -165,7 +166,7 @@ class Trial:
     its regressor. Joints are weighted by `weights`, and rows are whitened by the `noise`, if there
     is one: torques need only those in these `places`. The alternatives that are `suspected` count
     even where they are not significant; those that are `shared` were fitted for other joints.
-    Gains and mismatches that are `fitted`, of joints (from 0), are in W.
+    Gains, a tilt and mismatches that are `fitted`, of joints (from 0), are in W.
     """
 
     rows: Rows
@@ -209,6 +210,8 @@ class Trial:
         apart = [j for name, j in self.fitted if name == GAIN]
         of = self.rows, self.model, self.estimates, self.ripples.cycles
         further = torque_columns(*of, apart)
+        if any(name == TILT for name, _ in self.fitted):
+            further.pop(TILT, None)
         if self.model:
             theta = self.estimates[: self.own]
             columns = distance_columns(self.model, theta, self.rows.motion[:3])
@@ -349,13 +352,18 @@ class Trial:
         """
         found = []
         for name, columns in places.items():
-            new = [c for c in products.independent([*given, *columns]) if c not in given]
-            if name in (SLOW, RIPPLE):
-                new = [c for c in new if products.spread[c] >= BLOCKS]
-            solved = products.solved([*given, *new]) if new else None
-            if solved:
-                tested = [new.index(c) if c in new else None for c in columns]
-                found.append(self.effect(name, plain, same, solved, tested))
+            # A short log tells that a base is tilted better than what else this makes of joint 1.
+            choices = [columns, columns[:2]] if name == TILT else [columns]
+            tried = []
+            for chosen in choices:
+                new = [c for c in products.independent([*given, *chosen]) if c not in given]
+                if name in (SLOW, RIPPLE):
+                    new = [c for c in new if products.spread[c] >= BLOCKS]
+                solved = products.solved([*given, *new]) if new else None
+                if solved:
+                    tested = [new.index(c) if c in new else None for c in chosen]
+                    tried.append(self.effect(name, plain, same, solved, tested))
+            found += [max(tried, key=lambda x: x.clearness(CERTAIN))] if tried else []
         return found
 
     def signals(self, plain: Solved, same: list[tuple[Array, Solved]]) -> list[Effect]:

@@ -9,7 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from scarid_cli.algorithms.statistics.alternatives import DECAYED, OFFSET, PARTS, RIPPLE, SHAPES
+from scarid_cli.algorithms.statistics.alternatives import (
+    DECAYED,
+    OFFSET,
+    PARTS,
+    RIPPLE,
+    SHAPES,
+    TILT,
+)
 from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial, clear, level_among
 from scarid_cli.algorithms.statistics.mismatches import ELASTIC_GEAR, ELASTIC_JOINT, WIDESPREAD
 from scarid_cli.algorithms.statistics.parallel import ELASTICITY, SIGNALS
@@ -19,7 +26,7 @@ from scarid_cli.arrays import Array
 Torques = frozenset[tuple[str, int]]
 RARE = 0.001  # probability of fitting what is not there
 LEFT = 0.25  # times as clear as the alternative itself: what it may leave unexplained
-FITTED = {*SHAPES.keys(), *PARTS} - {OFFSET}  # which offsets.py looks for
+FITTED = {*SHAPES.keys(), *PARTS, TILT} - {OFFSET}  # which offsets.py looks for
 
 
 @dataclass(frozen=True)
@@ -92,7 +99,21 @@ def _beside(trial: Trial, torques: Torques) -> list[Effect] | None:
     return trial.beside(products, places, wider, wider, given) if wider else None
 
 
+def _leaning(trial: Trial) -> list[int]:
+    """The columns of a tilted base that the rows determine."""
+    products, places = trial.beyond
+    there = products.independent(places[TILT])
+    return [k for k, column in enumerate(places[TILT]) if column in there]
+
+
 def _torques(trial: Trial, effects: Sequence[Effect], level: float) -> Torques:
-    """The names of these effects, with the joints where they are significant."""
+    """The names of these effects, with the joints where they are significant.
+
+    A tilt has columns in their place, of which it takes all that there are.
+    """
     joints = trial.rows.y.shape[1]
-    return frozenset((x.name, j) for x in effects for j in x.joints(level, joints))
+    return frozenset(
+        (x.name, j)
+        for x in effects
+        for j in (_leaning(trial) if x.name == TILT else x.joints(level, joints))
+    )

@@ -15,6 +15,7 @@ from scarid_cli.algorithms.regression.treatment import GainErrors, Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.additions import (
     COMPARED,
+    RELATIVE,
     Addition,
     Shapes,
     gains,
@@ -30,6 +31,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     OFFSET,
     SINE,
     SPRING,
+    TILT,
     TORQUES,
     Model,
     reference,
@@ -106,9 +108,9 @@ class Problem:
             doubt=None if doubt is None else doubt[: self.own],
             gain_errors=gain_errors,
             suspected=suspected,
-            shared={CABLE if x.name == CUBE else x.name for x in self.additions} - {OFFSET},
+            shared={CABLE if x.name == CUBE else x.name for x in self.additions} - {OFFSET, TILT},
             curves={x.joint for x in self.additions if x.name in DECAYED},
-            fitted={(x.name, x.joint) for x in self.additions if x.mismatch or x.name == GAIN},
+            fitted={(x.name, x.joint) for x in self.additions if x.mismatch or x.name in RELATIVE},
         )
         sizes = self.found.fit.estimates[self.own + len(self.additions) :].tolist()
         offsets = dict(zip(self.offsets, sizes, strict=False))
@@ -175,7 +177,9 @@ class Problem:
         dropped = {*range(start, start + len(self.offsets))}
         dropped |= {k for k, x in enumerate(self.additions, self.own) if x.name in COMPARED}
         kept = [k for k in range(self.rows.W.shape[2] - self.delayed) if k not in dropped]
-        torques = self.rows.y / gains(self.additions, self.rows.y.shape[1])
+        tilts = [k for k, x in enumerate(self.additions, self.own) if x.name == TILT]
+        y = self.rows.y - self.rows.W[:, :, tilts] @ self.found.fit.estimates[tilts]
+        torques = y / gains(self.additions, self.rows.y.shape[1])
         return replace(self.rows, W=self.rows.W.take(kept, axis=2), y=torques)
 
     def reduced(self, to: Essential) -> Problem:

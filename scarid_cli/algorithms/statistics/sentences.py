@@ -148,6 +148,9 @@ def additions_of(
     kinds = _kinds(added)
     for kind in sorted(set(kinds)):
         own = [addition for addition, of in zip(added, kinds, strict=True) if of == kind]
+        if kind == TILT:
+            notes.append(_tilt(own, robot))
+            continue
         joints = joints_named(dict.fromkeys(x.joint + 1 for x in own))
         advice = ADVICE[kind].format(joints=joints, periods=_periods(_ripples(own), robot))
         elsewhere = _elsewhere(list(estimates), diagnostics, kind, {x.joint for x in own})
@@ -155,6 +158,20 @@ def additions_of(
             advice = f"{advice}: {laws(own, estimates, robot)}"
         notes.append(f"{advice}; {_fitted(kind, own, robot)}{elsewhere}")
     return notes
+
+
+def _tilt(own: Sequence[Addition], robot: Robot) -> str:
+    """The gravity of a base whose tilt was fitted, and by how much it is tilted."""
+    assert robot.body
+    amounts, errors = np.zeros(2), np.zeros(2)
+    for x in own:
+        if x.joint < 2:  # the directions; the rest is of the first moments of link 1
+            amounts[x.joint], errors[x.joint] = x.size, x.error
+    tilt = float(np.linalg.norm(amounts))
+    error = float(np.linalg.norm(amounts * errors)) / max(tilt, 1e-300)
+    degrees = f"{np.degrees(np.arctan(tilt)):.2g} {plus_minus(float(np.degrees(error)))} deg"
+    gravity = _vector(tilted(np.array(robot.body.gravity), amounts))
+    return f"{ADVICE[TILT].format(gravity=gravity)}; a tilt by {degrees} was fitted as well"
 
 
 def _kinds(added: Sequence[Addition]) -> list[str]:
@@ -319,7 +336,7 @@ def _allowing(names: Sequence[str], wide: Iterable[bool]) -> str:
 def _amounts(effect: Effect, robot: Robot, level: float, cycles: Array) -> dict[str, str]:
     """What the advice on an alternative names: its joints, zeros, periods or gravity."""
     if effect.name == TILT and robot.body:
-        return {"gravity": _vector(tilted(np.array(robot.body.gravity), effect.amounts))}
+        return {"gravity": _vector(tilted(np.array(robot.body.gravity), effect.amounts[:2]))}
     count = len(robot.joints)
     found = effect.joints(level, count)
     texts = {"joints": joints_named(j + 1 for j in found) if found else ""}
