@@ -17,6 +17,7 @@
 # make bench-verdicts   whether intervals and verdicts hold under imperfect conditions
 # make gauntlet       the blind procedure on four robots under all conditions (an hour)
 # make bench-mixtures the blind procedure on logs with random mixtures of imperfections
+# make bench-tilts    bases that lean: named, and the estimates
 # make bench-gains    torques of one joint in another unit: named, and the estimates
 # make bench-forgetting  parameters that change: variable forgetting beside constant factors
 # make bench-friction   what `identify --friction auto` chooses, judged on another motion
@@ -51,7 +52,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test test-all docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
+.PHONY: all paper paper-montecarlo repetition test test-all docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-tilts bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -170,6 +171,9 @@ bench-loop: $(VENV)/tested
 
 bench-coarse: $(VENV)/tested
 	cd benchmarks && ../$(BIN)/python coarse.py
+
+bench-tilts: $(VENV)/tested
+	$(TESTING) $(BIN)/python benchmarks/tilts.py
 
 bench-gains: $(VENV)/tested
 	$(BIN)/python benchmarks/gains.py

@@ -147,7 +147,9 @@ def test_a_tilted_base_is_named(degrees: float, tmp_path: Path, scarid: Run) -> 
     if degrees:
         assert stated, found
         found_gravity = [float(x) for x in stated[1].split(",")]
-        np.testing.assert_allclose(found_gravity, gravity, atol=0.3)  # about two degrees
+        np.testing.assert_allclose(found_gravity, gravity, atol=0.06)  # a third of a degree
+        assert "a tilt by 5 +- 0" in found
+        assert found.startswith("good: ")
     else:
         assert not stated
 

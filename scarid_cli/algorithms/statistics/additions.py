@@ -194,9 +194,14 @@ class Shapes:
 
     def _tilted(self, rows: Rows) -> Array | None:
         """The columns of a base that is tilted, if it is; None without gravity."""
-        if not any(addition.name == TILT for addition in self.additions):
+        own = [addition for addition in self.additions if addition.name == TILT]
+        if not own:
             return None
-        return self.model.leaning(rows.motion[0], self.theta)
+        sines = np.zeros(2)
+        for addition in own:
+            if addition.joint < len(sines):
+                sines[addition.joint] = np.nan_to_num(addition.size)  # before the first fit
+        return self.model.leaning(rows.motion[0], self.theta, sines)
 
     def torques(self, rows: Rows) -> Array:
         """The torques (samples, joints) of the additions that belong to the robot."""

@@ -120,15 +120,21 @@ class Model:
         torques = [replace(self, robot=r).link_torques(still, theta) for r in robots]
         return np.stack(torques, axis=2)
 
-    def leaning(self, q: Array, theta: Array) -> Array | None:
-        """The columns (samples, joints, 4) of a tilted base: `tilted`, and two of joint 1.
+    def leaning(self, q: Array, theta: Array, sines: Array) -> Array | None:
+        """The columns (samples, joints, 4) of a base that leans: `tilted`, and two of joint 1.
 
-        Where the axis of joint 1 is vertical, no parameter has the first moments of what it turns,
-        which pull at it when it leans. Where it is not, parameters have these columns already.
+        Times the `sines` (2) of the angles, the first two are what leaning adds to the torques,
+        what it takes from the weight included. Where the axis of joint 1 is vertical, no parameter
+        has the first moments of what it turns, which pull at it when it leans. Where it is not,
+        parameters have the other two columns already.
         """
         torques = self.tilted(q, theta)
         if torques is None:
             return None
+        if square := float(np.sum(sines**2)):
+            still = np.stack((q, np.zeros_like(q), np.zeros_like(q)))
+            part = (np.sqrt(max(1.0 - square, 0.0)) - 1.0) / square
+            torques = torques + part * sines * self.link_torques(still, theta)[:, :, None]
         found = np.concatenate((torques, np.zeros_like(torques)), axis=2)
         if self.robot.joints[0].unit == "rad":
             found[:, 0, 2], found[:, 0, 3] = np.cos(q[0]), np.sin(q[0])
@@ -139,12 +145,13 @@ class Model:
 
 
 def tilted(gravity: Array, amounts: Array) -> Array:
-    """The gravity [m/s2] of a base that is tilted by these amounts (2), as large as before.
+    """The gravity [m/s2] of a base that leans by angles of these sines (2).
 
     An amount of nan, about an axis about which the log shows no tilt, is none.
     """
-    turned = gravity + np.nan_to_num(amounts) @ _sideways(gravity)
-    return np.asarray(turned * np.linalg.norm(gravity) / np.linalg.norm(turned))
+    sines = np.nan_to_num(amounts)
+    left = np.sqrt(max(1.0 - float(sines @ sines), 0.0))
+    return np.asarray(left * gravity + sines @ _sideways(gravity))
 
 
 def _sideways(gravity: Array) -> Array:
@@ -255,7 +262,9 @@ def torque_columns(
         parts = [diagonal(wave(ripple)) for ripple in ripples for wave in waves]
         columns[RIPPLE] = np.concatenate(parts, axis=2)
     columns[UNEVEN] = np.concatenate(uneven, axis=2)
-    tilt = model.leaning(rows.motion[0], estimates[: len(model.kept)]) if model else None
+    upright = np.zeros(2)
+    own = estimates[: len(model.kept)] if model else estimates
+    tilt = model.leaning(rows.motion[0], own, upright) if model else None
     if tilt is not None:
         columns[TILT] = tilt
     return columns

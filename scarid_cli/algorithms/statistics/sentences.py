@@ -167,9 +167,9 @@ def _tilt(own: Sequence[Addition], robot: Robot) -> str:
     for x in own:
         if x.joint < 2:  # the directions; the rest is of the first moments of link 1
             amounts[x.joint], errors[x.joint] = x.size, x.error
-    tilt = float(np.linalg.norm(amounts))
-    error = float(np.linalg.norm(amounts * errors)) / max(tilt, 1e-300)
-    degrees = f"{np.degrees(np.arctan(tilt)):.2g} {plus_minus(float(np.degrees(error)))} deg"
+    sine = float(np.linalg.norm(amounts))
+    error = float(np.degrees(np.linalg.norm(amounts * errors))) / max(sine, 1e-300)
+    degrees = f"{np.degrees(np.arcsin(min(sine, 1.0))):.2g} {plus_minus(error)} deg"
     gravity = _vector(tilted(np.array(robot.body.gravity), amounts))
     return f"{ADVICE[TILT].format(gravity=gravity)}; a tilt by {degrees} was fitted as well"
 

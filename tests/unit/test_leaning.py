@@ -1,0 +1,59 @@
+"""A base that leans, against Pinocchio and as a log tells it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import tilts
+from conftest import seeds
+
+pinocchio = pytest.importorskip("pinocchio")
+
+from scarid_cli.algorithms.robots.reading import load  # noqa: E402
+from scarid_cli.algorithms.statistics.alternatives import Model, tilted  # noqa: E402
+from scarid_cli.arrays import Array  # noqa: E402
+
+
+def weights(gravity: Array, q: Array) -> Array:
+    """What holds the bodies of the URDF still (samples, joints), by Pinocchio."""
+    robot = load(str(tilts.UPRIGHT))
+    assert robot.body
+    model = robot.body.model.copy()
+    model.gravity.linear = gravity
+    data, none = model.createData(), np.zeros(model.nv)
+    return np.array([pinocchio.rnea(model, data, x, none, none) for x in q.T])
+
+
+@pytest.mark.parametrize("sines", [(0.1, 0.0), (0.0, -0.02), (0.2, 0.15)])
+def test_the_columns_are_what_leaning_adds(sines: tuple[float, float]) -> None:
+    """The two of joint 1 have any size: no parameter of the upright robot has it."""
+    robot = load(str(tilts.UPRIGHT))
+    assert robot.body
+    q = np.random.default_rng(1).uniform(-3.0, 3.0, (6, 40))
+    upright = np.array(robot.body.gravity)
+    added = weights(tilted(upright, np.array(sines)), q) - weights(upright, q)
+    model = Model(robot, list(range(len(robot.parameters))))
+    columns = model.leaning(q, robot.apriori, np.array(sines))
+    assert columns is not None
+    rest = added - columns[:, :, :2] @ sines
+    assert np.abs(rest[:, 1:]).max() < 1e-9
+    sizes = np.linalg.lstsq(columns[:, 0, 2:], rest[:, 0], rcond=None)[0]
+    assert columns[:, 0, 2:] @ sizes == pytest.approx(rest[:, 0], abs=1e-9)
+    assert np.abs(sizes).max() > 0.1
+
+
+def test_gravity_keeps_its_size() -> None:
+    upright = np.array([0.0, 0.0, -9.81])
+    for sines in ([0.0, 0.0], [0.3, -0.4], [np.nan, 0.1]):
+        assert np.linalg.norm(tilted(upright, np.array(sines))) == pytest.approx(9.81)
+
+
+@pytest.mark.parametrize("seed", seeds(1, 4))
+@pytest.mark.parametrize("degrees", [2.0, 8.0])
+def test_the_estimates_are_those_of_the_upright_robot(degrees: float, seed: int) -> None:
+    found = tilts.case(degrees, seed, 15.0)
+    assert found.named
+    assert found.off < 0.5
+    assert not found.wrong
+    assert found.inside > 0.9
+    assert found.torque < 3.0
