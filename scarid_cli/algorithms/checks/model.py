@@ -187,9 +187,21 @@ def solved(W: Array, tau: Array, counts: Marks) -> Solution:
     return Solution(A, theta, y - A @ theta, covariance, squares / scale**2)
 
 
-def fitted(robot: Robot, samples: Samples) -> Fit:
-    """The fit of the robot's columns and the added ones to these samples."""
+def pulled(motion: Array) -> Array:
+    """Columns (samples, joints, 2 joints) of a cable at each joint: its position, and the cube."""
+    q = motion[0]
+    joints, samples = q.shape
+    found = np.zeros((samples, joints, 2 * joints))
+    for j in range(joints):
+        found[:, j, 2 * j], found[:, j, 2 * j + 1] = q[j], q[j] ** 3
+    return found
+
+
+def fitted(robot: Robot, samples: Samples, *, cables: bool = False) -> Fit:
+    """The fit of the robot's columns and the added ones to these samples, cables if asked for."""
     wide = columns(robot, samples.motion)
+    if cables:
+        wide = np.concatenate((wide, pulled(samples.motion)), axis=2)
     found = solved(wide, samples.motion[3], samples.counts)
     return Fit(found.residuals, _powers(robot, wide, samples, found))
 

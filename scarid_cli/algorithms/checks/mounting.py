@@ -56,9 +56,9 @@ class Mounting:
         motion[0] += np.array(self.turns)[:, None]
         return replace(samples, motion=motion)
 
-    def fitted(self, robot: Robot, samples: Samples) -> Fit:
+    def fitted(self, robot: Robot, samples: Samples, *, cables: bool = False) -> Fit:
         """The fit of a log of a robot that is mounted so."""
-        return fitted(self.of(robot), self.seen(samples))
+        return fitted(self.of(robot), self.seen(samples), cables=cables)
 
     def disagreement(self, robot: Robot, samples: Samples) -> float:
         """How little of the torques the described masses explain if it is mounted so."""
@@ -127,7 +127,10 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
     left = as_described.fit.residuals.max()
     if np.max(as_described.fit.residuals * _varying(samples)) < EXACT:
         return as_described
-    found = searched(as_described, fit_of, reversed_axes, FALL ** (1.0 / joints))
+    one_joint = FALL ** (1.0 / joints)  # half the residual of one joint
+    found = searched(as_described, fit_of, reversed_axes, one_joint)
+    if found.case != described and not _beside_cables(found.case, robot, samples, one_joint):
+        found = as_described
     if left > TURNED:
         other = searched(as_described, fit_of, turned)
         found = min(found, other, key=lambda one: one.fit.misfit)
@@ -139,6 +142,16 @@ def mounted(robot: Robot, samples: Samples) -> Explained[Mounting]:
         without = Explained(none, fit_of(none))
         found = without if without.fit.misfit < found.fit.misfit + alike(robot) else found
     return as_described if found.fit.residuals.max() > UNEXPLAINED else found
+
+
+def _beside_cables(case: Mounting, robot: Robot, samples: Samples, fall: float) -> bool:
+    """Whether the model fits as much better with these axes where cables are fitted, too.
+
+    What a cable does that the model lacks may look like the torques of another axis.
+    """
+    plain = Mounting.described(len(robot.joints)).fitted(robot, samples, cables=True)
+    other = case.fitted(robot, samples, cables=True)
+    return bool(other.misfit < plain.misfit + np.log(fall))
 
 
 def _varying(samples: Samples) -> Array:

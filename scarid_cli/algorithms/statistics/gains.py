@@ -12,12 +12,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from scarid_cli.algorithms.statistics.alternatives import GAIN
+from scarid_cli.algorithms.statistics.alternatives import GAIN, TORQUES
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.algorithms.statistics.effects import CERTAIN
 from scarid_cli.arrays import Array
 from scarid_cli.interval import plus_minus
 
 KNOWN = 0.05  # error: beyond, a log says less than a data sheet, which knows constants within 10 %
+RIVALS = {*TORQUES} - {GAIN}  # other causes of torques that do not fit together
 CAUSES = "a torque constant, a gear ratio or a unit is wrong, there or at the others"
 
 
@@ -55,9 +57,15 @@ def known(diagnostics: Diagnostics) -> list[Gain]:
 
 
 def significant(diagnostics: Diagnostics) -> list[Gain]:
-    """The gains that differ from 1 by more than noise makes them, and were not fitted."""
+    """The gains that differ from 1 by more than noise makes them, and were not fitted.
+
+    Where something else of the torques is clearer, such as a base that leans, gains make up for it.
+    """
+    likelier = max(
+        (x.clearness(CERTAIN) for x in diagnostics.effects if x.name in RIVALS), default=0.0
+    )
     for effect in diagnostics.effects:
-        if effect.name == GAIN and effect.significant():
+        if effect.name == GAIN and effect.significant() and effect.clearness(CERTAIN) > likelier:
             there = np.flatnonzero(effect.ratios > effect.threshold())
             return [
                 Gain(int(j), 1.0 + float(effect.amounts[j]), float(effect.noise[j])) for j in there
