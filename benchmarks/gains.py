@@ -22,7 +22,8 @@ from scarid_cli.algorithms.robots.reading import load
 
 SCARID = Path(sys.executable).parent / "scarid"
 FACTORS = (1.0, 1.02, 1.05, 1.1, 1.3558, 0.7)
-ROBOTS = {"scara2": "", "planar2-gravity": "--q-max 2,2 --ddq-max 20,30"}
+SIX = Path(__file__).parent.parent / "samples" / "robots" / "ur10e.toml"
+ROBOTS = {"scara2": "", "planar2-gravity": "--q-max 2,2 --ddq-max 20,30", str(SIX): ""}
 TOLD = re.compile(r"that of joint (\d) is (\S+) \+- (\S+) times")
 
 
@@ -36,12 +37,14 @@ def shell(line: str, folder: Path) -> str:
 
 def case(robot: str, seed: int, factor: float) -> tuple[str, bool, bool]:
     """The grade, whether the gain was named rightly, and whether good estimates are wrong."""
+    joints = len(load(robot).joints)
     with TemporaryDirectory() as name:
         folder = Path(name)
         told = shell(
             f"scarid trajgen -q --robot {robot} --seed {seed} {ROBOTS[robot]} --duration 20 |"
-            f" scarid simulate -q --robot {robot} --seed {seed} --format csv | cut -d, -f-5 |"
-            f" awk -F, -v OFS=, 'NR > 1 {{ $5 *= {factor} }} 1' > log.csv;"
+            f" scarid simulate -q --robot {robot} --seed {seed} --format csv |"
+            f" cut -d, -f-{2 * joints + 1} |"
+            f" awk -F, -v OFS=, 'NR > 1 {{ ${joints + 3} *= {factor} }} 1' > log.csv;"
             f" scarid identify --robot {robot} log.csv -o p.parquet",
             folder,
         )
@@ -69,7 +72,10 @@ def main() -> None:
                 done = list(pool.map(lambda seed: case(robot, seed, factor), seeds))  # noqa: B023
                 good = sum(grade == "good" for grade, _, _ in done)
                 named, wrong = (sum(x[k] for x in done) for k in (1, 2))
-                print(f"{robot:<16} {factor:>7} {good:>5} {named:>6} {wrong:>6}", flush=True)
+                print(
+                    f"{Path(robot).stem:<16} {factor:>7} {good:>5} {named:>6} {wrong:>6}",
+                    flush=True,
+                )
 
 
 if __name__ == "__main__":

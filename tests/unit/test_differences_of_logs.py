@@ -152,3 +152,13 @@ def test_gains_are_relative_to_the_joints_that_agree(
     else:
         assert found is not None
         assert {x.joint: x.factor for x in found} == pytest.approx(expected, rel=0.01)
+
+
+def test_joints_whose_gains_are_known_less_well_decide_between_two() -> None:
+    """Joint 1 is 5 % larger than joint 3, or this one smaller: the others are nearer to joint 3."""
+    gains = [(1.0, 0.0), (0.943, 0.02), (0.954, 0.002), (0.949, 0.016), (0.95, 0.036)]
+    found = apart([Gain(j, x, error) for j, (x, error) in enumerate(gains)], 0)
+    assert found is not None
+    assert {x.joint: x.factor for x in found} == pytest.approx({0: 1.0 / 0.954}, rel=1e-3)
+    gains[1], gains[3] = (0.99, 0.02), (1.01, 0.016)
+    assert apart([Gain(j, x, error) for j, (x, error) in enumerate(gains)], 0) is None

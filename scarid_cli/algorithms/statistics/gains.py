@@ -76,20 +76,23 @@ def significant(diagnostics: Diagnostics) -> list[Gain]:
 def apart(gains: Sequence[Gain], before: int) -> list[Gain] | None:
     """The gains of the joints that are apart from the most that agree, relative to these.
 
-    None if those that agree with joint `before` (from 0), beside which they were found, are as
-    many. Two gains agree within twice their errors.
+    None if joint `before` (from 0), beside which they were found, is among those that agree. Two
+    gains agree within twice their errors. Of groups that are as large, those agree that do best.
     """
-    groups = [
-        [x for x in gains if abs(x.factor - one.factor) <= 2.0 * np.hypot(x.error, one.error)]
-        for one in gains
-    ]
-    first = next(own for one, own in zip(gains, groups, strict=True) if one.joint == before)
-    largest = max(groups, key=len)
-    if len(largest) <= len(first):
+    least = min((x.error for x in gains if x.error > 0.0), default=1.0)
+    best: tuple[int, float, list[Gain]] | None = None
+    for one in gains:
+        away = [abs(x.factor - one.factor) / np.hypot(x.error, one.error or least) for x in gains]
+        rest = [x for x, far in zip(gains, away, strict=True) if far > 2.0]
+        found = len(rest), sum(far**2 for far in away if far <= 2.0), rest
+        if rest and (best is None or found[:2] < best[:2]):
+            best = found
+    if best is None or all(x.joint != before for x in best[2]):
         return None
-    common = float(np.mean([x.factor for x in largest]))
-    rest = [x for x in gains if x not in largest]
-    return [replace(x, factor=x.factor / common, error=x.error / common) for x in rest]
+    agree = [x for x in gains if x not in best[2]]
+    weights = [1.0 / (x.error or least) ** 2 for x in agree]
+    common = float(np.average([x.factor for x in agree], weights=weights))
+    return [replace(x, factor=x.factor / common, error=x.error / common) for x in best[2]]
 
 
 def widening(diagnostics: Diagnostics, own: int) -> tuple[Array, Array] | None:

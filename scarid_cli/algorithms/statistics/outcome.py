@@ -350,8 +350,7 @@ def _regauged(
     if not own or not plain.model:
         return wider, found
     first = reference(plain.rows, plain.found.fit.estimates[: plain.own])
-    as_before = [x for x in known(before) if x.joint not in {y.joint for y in own}]
-    every = [Gain(first, 1.0, 0.0), *own, *(replace(x, factor=1.0) for x in as_before)]
+    every = [Gain(first, 1.0, 0.0), *own, *known(found)]
     if (less := apart(every, first)) is None:
         return wider, found
     rest = [x for x in wider.additions if x.name != GAIN]
