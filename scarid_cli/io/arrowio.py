@@ -57,14 +57,18 @@ def _gathered(reader: ipc.RecordBatchStreamReader, source: ByteSource) -> Iterat
             held.append(batch)
             if sum(map(len, held)) < FEW and source.waits():
                 continue
-            together, held = concatenated(held), []
+            together, held = _together(held), []
             yield together
     except Exception:  # what came before the damage has been read
         if held:
-            yield concatenated(held)
+            yield _together(held)
         raise
     if held:
-        yield concatenated(held)
+        yield _together(held)
+
+
+def _together(batches: list[pa.RecordBatch]) -> pa.RecordBatch:
+    return concatenated([batch for batch in batches if batch.num_rows] or batches[:1])
 
 
 class Handed(ByteSource):

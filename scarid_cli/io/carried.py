@@ -64,7 +64,7 @@ class Carried:
         )
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=16, typed=True)
 def _column(value: float | str, rows: int, *, first: bool) -> pa.Array:
     if isinstance(value, str):
         return pa.array([value if first and k == 0 else "" for k in range(rows)], pa.string())

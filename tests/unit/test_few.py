@@ -1,14 +1,18 @@
-"""A few rows of CSV, against pyarrow."""
+"""A few rows at a time: of CSV, against pyarrow, and of an Arrow stream that waits in a pipe."""
 
 from __future__ import annotations
+
+import os
 
 import pyarrow as pa
 import pyarrow.csv as pacsv
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.csvio import _parsed
 from scarid_cli.io.few import Few
+from scarid_cli.io.reader import open_table
 from scarid_cli.io.table import doubles, integers
 
 SCHEMA = pa.schema([("t", pa.float64()), ("segment", pa.int64()), ("q1", pa.float64())])
@@ -62,3 +66,22 @@ def test_what_robots_log_is_written_here() -> None:
     row = [doubles([x]) for x in (1732800000.005, -0.25, 3e-5, 1e-12, 0.0, 120.0)]
     batch = pa.RecordBatch.from_arrays(row, names=list("abcdef"))
     assert Few(batch.schema).text(batch) == b"1732800000.005,-0.25,0.00003,1e-12,0,120\n"
+
+
+@settings(max_examples=50)
+@given(st.lists(st.integers(0, 3), min_size=1, max_size=6))
+def test_batches_that_wait_are_read_together(sizes: list[int]) -> None:
+    """Whether they have rows or not; from a pipe that is closed."""
+    batches = [
+        pa.RecordBatch.from_arrays([doubles([float(k)] * size)], names=["t"])
+        for k, size in enumerate(sizes)
+    ]
+    reader, writer = os.pipe()
+    with os.fdopen(writer, "wb") as pipe, pa.ipc.new_stream(pipe, batches[0].schema) as stream:
+        for batch in batches:
+            stream.write_batch(batch)
+    source = ByteSource(reader, "pipe")
+    found = list(open_table(source).batches)
+    source.close()
+    assert pa.Table.from_batches(found).equals(pa.Table.from_batches(batches))
+    assert len(found) <= 2  # the first alone, where nothing tells yet that this is a pipe
