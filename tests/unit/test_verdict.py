@@ -337,13 +337,11 @@ def test_a_motion_that_is_matched_is_not_to_be_matched() -> None:
 
 
 @pytest.mark.parametrize(
-    ("amounts", "tangent"),
+    ("sines", "sine"),
     [([0.1, 0.0], 0.1), ([0.0, -0.1], 0.1), ([np.nan, 0.1], 0.1), ([np.nan, np.nan], 0.0)],
 )
-def test_gravity_of_a_tilted_base_is_as_large_as_before(
-    amounts: list[float], tangent: float
-) -> None:
+def test_gravity_of_a_tilted_base_is_as_large_as_before(sines: list[float], sine: float) -> None:
     down = np.array([0.0, 0.0, -9.81])
-    gravity = tilted(down, np.array(amounts))
+    gravity = tilted(down, np.array(sines))
     np.testing.assert_allclose(np.linalg.norm(gravity), 9.81)
-    np.testing.assert_allclose(np.linalg.norm(gravity[:2]) / -gravity[2], tangent, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(gravity[:2]) / 9.81, sine, atol=1e-12)
