@@ -123,7 +123,12 @@ def blind(name: str, measured: Table, gain_error: float = 0.0) -> tuple[Table, f
 
     `gain_error` is the relative error of the torque constants that is stated to it.
     """
-    robot, choices = robot_named(name), Choices(treatment=Treatment(gain_errors=gain_error))
+    return blind_of(robot_named(name), measured, gain_error)
+
+
+def blind_of(robot: Robot, measured: Table, gain_error: float = 0.0) -> tuple[Table, float]:
+    """The same for this robot."""
+    choices = Choices(treatment=Treatment(gain_errors=gain_error))
     found = prepared([again(measured)], robot, choices)
     noise = found.smoothed.noise if found.smoothed else 0.0
     return estimated(found, robot, choices.settings), noise

@@ -1,12 +1,12 @@
 """A base that leans: whether one log tells it, and what is then estimated.
 
-`python benchmarks/tilts.py [--seeds 20] [--duration 20]`: logs of random motions of a UR10e whose
-base leans by an angle in a random direction, identified as if it stood upright. `named`: the
-verdict names another direction of gravity; `off`: the median distance between the stated direction
-and the true one [deg]; `good`, and `wrong`: called good, and a parameter further than four stated
-errors from the truth; `gains`: another cause is named, a gain of a joint, that is not there;
-`inside`: the intervals that contain the truth; `torque`: the median error of the torque on another
-motion of the upright robot [%].
+`python benchmarks/tilts.py [--seeds 20] [--first 100] [--duration 20]`: logs of random motions of a
+UR10e whose base leans by an angle in a random direction, identified as if it stood upright.
+`named`: the verdict names another direction of gravity; `off`: the median distance between the
+stated direction and the true one [deg]; `good`, and `wrong`: called good, and a parameter further
+than four stated errors from the truth; `gains`: the gain of a joint is called wrong, which is
+right; `inside`: the intervals that contain the truth; `torque`: the median error of the torque on
+another motion of the upright robot [%].
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 from conditions import Condition, log
-from gauntlet import Choices, again, estimated, prepared, relative_error
+from gauntlet import blind_of, relative_error
 
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
@@ -62,8 +62,7 @@ def case(degrees: float, seed: int, duration: float) -> Found:
     upright = load(str(UPRIGHT))
     real = leaning(degrees, seed)
     measured = log(real, Condition("leans", duration=duration), seed)
-    found = prepared([again(measured)], upright, Choices())
-    result = estimated(found, upright, Choices().settings)
+    result, _ = blind_of(upright, measured)
     (batch,) = result.batches
     estimates, errors, low, high = (
         batch.column(c).to_numpy(zero_copy_only=False)
@@ -96,7 +95,7 @@ def motion(robot: Robot, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def line(degrees: float, found: Sequence[Found]) -> str:
-    """A row of the table of docs/verdict.md."""
+    """A row of the table, most of which docs/estimators.md shows."""
     counts = [sum(getattr(x, name) for x in found) for name in ("named", "good", "wrong", "gains")]
     offs = [x.off for x in found if x.named]
     off = f"{np.median(offs):.2g}" if offs else ""

@@ -31,7 +31,10 @@ NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?(?![\w.])")
 
 
 def seeds(few: int, many: int) -> range:
-    """The seeds of a statistical test: few of them, or many with `make test-all`."""
+    """The seeds of a statistical test: few of them, or many with `make test-all`.
+
+    Its length serves for examples, rows and seconds as well.
+    """
     return range(many if ALL else few)
 
 

@@ -20,7 +20,7 @@ from scarid_cli.io.stop import STOP
 from scarid_cli.io.table import METADATA_KEY, UNIT_KEY, Metadata, Table, cast, concatenated
 from scarid_cli.io.weight import Blocks
 
-FEW = 64  # rows, above which batches are not joined
+FEW = 64  # rows of a batch that is joined with others, and how many are
 
 
 def read_stream(source: ByteSource) -> Table:
@@ -55,7 +55,7 @@ def _gathered(reader: ipc.RecordBatchStreamReader, source: ByteSource) -> Iterat
     try:
         for batch in reader:
             held.append(batch)
-            if sum(map(len, held)) < FEW and source.waits():
+            if len(batch) < FEW and len(held) < FEW and source.waits():
                 continue
             together, held = _together(held), []
             yield together
@@ -68,6 +68,7 @@ def _gathered(reader: ipc.RecordBatchStreamReader, source: ByteSource) -> Iterat
 
 
 def _together(batches: list[pa.RecordBatch]) -> pa.RecordBatch:
+    """Batches of one table as a single one, which has no rows if none has."""
     return concatenated([batch for batch in batches if batch.num_rows] or batches[:1])
 
 

@@ -1,7 +1,7 @@
 """A few rows of numbers as CSV, as they come beside a robot, without the set-up of pyarrow's CSV.
 
 Both directions give what pyarrow gives, or None for what is left to it. Below 4 kB, or 96 numbers,
-this is faster: for a single row 20 times.
+this is faster: a row of ten numbers is read 5 times as fast, and written twice.
 """
 
 from __future__ import annotations

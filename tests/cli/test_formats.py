@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from conftest import ROOT, Result
+from conftest import ROOT, Result, long
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -45,7 +45,14 @@ CHAINS = [
 
 
 # Run as processes too; these spend most of their time on imports
-IN_A_SHELL = [CHAINS[-3], CHAINS[-1]]
+IN_A_SHELL = [
+    pytest.param("scarid differentiate LOG", marks=long),
+    pytest.param(
+        "scarid differentiate LOG | scarid identify -q --all-rows --estimator ls", marks=long
+    ),
+    CHAINS[-3],
+    CHAINS[-1],
+]
 
 
 @pytest.fixture(scope="module")

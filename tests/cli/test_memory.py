@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from conftest import seeds
 from memory import SCARID, measured, peak, stages
 
 
@@ -12,13 +13,13 @@ from memory import SCARID, measured, peak, stages
 def test_memory_does_not_grow_with_the_log(name: str, tmp_path: Path) -> None:
     words = stages(tmp_path)[name]
     short, _ = peak(words, 50_000)
-    long, _ = peak(words, 400_000)
+    long, _ = peak(words, len(seeds(400_000, 1_000_000)))
     assert long < 1.1 * short
 
 
 def test_memory_of_stages_in_one_process_does_not_grow_with_the_log() -> None:
     chain = ["filter", "then", "differentiate", "then", "identify", "-q"]
-    assert peak(chain, 300_000)[0] < 1.1 * peak(chain, 50_000)[0]
+    assert peak(chain, len(seeds(300_000, 500_000)))[0] < 1.1 * peak(chain, 50_000)[0]
 
 
 def test_memory_of_the_simulator_does_not_grow_with_a_standstill() -> None:
@@ -32,4 +33,4 @@ def test_memory_of_the_simulator_does_not_grow_with_a_standstill() -> None:
         ]
         return measured(source, [*stage, "--with=stamp-jitter=1e-4", "--format", "arrow"])[0]
 
-    assert peak_of(400) < 1.1 * peak_of(20)
+    assert peak_of(len(seeds(400, 1000))) < 1.1 * peak_of(20)

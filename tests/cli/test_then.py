@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pyarrow as pa
 import pytest
-from conftest import ROOT, Result, refused
+from conftest import ROOT, Result, refused, seeds
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -133,7 +133,7 @@ def logs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 
 @given(stages=chains(), read=st.sampled_from(FORMATS), wanted=st.sampled_from(FORMATS))
-@settings(max_examples=12)
+@settings(max_examples=len(seeds(12, 25)))
 def test_a_chain_writes_the_bytes_of_a_pipe(
     stages: list[str], read: str, wanted: str, logs: dict[str, Path]
 ) -> None:

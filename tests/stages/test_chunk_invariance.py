@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pyarrow as pa
 import pytest
+from conftest import seeds
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.tables import SCARA, Kept, collected, motion, references, table
@@ -86,7 +87,7 @@ STAGES: dict[str, Stage] = {
 
 @pytest.mark.parametrize("name", STAGES)
 @given(sizes=SIZES)
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=len(seeds(4, 8)), deadline=None)
 def test_a_stage_gives_the_same_bits_however_its_rows_arrive(name: str, sizes: list[int]) -> None:
     assert collected(STAGES[name](table(source_of(name), sizes))).equals(at_once(name))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from conftest import seeds
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.simulated import LOG_LEVEL, Values, closed_loop, log, simulated
@@ -72,7 +73,7 @@ def test_every_imperfection_changes_the_log(name: str) -> None:
     sizes=st.lists(st.sampled_from([1, 2, 7, 64, 8192]), min_size=1, max_size=4),
     rate=st.sampled_from([100.0, 250.0, 1000.0]),
 )
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=len(seeds(8, 15)), deadline=None)
 def test_batches_change_no_bit(names: set[str], sizes: list[int], rate: float) -> None:
     values = chosen(names)
     found = collected(simulated(table(references(), sizes), values, rate))

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conditions import Condition, log, robot_named, truth_of
+from conftest import seeds
 from gauntlet import blind
 from hypothesis import given, settings
 from mechanics import CHANGES
@@ -172,7 +173,7 @@ def test_a_motor_oscillates_against_its_link() -> None:
 
 
 @given(parts=cuts(400))
-@settings(max_examples=15)
+@settings(max_examples=len(seeds(15, 100)))
 def test_predictions_do_not_depend_on_the_batches(parts: Sequence[slice]) -> None:
     additions = tuple(Addition(name, j, 1.0, 1e-3) for name in MISMATCHES for j in (0, 1))
     model = Identified(ARM, THETA, 0.0, additions=additions)

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import gains
 import numpy as np
 import pytest
 import tilts
 from conditions import CONDITIONS, UNSEEN, log
 from conftest import seeds
-from gauntlet import again
+from gauntlet import blind_of
 
 pinocchio = pytest.importorskip("pinocchio")
 
 from scarid_cli.algorithms.robots.reading import load  # noqa: E402
 from scarid_cli.algorithms.statistics.alternatives import Model, tilted  # noqa: E402
 from scarid_cli.arrays import Array  # noqa: E402
-from scarid_cli.stages.blind import Choices, estimated, prepared  # noqa: E402
 
 
 def weights(gravity: Array, q: Array) -> Array:
@@ -62,26 +62,27 @@ def test_the_estimates_are_those_of_the_upright_robot(degrees: float, seed: int)
     assert found.torque < 3.0
 
 
-@pytest.mark.parametrize("seed", [301, *(300 + k for k in seeds(0, 10))])
+@pytest.mark.parametrize("seed", [301 + k for k in seeds(1, 9)])
 def test_cables_are_no_reversed_axes(seed: int) -> None:
     """Of ten such logs two were called so, of ten with cables that are bent far four."""
     robot = load(str(tilts.UPRIGHT))
     cables = {condition.name: condition for condition in CONDITIONS}["cable pulls"]
-    found = prepared([again(log(robot, cables, seed))], robot, Choices())
-    result = estimated(found, robot, Choices().settings)
+    result, _ = blind_of(robot, log(robot, cables, seed))
     assert not any(reason.startswith("axes") for reason in result.meta.extra["reasons"])
 
 
-@pytest.mark.parametrize("seed", [301, *(300 + k for k in seeds(0, 10))])
-def test_the_joint_with_the_largest_torque_is_named_if_it_is_apart(seed: int) -> None:
+def test_the_joint_with_the_largest_torque_is_named_if_it_is_apart() -> None:
     """All others are relative to it: each of them seemed 5 % off, and the estimates were so."""
     robot = load(str(tilts.UPRIGHT))
     larger = {condition.name: condition for condition in UNSEEN}["gain of joint 2 1.05"]
-    found = prepared([again(log(robot, larger, seed))], robot, Choices())
-    result = estimated(found, robot, Choices().settings)
-    said = "; ".join(result.meta.extra["reasons"])
-    assert "that of joint 2 is 1.05 +- 0.00" in said
-    (batch,) = result.batches
-    off = np.array(batch["estimate"]) - robot.apriori
-    errors = batch["robust_error"].to_numpy(zero_copy_only=False)
-    assert np.nanmax(np.abs(off) / errors) < 4.0
+    named = []
+    for seed in seeds(1, 9):
+        result, _ = blind_of(robot, log(robot, larger, 301 + seed))
+        told = gains.TOLD.search("; ".join(result.meta.extra["reasons"]))
+        assert told
+        named.append(told[1] == "2" and abs(float(told[2]) - 1.05) <= 2.0 * float(told[3]))
+        (batch,) = result.batches
+        off = np.array(batch["estimate"]) - robot.apriori
+        errors = batch["robust_error"].to_numpy(zero_copy_only=False)
+        assert np.nanmax(np.abs(off) / errors) < 4.0
+    assert np.mean(named) > 0.8  # in some, gains are not fitted, but allowed for

@@ -18,6 +18,7 @@ from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.regression.normal_equations import inverse, roots
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.statistics.alternatives import diagonal
 from scarid_cli.arrays import Array, Marks, Numbers
 
 if TYPE_CHECKING:
@@ -189,12 +190,8 @@ def solved(W: Array, tau: Array, counts: Marks) -> Solution:
 
 def pulled(motion: Array) -> Array:
     """Columns (samples, joints, 2 joints) of a cable at each joint: its position, and the cube."""
-    q = motion[0]
-    joints, samples = q.shape
-    found = np.zeros((samples, joints, 2 * joints))
-    for j in range(joints):
-        found[:, j, 2 * j], found[:, j, 2 * j + 1] = q[j], q[j] ** 3
-    return found
+    q = motion[0].T
+    return np.concatenate((diagonal(q), diagonal(q**3)), axis=2)
 
 
 def fitted(robot: Robot, samples: Samples, *, cables: bool = False) -> Fit:

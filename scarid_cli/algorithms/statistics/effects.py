@@ -350,20 +350,23 @@ class Trial:
 
         The further columns that are `given` are in it.
         """
+
+        def tried(name: str, columns: list[int]) -> list[Effect]:
+            new = [c for c in products.independent([*given, *columns]) if c not in given]
+            if name in (SLOW, RIPPLE):
+                new = [c for c in new if products.spread[c] >= BLOCKS]
+            solved = products.solved([*given, *new]) if new else None
+            if solved is None:
+                return []
+            tested = [new.index(c) if c in new else None for c in columns]
+            return [self.effect(name, plain, same, solved, tested)]
+
         found = []
         for name, columns in places.items():
-            # A short log tells that a base is tilted better than what else this makes of joint 1.
-            choices = [columns, columns[:2]] if name == TILT else [columns]
-            tried = []
-            for chosen in choices:
-                new = [c for c in products.independent([*given, *chosen]) if c not in given]
-                if name in (SLOW, RIPPLE):
-                    new = [c for c in new if products.spread[c] >= BLOCKS]
-                solved = products.solved([*given, *new]) if new else None
-                if solved:
-                    tested = [new.index(c) if c in new else None for c in chosen]
-                    tried.append(self.effect(name, plain, same, solved, tested))
-            found += [max(tried, key=lambda x: x.clearness(CERTAIN))] if tried else []
+            effects = tried(name, columns)
+            if name == TILT:  # a short log tells it better than what else it makes of joint 1
+                effects += tried(name, columns[:2])
+            found += sorted(effects, key=lambda x: -x.clearness(CERTAIN))[:1]
         return found
 
     def signals(self, plain: Solved, same: list[tuple[Array, Solved]]) -> list[Effect]:

@@ -77,7 +77,8 @@ def apart(gains: Sequence[Gain], before: int) -> list[Gain] | None:
     """The gains of the joints that are apart from the most that agree, relative to these.
 
     None if joint `before` (from 0), beside which they were found, is among those that agree. Two
-    gains agree within twice their errors. Of groups that are as large, those agree that do best.
+    gains agree within twice their errors. Of two groups of the same size, the one that agrees
+    better counts.
     """
     least = min((x.error for x in gains if x.error > 0.0), default=1.0)
     best: tuple[int, float, list[Gain]] | None = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -84,7 +84,7 @@ class Subsample:
     @property
     def size(self) -> int:
         """How many numbers the arrays hold."""
-        return _numbers(self.parts, self._size)
+        return self._held(self.parts)
 
     def packed(self) -> Subsample:
         """The same in one part, of which `rows` makes no copy, and to which nothing is added."""
@@ -92,7 +92,11 @@ class Subsample:
 
     def _is_too_large(self, parts: list[Rows]) -> bool:
         """Whether these parts have more numbers than a subsample that covers the record may."""
-        return 0 < self.covers < _numbers(parts, self._size)
+        return 0 < self.covers < self._held(parts)
+
+    def _held(self, parts: Sequence[Rows]) -> int:
+        """How many numbers these parts hold, of which each sample has as many."""
+        return sum(part.samples for part in parts) * self._size(parts[0]) if parts else 0
 
     def _size(self, rows: Rows) -> int:
         """How many numbers the arrays hold for one sample."""
@@ -104,11 +108,6 @@ class Subsample:
         """The rows of the subsample, with `at` and `h` those of the thinned record."""
         kept = joined(self.parts)
         return replace(kept, at=kept.at // self.thin, h=kept.h * self.thin)
-
-
-def _numbers(parts: Sequence[Rows], size: Callable[[Rows], int]) -> int:
-    """How many numbers parts of one record hold, of which each sample has as many."""
-    return sum(part.samples for part in parts) * size(parts[0]) if parts else 0
 
 
 def _gather(parts: list[Rows], segment: int) -> None:
