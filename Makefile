@@ -38,6 +38,7 @@
 # make bench-batch LOGS=1000   a pipe, then, and a batch of a simulated fleet; PARTS="growth killed"
 # make man      the man pages, into build/man
 # make wheel    the source distribution and the wheel, audited, into build/dist
+# make minute   from the wheel to README's first verdict in an empty environment, with times
 # make docs     generate docs/tables.md from schemas/
 # make figures  the figures of the documentation (FIGURES="pipe stated": these only)
 # make site     the documentation as a site that needs no network: build/site/index.html
@@ -52,7 +53,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test test-all docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-tilts bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel samples clean
+.PHONY: all paper paper-montecarlo repetition test test-all docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-tilts bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel minute samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -266,6 +267,9 @@ wheel: $(VENV)/packaging  # made of the source distribution, so that one lacks n
 	$(BIN)/python -m build --outdir build/dist .
 	@for wheel in build/dist/*abi3*.whl; do \
 	  if [ -e "$$wheel" ]; then $(BIN)/abi3audit --strict --summary "$$wheel"; fi; done
+
+minute: wheel
+	@sh packaging/first_minute.sh $(PYTHON) build/minute
 
 clean:
 	rm -rf build $(VENV) .venv-batch $(SITE) *.egg-info .hypothesis .pytest_cache .mypy_cache .ruff_cache

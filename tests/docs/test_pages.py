@@ -77,6 +77,13 @@ def test_links_lead_somewhere(name: str) -> None:
     assert missing == []
 
 
+@pytest.mark.parametrize("name", PAGES)
+def test_no_line_is_followed_by_its_own_other_version(name: str) -> None:
+    lines = [line for line in prose(ROOT / name).splitlines() if not line.lstrip().startswith("|")]
+    twice = [line for line, after in zip(lines, lines[1:], strict=False) if line[:30] == after[:30]]
+    assert [line for line in twice if len(line) > 40] == []
+
+
 def anchors(page: Path) -> set[str]:
     """The names that GitHub gives to the headings of a page."""
     headings = re.findall(r"^#+ (.*)$", prose(page), flags=re.MULTILINE)
