@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import subprocess
 from pathlib import Path
@@ -80,7 +81,7 @@ def test_links_lead_somewhere(name: str) -> None:
 @pytest.mark.parametrize("name", PAGES)
 def test_no_line_is_followed_by_its_own_other_version(name: str) -> None:
     lines = [line for line in prose(ROOT / name).splitlines() if not line.lstrip().startswith("|")]
-    twice = [line for line, after in zip(lines, lines[1:], strict=False) if line[:30] == after[:30]]
+    twice = [line for line, after in itertools.pairwise(lines) if line[:30] == after[:30]]
     assert [line for line in twice if len(line) > 40] == []
 
 
