@@ -13,6 +13,16 @@ cpdef regressor(
 )
 
 @cython.locals(
+    j=cython.Py_ssize_t, k=cython.Py_ssize_t, fx=double, fy=double, fz=double, zx=double,
+    zy=double, zz=double,
+)
+cpdef torques(
+    const double[:, ::1] axes, const double[::1] gravity, const double[:, ::1] q,
+    const double[:, ::1] dq, const double[:, ::1] ddq, const double[:, ::1] bodies,
+    double[:, ::1] tau, double[:, ::1] links,
+)
+
+@cython.locals(
     i=cython.Py_ssize_t, j=cython.Py_ssize_t, k=cython.Py_ssize_t,
 )
 cpdef gradient(
@@ -26,8 +36,11 @@ cpdef gradient(
 )
 cdef int check(
     const double[:, ::1] axes, const double[::1] gravity, const double[:, ::1] q,
-    const double[:, ::1] dq, const double[:, ::1] ddq, const double[:, ::1] W,
-    const double[:, ::1] links,
+    const double[:, ::1] dq, const double[:, ::1] ddq, const double[:, ::1] links,
+) except -1
+
+cdef int sized(
+    const double[:, ::1] rows, Py_ssize_t first, Py_ssize_t second,
 ) except -1
 
 @cython.locals(
@@ -36,6 +49,10 @@ cdef int check(
 cdef void move(
     const double[:, ::1] axes, const double[::1] gravity, const double[:, ::1] q,
     const double[:, ::1] dq, const double[:, ::1] ddq, double[:, ::1] links, Py_ssize_t k,
+) noexcept nogil
+
+cdef void rest(
+    const double[::1] gravity, double[:, ::1] links,
 ) noexcept nogil
 
 @cython.locals(
@@ -72,6 +89,16 @@ cdef void carry(
 )
 cdef void entry(
     const double[:, ::1] links, double[:, ::1] W, Py_ssize_t row, Py_ssize_t i, Py_ssize_t j,
+) noexcept nogil
+
+@cython.locals(
+    ax=double, ay=double, az=double, cx=double, cy=double, cz=double, ex=double, ey=double,
+    ez=double, fx=double, fy=double, fz=double, gx=double, gy=double, gz=double, hx=double,
+    hy=double, hz=double, m=double, nx=double, ny=double, nz=double, px=double, py=double,
+    pz=double, wx=double, wy=double, wz=double,
+)
+cdef void wrench(
+    double[:, ::1] links, const double[:, ::1] bodies, Py_ssize_t j,
 ) noexcept nogil
 
 @cython.locals(

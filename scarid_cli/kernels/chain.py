@@ -22,12 +22,34 @@ def regressor(axes, gravity, q, dq, ddq, W, links):
     origin of the axis), mx, my, mz and m of link j. axes (joints, 16) and gravity (3): see
     mechanism.Mechanism. q, dq, ddq (joints, samples). Each sample is computed by itself.
     """
-    check(axes, gravity, q, dq, ddq, W, links)
+    check(axes, gravity, q, dq, ddq, links)
+    sized(W, q.shape[1] * q.shape[0], 10 * q.shape[0])
     for k in range(q.shape[1]):
         move(axes, gravity, q, dq, ddq, links, k)
         for j in range(1, q.shape[0] + 1):
             for i in range(q.shape[0]):
                 entry(links, W, k * q.shape[0] + i, i, j)
+
+
+def torques(axes, gravity, q, dq, ddq, bodies, tau, links):
+    """Write the torques of the axes (joints, samples) to tau, by the forces from the tip inwards.
+
+    bodies (joints, 10) are the parameters in the order of the regressor's columns. Row j of `links`
+    keeps, behind the motion of the link, [21:27] the force and the moment that axis j carries.
+    """
+    check(axes, gravity, q, dq, ddq, links)
+    sized(bodies, q.shape[0], 10)
+    sized(tau, q.shape[0], q.shape[1])
+    for k in range(q.shape[1]):
+        rest(gravity, links)
+        for j in range(1, links.shape[0]):
+            place(axes, links, float(q[j - 1, k]), j)
+            accelerate(axes, links, float(dq[j - 1, k]), float(ddq[j - 1, k]), j)
+        for j in range(q.shape[0], 0, -1):
+            wrench(links, bodies, j)
+            zx, zy, zz = vector(axes, j - 1, 12)
+            fx, fy, fz = vector(links, j, 21 if float(axes[j - 1, 15]) != 0.0 else 24)
+            tau[j - 1, k] = zx * fx + zy * fy + zz * fz
 
 
 def gradient(axes, gravity, q, dq, ddq, G, gq, gdq, gddq, links, back):
@@ -36,8 +58,9 @@ def gradient(axes, gravity, q, dq, ddq, G, gq, gdq, gddq, links, back):
     G has the shape of W; gq, gdq and gddq (joints, samples) that of q. `back` has the derivatives
     with respect to what stands at the same place of `links`; at [0:3] to a rotation of the link.
     """
-    check(axes, gravity, q, dq, ddq, G, links)
-    check(axes, gravity, gq, gdq, gddq, G, back)
+    check(axes, gravity, q, dq, ddq, links)
+    check(axes, gravity, gq, gdq, gddq, back)
+    sized(G, q.shape[1] * q.shape[0], 10 * q.shape[0])
     for k in range(q.shape[1]):
         move(axes, gravity, q, dq, ddq, links, k)
         back[:, :] = 0.0
@@ -48,7 +71,7 @@ def gradient(axes, gravity, q, dq, ddq, G, gq, gdq, gddq, links, back):
             axis_back(axes, links, back, float(dq[j - 1, k]), gq, gdq, gddq, k, j)
 
 
-def check(axes, gravity, q, dq, ddq, W, links):
+def check(axes, gravity, q, dq, ddq, links):
     """Refuse arrays whose sizes do not belong together."""
     joints = axes.shape[0]
     samples = q.shape[1]
@@ -56,19 +79,23 @@ def check(axes, gravity, q, dq, ddq, W, links):
         raise ValueError("chain: sizes of axes or gravity are wrong")
     if q.shape[0] != joints or dq.shape[0] != joints or ddq.shape[0] != joints:
         raise ValueError("chain: numbers of joints differ")
-    if dq.shape[1] != samples or ddq.shape[1] != samples or W.shape[0] != joints * samples:
+    if dq.shape[1] != samples or ddq.shape[1] != samples:
         raise ValueError("chain: numbers of samples differ")
-    if W.shape[1] != 10 * joints or links.shape[0] != joints + 1:
+    if links.shape[0] != joints + 1:
         raise ValueError("chain: numbers of links differ")
     if links.shape[1] != 21 + 6 * joints:
         raise ValueError("chain: sizes of the work space are wrong")
 
 
+def sized(rows, first, second):
+    """Refuse rows of another size."""
+    if rows.shape[0] != first or rows.shape[1] != second:
+        raise ValueError("chain: sizes of the rows are wrong")
+
+
 def move(axes, gravity, q, dq, ddq, links, k):
     """The motion of all links at sample k."""
-    store(links, 0, 12, 0.0, 0.0, 0.0)
-    store(links, 0, 15, 0.0, 0.0, 0.0)
-    store(links, 0, 18, -float(gravity[0]), -float(gravity[1]), -float(gravity[2]))
+    rest(gravity, links)
     for j in range(1, links.shape[0]):
         place(axes, links, float(q[j - 1, k]), j)
         accelerate(axes, links, float(dq[j - 1, k]), float(ddq[j - 1, k]), j)
@@ -78,6 +105,13 @@ def move(axes, gravity, q, dq, ddq, links, k):
         p = float(axes[j - 1, 15])
         store(links, j, 15 + 6 * j, (1.0 - p) * zx, (1.0 - p) * zy, (1.0 - p) * zz)
         store(links, j, 18 + 6 * j, p * zx, p * zy, p * zz)
+
+
+def rest(gravity, links):
+    """The motion of the base."""
+    store(links, 0, 12, 0.0, 0.0, 0.0)
+    store(links, 0, 15, 0.0, 0.0, 0.0)
+    store(links, 0, 18, -float(gravity[0]), -float(gravity[1]), -float(gravity[2]))
 
 
 def place(axes, links, q, j):
@@ -158,6 +192,35 @@ def entry(links, W, row, i, j):
     bx, by, bz = cross(ax, ay, az, ux, uy, uz)
     store(W, row, 10 * j - 4, bx + cx + dx, by + cy + dy, bz + cz + dz)
     W[row, 10 * j - 1] = vx * ax + vy * ay + vz * az
+
+
+def wrench(links, bodies, j):
+    """The force on the link in row j and what it carries, and their moment about its origin."""
+    wx, wy, wz = vector(links, j, 12)
+    ex, ey, ez = vector(links, j, 15)
+    ax, ay, az = vector(links, j, 18)
+    cx, cy, cz = vector(bodies, j - 1, 6)
+    m = float(bodies[j - 1, 9])
+    hx, hy, hz = cross(wx, wy, wz, cx, cy, cz)
+    gx, gy, gz = cross(wx, wy, wz, hx, hy, hz)
+    hx, hy, hz = cross(ex, ey, ez, cx, cy, cz)
+    fx, fy, fz = m * ax + gx + hx, m * ay + gy + hy, m * az + gz + hz
+    hx, hy, hz = moment(bodies, j - 1, 0, wx, wy, wz)
+    gx, gy, gz = cross(wx, wy, wz, hx, hy, hz)
+    hx, hy, hz = moment(bodies, j - 1, 0, ex, ey, ez)
+    nx, ny, nz = cross(cx, cy, cz, ax, ay, az)
+    nx, ny, nz = nx + gx + hx, ny + gy + hy, nz + gz + hz
+    if j + 1 < links.shape[0]:
+        ax, ay, az = vector(links, j + 1, 21)
+        ax, ay, az = outwards(links, j + 1, ax, ay, az)
+        px, py, pz = vector(links, j + 1, 9)
+        gx, gy, gz = cross(px, py, pz, ax, ay, az)
+        hx, hy, hz = vector(links, j + 1, 24)
+        hx, hy, hz = outwards(links, j + 1, hx, hy, hz)
+        fx, fy, fz = fx + ax, fy + ay, fz + az
+        nx, ny, nz = nx + gx + hx, ny + gy + hy, nz + gz + hz
+    store(links, j, 21, fx, fy, fz)
+    store(links, j, 24, nx, ny, nz)
 
 
 def entry_back(links, back, G, row, i, j):

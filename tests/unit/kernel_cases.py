@@ -183,6 +183,11 @@ def chain(rng: np.random.Generator) -> Arguments:
     return [axes, rng.standard_normal(3), *motion, W, np.zeros((joints + 1, 21 + 6 * joints))]
 
 
+def chain_torques(rng: np.random.Generator) -> Arguments:
+    *motion, W, links = chain(rng)
+    return [*motion, rng.standard_normal((4, 10)), np.empty((4, 5)), links]
+
+
 def chain_gradient(rng: np.random.Generator) -> Arguments:
     *motion, W, links = chain(rng)
     slopes = np.empty((3, 4, 5))
@@ -252,6 +257,7 @@ CASES: dict[str, tuple[str, str, Callable[[np.random.Generator], Arguments]]] = 
     ),
     "moments": ("moments", "accumulate", moments),
     "chain": ("chain", "regressor", chain),
+    "chain, torques": ("chain", "torques", chain_torques),
     "chain, gradient": ("chain", "gradient", chain_gradient),
     "rigid": ("rigid", "dynamics", rigid),
     "friction, release": ("friction", "release", release),

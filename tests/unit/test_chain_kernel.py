@@ -126,6 +126,16 @@ def test_a_sample_does_not_depend_on_the_batch() -> None:
     np.testing.assert_array_equal(whole, np.concatenate(parts))
 
 
+def test_torques_by_forces_are_those_of_the_regressor() -> None:
+    rng = np.random.default_rng(6)
+    chain = oblique(rng)
+    motion = rng.uniform(-3.0, 3.0, (3, JOINTS, 50))
+    W = newton_euler.regressor(chain.axes, chain.gravity, *motion)
+    expected = (W @ chain.links.ravel()).T
+    found = newton_euler.torques(chain.axes, chain.gravity, *motion, chain.links)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+
+
 @pytest.mark.parametrize("signal", [0, 1, 2], ids=["q", "dq", "ddq"])
 def test_the_reverse_pass_gives_the_slopes(signal: int) -> None:
     """Against central differences of the regressor, for axes of any direction."""

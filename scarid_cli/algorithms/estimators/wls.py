@@ -15,6 +15,7 @@ from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimatio
 from scarid_cli.algorithms.regression.information import (
     Information,
     absorb,
+    condensed,
     empty,
     inverse_deviations,
     merged,
@@ -48,6 +49,18 @@ class Estimator(BaseEstimator):
             for j, part in enumerate(parts)
         ]
         return tuple(part for part, _ in found), np.empty((0, rows.W.shape[2]))
+
+    def of_rows(
+        self,
+        rows: Rows,
+        initial: Array | None = None,  # noqa: ARG002
+    ) -> Estimation:
+        return self.fit(
+            tuple(
+                condensed(rows.W[:, j], rows.y[:, j], rows.scales[:, j])
+                for j in range(rows.y.shape[1])
+            )
+        )
 
     def fit(self, state: JointsInformation) -> Estimation:
         deviations = np.array([residual_deviation(part) for part in state])

@@ -15,6 +15,7 @@ RESIDUAL, UNIT, SAMPLE = "residual", "unit", "sample"
 ROUNDING = 1e-15  # the relative error of the largest eigenvalue of a matrix
 RUNNING = 4  # numbers of the running residual of a joint, see the kernel
 EXACT = 1e-6  # of the largest residual, below which that of another joint is rounding
+PART = 4096  # rows that are reflected at a time: those of 100 columns take 3 MB
 NOTHING = 1e-150  # a standard deviation whose square is not a number any more
 
 
@@ -148,6 +149,27 @@ def absorb(
         apart,
     )
     return Information(weighted, *map(float, sums)), estimates
+
+
+def condensed(W: Array, y: Array, scales: Array) -> Information:
+    """The information of rows (samples, parameters) that are there as a whole, to rounding.
+
+    By Householder's reflections of many rows at a time (LAPACK), and without the columns that are
+    zero, as in the rows of the last joints of an arm: some ten times as fast as row by row.
+    """
+    there = np.flatnonzero(W.any(axis=0))
+    used = [*there.tolist(), W.shape[1]]
+    triangle = np.zeros((0, len(used)))
+    for start in range(0, len(y), PART):
+        part = slice(start, start + PART)
+        rows = np.column_stack((W[part, there], y[part])) * scales[part, None]
+        triangle = np.linalg.qr(np.concatenate((triangle, rows)), mode="r")
+    wide = np.zeros((len(triangle), 1, W.shape[1] + 1))
+    wide[:, 0, used] = triangle
+    found, _ = absorb(
+        empty(W.shape[1]), np.ascontiguousarray(wide[:, :, :-1]), wide[:, :, -1].copy()
+    )
+    return replace(found, weight=float(np.count_nonzero(scales)), count=float(len(y)))
 
 
 def merged(parts: Sequence[Information], scales: Sequence[float]) -> Information:

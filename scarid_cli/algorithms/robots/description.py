@@ -164,14 +164,7 @@ class Robot:
         parameters = tuple(self.parameters[i] for i in kept)
         places = [p.term.place for p in parameters if isinstance(p.term, StandardTerm)]
         if self.body and len(places) == len(parameters):
-            torques = np.empty(motion.shape[:0:-1])
-            for start in range(0, len(torques), BLOCK):
-                part = slice(start, start + BLOCK)
-                columns = self.body.columns(*motion[:, :, part])
-                links = np.zeros(columns.shape[2])
-                links[places] = theta
-                torques[part] = columns @ links
-            return torques
+            return np.ascontiguousarray(self.body.torques(motion, places, theta).T)
         return replace(self, parameters=parameters).regressor(*motion) @ theta
 
     def torques(self, W: Array, theta: Array) -> Array:

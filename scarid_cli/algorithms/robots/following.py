@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -32,7 +33,7 @@ class Following:
         """All joints are axes."""
         return cls(np.arange(axes), np.ones(axes), np.zeros(axes), np.arange(axes))
 
-    @property
+    @cached_property
     def followers(self) -> list[int]:
         """The joints that are no axes."""
         return [k for k in range(len(self.axis)) if k not in self.own]

@@ -22,6 +22,15 @@ def regressor(axes: Array, gravity: Array, q: Array, dq: Array, ddq: Array) -> A
     return W.reshape(samples, joints, LINK * joints)
 
 
+def torques(axes: Array, gravity: Array, q: Array, dq: Array, ddq: Array, bodies: Array) -> Array:
+    """The regressor times standard parameters (10 joints): torques (joints, samples)."""
+    joints, samples = q.shape
+    tau = np.empty((joints, samples))
+    motion = _contiguous(axes, gravity, q, dq, ddq, bodies.reshape(joints, LINK))
+    chain.torques(*motion, tau, _links(joints))
+    return tau
+
+
 def gradient(
     axes: Array, gravity: Array, q: Array, dq: Array, ddq: Array, G: Array
 ) -> tuple[Array, Array, Array]:

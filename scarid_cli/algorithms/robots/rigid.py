@@ -288,3 +288,15 @@ class Body:
         motion = follows.positions(q), follows.rates(dq), follows.rates(ddq)
         W = newton_euler.regressor(self.axes, np.array(self.gravity), *motion)
         return follows.torques(W.swapaxes(0, 1)).swapaxes(0, 1)
+
+    def torques(self, motion: Array, places: Sequence[int], values: Array) -> Array:
+        """The columns in these places times values: torques (axes, samples) [N m or N].
+
+        motion (3, axes, samples): q, dq and ddq, in rad or m, and per s and s2.
+        """
+        follows, (q, dq, ddq) = self.following, motion
+        moved = follows.positions(q), follows.rates(dq), follows.rates(ddq)
+        links = np.zeros(newton_euler.LINK * len(self.axes))
+        links[list(places)] = values
+        tau = newton_euler.torques(self.axes, np.array(self.gravity), *moved, links)
+        return follows.torques(tau)
