@@ -184,7 +184,7 @@ def chain(rng: np.random.Generator) -> Arguments:
 
 
 def chain_torques(rng: np.random.Generator) -> Arguments:
-    *motion, W, links = chain(rng)
+    *motion, _W, links = chain(rng)
     return [*motion, rng.standard_normal((4, 10)), np.empty((4, 5)), links]
 
 

@@ -35,7 +35,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     SPRING,
     STRIBECK,
 )
-from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
+from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
 from scarid_cli.algorithms.statistics.explanations import Explanation
 from scarid_cli.algorithms.statistics.outcome import Problem
 from scarid_cli.algorithms.statistics.sentences import additions_of
@@ -93,7 +93,9 @@ def log(beyond: Beyond, seed: int = 0) -> Rows:
 
 
 def diagnosed(rows: Rows) -> Diagnostics:
-    return diagnose(rows, estimated(wls.Estimator(), rows), len(ARM.names), model=MODEL)
+    return Diagnosis(
+        rows, estimated(wls.Estimator(), rows), len(ARM.names), model=MODEL
+    ).diagnostics
 
 
 @pytest.mark.parametrize(
@@ -144,7 +146,9 @@ def explained(rows: Rows, without: Diagnostics) -> tuple[Array, Diagnostics]:
     found = estimated(wls.Estimator(), wide)
     curves = {x.joint for x in additions if x.name in DECAYED}
     own = len(ARM.names)
-    return found.fit.estimates[:own], diagnose(wide, found, own, model=MODEL, curves=curves)
+    return found.fit.estimates[:own], Diagnosis(
+        wide, found, own, model=MODEL, curves=curves
+    ).diagnostics
 
 
 @pytest.mark.parametrize("beyond", [of_the_load, pulled, of_the_speed])
@@ -180,7 +184,9 @@ def test_other_joints_may_have_what_one_has_as_far_as_the_log_can_tell() -> None
         springs = [Addition(SPRING, joint, 1.0) for joint in joints]
         wide = Shapes(springs, MODEL, ARM.apriori).beside(rows)
         found = estimated(wls.Estimator(), wide)
-        return found.fit.estimates[moment], diagnose(wide, found, own, model=MODEL, shared=shared)
+        return found.fit.estimates[moment], Diagnosis(
+            wide, found, own, model=MODEL, shared=shared
+        ).diagnostics
 
     def bias(found: Diagnostics) -> float:
         (spring,) = [effect for effect in found.effects if effect.name == SPRING]

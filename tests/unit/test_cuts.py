@@ -14,7 +14,7 @@ from unit.test_effects import axis, diagnosed
 from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.statistics.cuts import Cut
-from scarid_cli.algorithms.statistics.diagnostics import diagnose
+from scarid_cli.algorithms.statistics.diagnostics import Diagnosis
 from scarid_cli.arrays import Array
 
 PAYLOAD = 2.0  # kg
@@ -94,5 +94,5 @@ def test_halves_that_do_not_determine_the_parameters_are_not_compared() -> None:
     W = rows.W.copy()
     W[:2000, :, 0] = 0.0
     rows = replace(rows, W=W, y=W @ THETA)
-    found = diagnose(rows, estimated(ls.Estimator(), rows), P).cuts
+    found = Diagnosis(rows, estimated(ls.Estimator(), rows), P).diagnostics.cuts
     assert all(time > 0.5 * 4000 * rows.h for time, _ in found)

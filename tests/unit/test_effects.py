@@ -35,7 +35,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     torque_columns,
 )
 from scarid_cli.algorithms.statistics.curvature import Form, form
-from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
+from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
 from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
 from scarid_cli.algorithms.statistics.parallel import SIGNALS, differences
 from scarid_cli.arrays import Array
@@ -86,7 +86,7 @@ def forward(rows: Rows) -> Rows:
 
 def diagnosed(rows: Rows) -> Diagnostics:
     found = estimated(ls.Estimator(), rows)
-    return diagnose(rows, found, 4, model=Model(AXIS, [0, 1, 2, 3]))
+    return Diagnosis(rows, found, 4, model=Model(AXIS, [0, 1, 2, 3])).diagnostics
 
 
 def effect(rows: Rows, name: str) -> Effect:

@@ -16,6 +16,7 @@ from unit.support import cuts
 
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.estimators import irls, ls, ml, rls, tls, wls
+from scarid_cli.algorithms.regression import information
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import plain
@@ -53,6 +54,31 @@ def test_chunks_do_not_change_a_bit(estimator: Any, chunks: list[slice], *, trac
         traces.append(part)
     assert bits(estimator.fit(state).fit) == bits(estimator.fit(whole).fit)
     np.testing.assert_array_equal(np.concatenate(traces), expected)
+
+
+@given(
+    shape=st.tuples(st.integers(1, 60), st.integers(1, 8)),
+    zeros=st.integers(0, 255),
+    seed=st.integers(0, 1000),
+    size=st.sampled_from([1e-8, 1.0, 1e8]),
+)
+@settings(max_examples=60, deadline=None)
+def test_rows_condensed_at_once_have_the_information_of_row_by_row(
+    shape: tuple[int, int], zeros: int, seed: int, size: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    W = size * rng.standard_normal(shape)
+    W[:, [bool(zeros >> k & 1) for k in range(shape[1])]] = 0.0
+    y, scales = rng.standard_normal(shape[0]), rng.integers(0, 3, shape[0]).astype(float)
+    found = information.condensed(W, y, scales)
+    start = information.empty(shape[1])
+    expected, _ = information.absorb(start, W[:, None], y[:, None], scales[:, None])
+    assert (found.weight, found.count) == (expected.weight, expected.count)
+    products = [x.triangle.T @ x.triangle for x in (found, expected)]
+    units = np.sqrt(np.diag(products[1])) + 1e-300
+    np.testing.assert_allclose(*(x / units / units[:, None] for x in products), atol=1e-12)
+    squares = np.sum((scales * y) ** 2)
+    assert found.residual == pytest.approx(expected.residual, abs=1e-12 * squares + 1e-300)
 
 
 @every_estimator

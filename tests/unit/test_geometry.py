@@ -15,7 +15,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.planar import MX2
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.alternatives import GEOMETRY, Model
-from scarid_cli.algorithms.statistics.diagnostics import diagnose
+from scarid_cli.algorithms.statistics.diagnostics import Diagnosis
 from scarid_cli.algorithms.statistics.geometry import distance_columns
 from scarid_cli.algorithms.statistics.sentences import notes_of
 from scarid_cli.arrays import Array
@@ -52,7 +52,7 @@ def test_a_longer_link_is_named_with_its_size() -> None:
     tau += 0.02 * np.random.default_rng(0).standard_normal(tau.shape)
     rows = rows_of(ARM, np.stack((*true, tau)), np.arange(tau.shape[1]), H)
     fit = estimated(ls.Estimator(), rows)
-    found = diagnose(rows, fit, len(ARM.parameters), model=MODEL)
+    found = Diagnosis(rows, fit, len(ARM.parameters), model=MODEL).diagnostics
     effect = next(effect for effect in found.effects if effect.name == GEOMETRY)
     assert effect.amounts[1] == pytest.approx(0.05, abs=3.0 * effect.noise[1])
     assert effect.significant()

@@ -15,7 +15,7 @@ from scarid_cli.algorithms.estimators import irls, ml, rls, tls, wls
 from scarid_cli.algorithms.regression.rows import faded, plain
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
 from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.diagnostics import diagnose
+from scarid_cli.algorithms.statistics.diagnostics import Diagnosis
 from scarid_cli.algorithms.statistics.jackknife import (
     inflation,
     interval_quantiles,
@@ -86,7 +86,7 @@ def test_an_estimator_without_scores_is_examined_all_the_same() -> None:
     """Its residual is there, and its errors are not taken for those of white noise."""
     rows = regression(4000)
     found = estimated(tls.Estimator(), rows)
-    judged = diagnose(rows, found, P)
+    judged = Diagnosis(rows, found, P).diagnostics
     assert judged.covariance is None
     left = (rows.y - rows.W @ found.fit.estimates)[:, 0]
     about = np.sum((rows.y - rows.y.mean()) ** 2)
@@ -192,8 +192,8 @@ def test_errors_of_a_long_record_are_those_of_its_rows() -> None:
     """By blocks, and by the rows themselves: blocks end elsewhere, so to a tenth."""
     rows = regression(40_000)
     found = least_squares(rows)
-    by_rows = diagnose(rows, found, P)
-    by_blocks = diagnose(rows, found, P, Blocks.every(H).add(rows).whole())
+    by_rows = Diagnosis(rows, found, P).diagnostics
+    by_blocks = Diagnosis(rows, found, P, Blocks.every(H).add(rows).whole()).diagnostics
     np.testing.assert_allclose(by_blocks.errors, by_rows.errors, rtol=0.3)
     assert by_blocks.errors.mean() == pytest.approx(by_rows.errors.mean(), rel=0.1)
 

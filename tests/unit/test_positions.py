@@ -15,7 +15,7 @@ from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.regression.rows import rows_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.alternatives import UNEVEN, Model
-from scarid_cli.algorithms.statistics.diagnostics import Diagnostics, diagnose
+from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
 from scarid_cli.algorithms.statistics.effects import Effect
 from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, LATE, ZEROS
 from scarid_cli.algorithms.statistics.positions import (
@@ -87,7 +87,7 @@ def diagnosed(logged: Array, true: Array) -> tuple[Diagnostics, Array]:
     noise = 0.02 * np.random.default_rng(0).standard_normal(tau.shape)
     rows = rows_of(ARM, np.stack((*logged, tau + noise)), np.arange(tau.shape[1]), H)
     fit = estimated(ls.Estimator(), rows)
-    found = diagnose(rows, fit, len(ARM.parameters), model=MODEL)
+    found = Diagnosis(rows, fit, len(ARM.parameters), model=MODEL).diagnostics
     return found, np.abs(fit.fit.estimates - ARM.apriori)
 
 
@@ -102,7 +102,9 @@ def test_errors_of_encoders_that_other_parameters_express_are_not_tested(tmp_pat
     noise = 0.02 * np.random.default_rng(0).standard_normal(tau.shape)
     rows = rows_of(arm, np.stack((*true, tau + noise)), np.arange(tau.shape[1]), H)
     model = Model(arm, list(range(len(arm.names))))
-    found = diagnose(rows, estimated(ls.Estimator(), rows), len(arm.names), model=model)
+    found = Diagnosis(
+        rows, estimated(ls.Estimator(), rows), len(arm.names), model=model
+    ).diagnostics
     assert (named(found, ZEROS).tests, named(found, ENCODERS).tests) == (1, 5)
 
 
@@ -177,7 +179,9 @@ def test_friction_that_varies_over_a_turn_is_found_with_its_size() -> None:
     tau += 0.02 * np.random.default_rng(0).standard_normal(tau.shape)
     tau[1] += 0.15 * np.cos(true[0, 1]) * np.sign(true[1, 1])
     rows = rows_of(ARM, np.stack((*true, tau)), np.arange(tau.shape[1]), H)
-    found = diagnose(rows, estimated(ls.Estimator(), rows), len(ARM.parameters), model=MODEL)
+    found = Diagnosis(
+        rows, estimated(ls.Estimator(), rows), len(ARM.parameters), model=MODEL
+    ).diagnostics
     effect = named(found, UNEVEN)
     sine, cosine = effect.amounts[1], effect.amounts[3]
     assert cosine == pytest.approx(0.15, abs=3.0 * effect.noise[3])

@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 from unit.slow_motions import H, regression
 
-from scarid_cli.algorithms.regression.rows import Rows, joined, plain, rows_of, runs
+from scarid_cli.algorithms.regression.rows import (
+    SPREAD,
+    Rows,
+    joined,
+    plain,
+    rows_of,
+    runs,
+    spread,
+)
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.subsample import Subsample
@@ -32,6 +40,22 @@ def test_joined_parts_are_the_whole() -> None:
     np.testing.assert_array_equal(again.W, rows.W)
     np.testing.assert_array_equal(again.at, rows.at)
     assert again.h == rows.h
+
+
+def test_a_short_record_is_represented_by_itself() -> None:
+    rows = regression(100)
+    assert spread(rows, rows.W.size) is rows
+
+
+@pytest.mark.parametrize("numbers", [200, 1000, 4000])
+def test_a_long_record_is_represented_by_parts_from_all_of_it(numbers: int) -> None:
+    rows = regression(10_000)
+    few = spread(rows, numbers)
+    assert 0.4 * numbers < few.W.size <= numbers + rows.W[:SPREAD].size  # parts differ by a row
+    assert len(list(runs(few.at))) == SPREAD
+    longest = max(np.diff(few.at))
+    assert longest < 1.5 * rows.samples / SPREAD
+    np.testing.assert_array_equal(few.W, rows.W[few.at])
 
 
 SIZES = [(1000,), (7, 300), (8192,)]

@@ -133,7 +133,7 @@ def test_four_rows_are_kept_for_each_period_of_the_bandwidth() -> None:
 def test_white_noise_leaves_the_estimates_of_wls() -> None:
     rng = np.random.default_rng(0)
     rows = rows_with(smooth(rng, 2000, 2), rng)
-    found, plain = estimated(gls.Estimator(), rows), estimated(wls.Estimator(), rows)
+    found, plain = estimated(gls.Estimator(), rows), wls.Estimator().of_rows(rows)
     assert found.extra == {"whitened": False}
     assert found.fit.estimates.tolist() == plain.fit.estimates.tolist()
     assert found.scores is not None

@@ -163,7 +163,7 @@ def condensed(W: Array, y: Array, scales: Array) -> Information:
     for start in range(0, len(y), PART):
         part = slice(start, start + PART)
         rows = np.column_stack((W[part, there], y[part])) * scales[part, None]
-        triangle = np.linalg.qr(np.concatenate((triangle, rows)), mode="r")
+        triangle = np.asarray(np.linalg.qr(np.concatenate((triangle, rows)), mode="r"))
     wide = np.zeros((len(triangle), 1, W.shape[1] + 1))
     wide[:, 0, used] = triangle
     found, _ = absorb(

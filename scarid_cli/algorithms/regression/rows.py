@@ -12,6 +12,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array, Numbers
 
 INTERVAL = 0.005  # s: rows are thinned to intervals of at most this length
+SPREAD = 16  # parts that a long record is represented by
 RATE = 4.0  # of a bandwidth: a row in each of so many parts of its period holds all that it passes
 
 
@@ -122,6 +123,15 @@ def thinned(rows: Rows) -> Rows:
         return rows
     part = rows.part(np.flatnonzero(rows.at % step == 0))
     return replace(part, at=part.at // step, h=rows.h * step)
+
+
+def spread(rows: Rows, numbers: int) -> Rows:
+    """Parts of a long record, as far apart, with about so many numbers in their W, or fewer."""
+    share = -(-rows.W.size // numbers)
+    if share <= 1:
+        return rows
+    pieces = np.array_split(np.arange(rows.samples), SPREAD * share)
+    return rows.part(np.concatenate(pieces[::share]))
 
 
 def joined(parts: Sequence[Rows]) -> Rows:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Set
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -116,22 +117,9 @@ class Diagnostics:
         return np.asarray(np.hypot(self.lacking, offsets))
 
 
-def diagnose(
-    rows: Rows,
-    found: Estimation,
-    own: int,
-    record: Blocks | None = None,
-    *,
-    modelled: Array | None = None,
-    model: Model | None = None,
-    doubt: Array | None = None,
-    gain_errors: GainErrors = 0.0,
-    suspected: frozenset[str] = frozenset(),
-    shared: Set[str] = frozenset(),
-    curves: Collection[int] = (),
-    fitted: Set[tuple[str, int]] = frozenset(),
-) -> Diagnostics:
-    """Diagnose an estimation from its rows.
+@dataclass(frozen=True)
+class Diagnosis:
+    """What is asked about an estimation, each part of which is computed when it is asked for.
 
     `record` has the blocks of the whole record if `rows` are only a subsample of it. The first
     `own` columns of W belong to the robot, whose `model` is None if the rows are not those of its
@@ -144,62 +132,121 @@ def diagnose(
     the joints (from 0) of `curves`. Gains and mismatches that are `fitted`, of joints (from 0),
     are in W.
     """
-    noise = found.noise
-    white = noise.rows(rows) if noise else rows
-    whole = record or Blocks.every(rows.h).add(rows).whole()
-    seen = Blocks.every(rows.h).add(white).whole() if noise else whole
-    weights = _weights(found, rows.y.shape[1])
-    covariance, blocks, errors = _noise_errors(white, found, record, seen)
-    estimates = found.fit.estimates
-    trial = Trial.of(
-        rows,
-        own,
-        weights,
-        estimates,
-        model=model,
-        noise=noise,
-        suspected=suspected,
-        shared=shared,
-        fitted=fitted,
-    )
-    longer = trial.longer(white)
-    scatter = errors * longer
-    effects = trial.effects()
-    if doubt is not None:
-        effects = (*effects, of_low_pass(doubt))
-    gains = gain_sensitivities(seen.total, weights)[:, :own]
-    known = scatter[:own]
-    if curves:
-        known = np.maximum(known, trial.errors_with_curves(curves))
-    stated = _stated(found.fit.part(slice(own)), known, effects, moves_by(gain_errors, gains))
-    return Diagnostics(
-        covariance=covariance and covariance.part(own),
-        blocks=blocks,
-        scatter=scatter,
-        errors=stated.errors,
-        quantiles=interval_quantiles(blocks, longer[:own]),
-        matrix=stated.matrix,
-        joints=residuals(rows, estimates if modelled is None else modelled, record, estimates),
-        effects=effects,
-        gains=gains,
-        consequences=consequences(
-            whole,
-            seen,
-            weights,
-            estimates,
-            stated.uncertainty,
-            model,
-            rows.motion[0],
-        ),
-        totals=(weights**2)[:, None, None] * seen.total,
-        counts=_counts(white, whole, whitened=noise is not None),
-        inflation=_inflation(found.fit, scatter),
-        bursts=() if record else bursts_of(rows, trimmed(whole)),
-        cuts=trial.cuts(longer),
-        explanations=explanations(trial, effects) if model and trial.plain else (),
-        mismatches=mismatches(trial, effects) if model and trial.plain and not shared else (),
-        cycles=trial.ripples.cycles,
-    )
+
+    rows: Rows
+    found: Estimation
+    own: int
+    record: Blocks | None = None
+    modelled: Array | None = None
+    model: Model | None = None
+    doubt: Array | None = None
+    gain_errors: GainErrors = 0.0
+    suspected: frozenset[str] = frozenset()
+    shared: Set[str] = frozenset()
+    curves: Collection[int] = ()
+    fitted: Set[tuple[str, int]] = frozenset()
+
+    @cached_property
+    def errors(self) -> Array:
+        """The errors from leaving out blocks (columns), of which `scatter` is at least as large."""
+        return self._noise[2]
+
+    @cached_property
+    def scatter(self) -> Array:
+        """Standard errors from the noise alone (columns)."""
+        return np.asarray(self.errors * self._longer)
+
+    @cached_property
+    def effects(self) -> tuple[Effect, ...]:
+        """How far the alternatives to the model move the estimates."""
+        found = self._trial.effects()
+        return found if self.doubt is None else (*found, of_low_pass(self.doubt))
+
+    @property
+    def diagnostics(self) -> Diagnostics:
+        """All of it."""
+        rows, found, own, trial = self.rows, self.found, self.own, self._trial
+        covariance, blocks, _ = self._noise
+        estimates = found.fit.estimates
+        gains = gain_sensitivities(self._seen.total, self._weights)[:, :own]
+        known = self.scatter[:own]
+        if self.curves:
+            known = np.maximum(known, trial.errors_with_curves(self.curves))
+        moves = moves_by(self.gain_errors, gains)
+        stated = _stated(found.fit.part(slice(own)), known, self.effects, moves)
+        modelled = estimates if self.modelled is None else self.modelled
+        explained = self.model and trial.plain
+        return Diagnostics(
+            covariance=covariance and covariance.part(own),
+            blocks=blocks,
+            scatter=self.scatter,
+            errors=stated.errors,
+            quantiles=interval_quantiles(blocks, self._longer[:own]),
+            matrix=stated.matrix,
+            joints=residuals(rows, modelled, self.record, estimates),
+            effects=self.effects,
+            gains=gains,
+            consequences=consequences(
+                self._whole,
+                self._seen,
+                self._weights,
+                estimates,
+                stated.uncertainty,
+                self.model,
+                rows.motion[0],
+            ),
+            totals=(self._weights**2)[:, None, None] * self._seen.total,
+            counts=_counts(self._white, self._whole, whitened=found.noise is not None),
+            inflation=_inflation(found.fit, self.scatter),
+            bursts=() if self.record else bursts_of(rows, trimmed(self._whole)),
+            cuts=trial.cuts(self._longer),
+            explanations=explanations(trial, self.effects) if explained else (),
+            mismatches=mismatches(trial, self.effects) if explained and not self.shared else (),
+            cycles=trial.ripples.cycles,
+        )
+
+    @cached_property
+    def _white(self) -> Rows:
+        """The rows, whitened as they were fitted."""
+        return self.found.noise.rows(self.rows) if self.found.noise else self.rows
+
+    @cached_property
+    def _whole(self) -> Blocks:
+        """The blocks of the record."""
+        return self.record or Blocks.every(self.rows.h).add(self.rows).whole()
+
+    @cached_property
+    def _seen(self) -> Blocks:
+        """Those of the rows as they were fitted."""
+        if not self.found.noise:
+            return self._whole
+        return Blocks.every(self.rows.h).add(self._white).whole()
+
+    @cached_property
+    def _weights(self) -> Array:
+        return _weights(self.found, self.rows.y.shape[1])
+
+    @cached_property
+    def _noise(self) -> tuple[RobustCovariance | None, float, Array]:
+        return _noise_errors(self._white, self.found, self.record, self._seen)
+
+    @cached_property
+    def _longer(self) -> Array:
+        return self._trial.longer(self._white)
+
+    @cached_property
+    def _trial(self) -> Trial:
+        return Trial.of(
+            self.rows,
+            self.own,
+            self._weights,
+            self.found.fit.estimates,
+            model=self.model,
+            noise=self.found.noise,
+            suspected=self.suspected,
+            shared=self.shared,
+            fitted=self.fitted,
+        )
 
 
 @dataclass(frozen=True)

@@ -252,7 +252,7 @@ class Trial:
     @cached_property
     def plain(self) -> Solved | None:
         """The fit without any alternative; None if the rows do not determine it."""
-        return self.beyond[0].solved([])
+        return self.products(self.rows.scales, {})[0].solved([])
 
     def longer(self, white: Rows) -> Array:
         """How many times the errors of long disturbances exceed those of blocks (columns); >= 1.
