@@ -95,7 +95,7 @@ def motion(robot: Robot, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def line(degrees: float, found: Sequence[Found]) -> str:
-    """A row of the table, most of which docs/estimators.md shows."""
+    """A row of the table, most of which docs/errors.md shows."""
     counts = [sum(getattr(x, name) for x in found) for name in ("named", "good", "wrong", "gains")]
     offs = [x.off for x in found if x.named]
     off = f"{np.median(offs):.2g}" if offs else ""

@@ -7,6 +7,7 @@ python=$1 folder=$2
 wheel=$(echo build/dist/*.whl)
 rm -rf "$folder"
 mkdir -p "$folder"
+ln -s "$PWD/samples" "$folder/samples"
 now() { "$python" -c 'import time; print(time.time())'; }
 since() { "$python" -c "import sys, time; print(f'# {time.time() - float(sys.argv[1]):.1f} s')" "$1"; }
 start=$(now)
@@ -18,7 +19,7 @@ start=$(now)
   PATH=$PWD/$folder/venv/bin:$PATH
   sed -n '/^```sh$/,/^```$/p' README.md | sed -n '2,/^```$/p' | sed '$d' | while read -r line; do
     echo "\$ $line"
-    (cd "$folder" && ln -sf "$OLDPWD/samples" samples && sh -c "$line" 2>&1)
+    (cd "$folder" && sh -c "$line" 2>&1)
     since "$start"
   done
 } | tee "$folder/transcript.txt"

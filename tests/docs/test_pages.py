@@ -78,6 +78,13 @@ def test_links_lead_somewhere(name: str) -> None:
     assert missing == []
 
 
+def test_nothing_is_a_link_to_somewhere_else() -> None:
+    names = subprocess.run(
+        ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    assert [name for name in names if (ROOT / name).is_symlink()] == []
+
+
 @pytest.mark.parametrize("name", PAGES)
 def test_no_line_is_followed_by_its_own_other_version(name: str) -> None:
     lines = [line for line in prose(ROOT / name).splitlines() if not line.lstrip().startswith("|")]
