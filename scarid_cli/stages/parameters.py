@@ -21,6 +21,7 @@ from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.gains import estimated, widening
 from scarid_cli.algorithms.statistics.mismatches import reach as of_mismatch
 from scarid_cli.algorithms.statistics.outcome import Outcome
+from scarid_cli.algorithms.statistics.sentences import left_out_of
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 from scarid_cli.arrays import Array, median
 from scarid_cli.errors import bad_data
@@ -63,6 +64,12 @@ class Identified:
         """The samples on either side without which no torque is predicted, `period` [s] apart."""
         own = [of_mismatch(x.name, period) for x in self.additions if x.mismatch]
         return max(own, default=0) + reach(self.delay, period, low_pass=self.low_pass)
+
+    @property
+    def left_out(self) -> list[str]:
+        """What a model lacks that has these parameters alone."""
+        estimates = dict(zip(self.robot.names, self.theta.tolist(), strict=True))
+        return left_out_of(estimates, self.additions, self.robot)
 
     @property
     def model(self) -> Model:

@@ -136,6 +136,22 @@ def test_a_toml_file_moves_the_identified_robot(
     assert {p.name: p.apriori for p in found.parameters} == {n: values[n] for n in found.names}
 
 
+@pytest.mark.parametrize("kind", ["c", "json"])
+def test_what_a_model_lacks_is_told_with_its_remedy(kind: str, tmp_path: Path, scarid: Run) -> None:
+    words = ("--robot", "planar2-gravity")
+    motion = ("trajgen", "-q", *words, "--seed", 3, "--q-max", "2,2", "--ddq-max", "20,30")
+    rubbing = ("then", "simulate", "-q", "--seed", 3, "--with", "load-friction=0.02")
+    table = tmp_path / "p.parquet"
+    assert scarid(*motion, *rubbing, "then", "identify", "-q", "-o", table).status == 0
+    result = scarid("export", "--to", kind, "--parameters", table, *words, "-o", tmp_path / "x")
+    assert result.status == 0
+    assert (
+        f"warning: the {kind} file has the parameters alone, and lacks: friction of joints 1"
+        in (result.err)
+    )
+    assert "grows with the transmitted torque" in result.err
+
+
 def test_a_typo_among_estimates_is_told(models: Path, tmp_path: Path, scarid: Run) -> None:
     text = (models / "level.toml").read_text().replace("level.urdf", str(models / "level.urdf"))
     (tmp_path / "own.toml").write_text(f"{text}\n[estimates]\nIzz9 = 1.0\n")

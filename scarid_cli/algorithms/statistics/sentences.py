@@ -142,22 +142,46 @@ def additions_of(
     Other joints may have the same: the parameters whose intervals are wider for that are named.
     """
     notes = _offsets(diagnostics, robot)
-    # where a spring is slack goes without saying
-    own = [x for x in diagnostics.additions if x.name not in (OFFSET, GAIN)]
+    for kind, own in _by_kind(diagnostics.additions):
+        joints = {x.joint for x in own}
+        elsewhere = _elsewhere(list(estimates), diagnostics, kind, joints) if kind != TILT else ""
+        notes.append(f"{_added(kind, own, estimates, robot)}{elsewhere}")
+    return notes
+
+
+def left_out_of(
+    estimates: Mapping[str, float], additions: Sequence[Addition], robot: Robot
+) -> list[str]:
+    """What a model lacks that has the parameters alone, with what to do about it."""
+    gains = {x.joint + 1: 1.0 + x.size for x in additions if x.name == GAIN}
+    notes = [
+        f"the torque of joint {i} was logged as {factor:.3g} times that of the others (correct its"
+        " torque_constant)"
+        for i, factor in gains.items()
+    ]
+    return notes + [_added(kind, own, estimates, robot) for kind, own in _by_kind(additions)]
+
+
+def _by_kind(additions: Sequence[Addition]) -> list[tuple[str, list[Addition]]]:
+    """The additions of each kind, without gains, and offsets where a spring is slack."""
+    own = [x for x in additions if x.name not in (OFFSET, GAIN)]
     added = sorted(own, key=lambda x: x.joint)
     kinds = _kinds(added)
-    for kind in sorted(set(kinds)):
-        own = [addition for addition, of in zip(added, kinds, strict=True) if of == kind]
-        if kind == TILT:
-            notes.append(_tilt(own, robot))
-            continue
-        joints = joints_named(dict.fromkeys(x.joint + 1 for x in own))
-        advice = ADVICE[kind].format(joints=joints, periods=_periods(_ripples(own), robot))
-        elsewhere = _elsewhere(list(estimates), diagnostics, kind, {x.joint for x in own})
-        if kind == CURVATURE:
-            advice = f"{advice}: {laws(own, estimates, robot)}"
-        notes.append(f"{advice}; {_fitted(kind, own, robot)}{elsewhere}")
-    return notes
+    return [
+        (kind, [addition for addition, of in zip(added, kinds, strict=True) if of == kind])
+        for kind in sorted(set(kinds))
+    ]
+
+
+def _added(kind: str, own: Sequence[Addition], estimates: Mapping[str, float], robot: Robot) -> str:
+    """What was fitted of this kind, with the term to add."""
+    if kind == TILT:
+        return _tilt(own, robot)
+    joints = joints_named(dict.fromkeys(x.joint + 1 for x in own))
+    advice = ADVICE[kind].format(joints=joints, periods=_periods(_ripples(own), robot))
+    if kind == CURVATURE:
+        advice = f"{advice}: {laws(own, estimates, robot)}"
+    return f"{advice}; {_fitted(kind, own, robot)}"
 
 
 def _tilt(own: Sequence[Addition], robot: Robot) -> str:

@@ -49,8 +49,8 @@ def run(
     out, side = job.text(place), job.side_table(base)
     table = job.read(parameters, "parameters")
     source = Source(job, table, list(table.batches), job.robot(stated, table), name, place)
-    if identified(source.table, source.robot).additions:
-        job.say(f"warning: what identify fitted beside the parameters is not in the {kind} file")
+    for note in identified(source.table, source.robot).left_out:
+        job.say(f"warning: the {kind} file has the parameters alone, and lacks: {note}")
     out.write(WRITERS[kind](source))
     if side:
         job.write(job.recorded(urdf.base_table(table, source.estimates, source.bodies)), side)
