@@ -27,6 +27,7 @@
 # make bench-payloads  payloads of arms that are not ideal: errors, and whether intervals contain the truth
 # make bench-aims   the errors of gains and payloads by motions that are planned for them
 # make bench-coarse   the choice of a bandwidth where positions are coarse
+# make bench-exported  a call of the exported C file, beside Pinocchio's C++ and Python
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
 # make bench-checks    what check says of logs with known faults
 # make bench-within   is the torque that another motion needs within what identify states?
@@ -53,7 +54,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test test-all docs-test lint bench bench-identify bench-latency bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-tilts bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel minute samples clean
+.PHONY: all paper paper-montecarlo repetition test test-all docs-test lint bench bench-identify bench-latency bench-exported bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-tilts bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel minute samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -123,6 +124,15 @@ bench-identify: $(VENV)/tested
 bench-latency: $(VENV)/tested
 	$(BIN)/python benchmarks/latency.py 200
 	$(BIN)/python benchmarks/latency.py 1000
+
+# The headers of Eigen, which Pinocchio's C++ needs, in a folder of their own.
+EIGEN := build/eigen/cmeel.prefix/include/eigen3
+
+$(EIGEN): | $(VENV)/tested
+	$(PIP) install --no-deps --target build/eigen cmeel-eigen
+
+bench-exported: $(VENV)/tested $(EIGEN)
+	$(BIN)/python benchmarks/exported.py --eigen $(EIGEN)
 
 bench-excitation: $(VENV)/tested
 	$(BIN)/python benchmarks/excitation.py
