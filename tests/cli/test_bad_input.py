@@ -240,6 +240,15 @@ def test_via_points_that_break_the_bounds_are_refused(scarid: Run, tmp_path: Pat
     assert "give the segment at least 0.5373 s instead of 0.5 s" in result.err
 
 
+def test_joints_without_bounds_are_named(scarid: Run, tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    first, rest = (ROBOTS / "scara2.toml").read_text("utf-8").split("acceleration_limit", 1)
+    path.write_text(f"{first}# a{rest}")
+    result = scarid("trajgen", "--robot", path)
+    assert result.status == 2
+    assert "has no limits of acceleration (joint 1): type `--ddq-max NUMBERS`" in result.err
+
+
 def test_a_robot_without_bounds_needs_them_as_options(scarid: Run, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     text = (ROBOTS / "emps.toml").read_text("utf-8")

@@ -171,7 +171,7 @@ def _limits(arm: Robot, given: dict[str, Any]) -> Limits:
 def _require_limits(arm: Robot, own: Limits, given: dict[str, Any]) -> None:
     """Refuse a robot without limits that were not given either, and say what to type."""
     lacking = {
-        option: quantity
+        option: f"{quantity}{_of_some(values)}"
         for quantity, option, values in (
             ("position", "--q-max", np.maximum(own.upper, -own.lower)),
             ("velocity", "--dq-max", own.dq),
@@ -185,6 +185,14 @@ def _require_limits(arm: Robot, own: Limits, given: dict[str, Any]) -> None:
             f"the description of {arm.name} has no limits of {', '.join(lacking.values())}: "
             f"type `{options}`"
         )
+
+
+def _of_some(values: Array) -> str:
+    """` (joints 2, 5)`: those without a limit, unless all are."""
+    unlimited = [str(j + 1) for j in np.flatnonzero(~(values < LARGEST_LIMIT))]
+    if len(unlimited) == len(values):
+        return ""
+    return f" (joint{'s' if unlimited[1:] else ''} {', '.join(unlimited)})"
 
 
 def _tell_narrowed(job: Job, asked: Limits, limits: Limits) -> None:
