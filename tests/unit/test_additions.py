@@ -34,9 +34,11 @@ from scarid_cli.algorithms.statistics.alternatives import (
     SLOW,
     SPRING,
     STRIBECK,
+    Model,
 )
 from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
 from scarid_cli.algorithms.statistics.explanations import Explanation
+from scarid_cli.algorithms.statistics.offsets import with_offsets
 from scarid_cli.algorithms.statistics.outcome import Problem
 from scarid_cli.algorithms.statistics.sentences import additions_of
 from scarid_cli.arrays import Array
@@ -199,6 +201,22 @@ def test_other_joints_may_have_what_one_has_as_far_as_the_log_can_tell() -> None
     found = replace(found, additions=(Addition(SPRING, 1, 1.0, 0.1),))
     (note,) = additions_of(ARM.names, found, ARM)
     assert note.endswith("the intervals of ZZ1R and MX1R allow for the same at joint 1")
+
+
+def test_other_joints_may_have_an_offset_where_one_has() -> None:
+    kept = [k for k, name in enumerate(ARM.names) if not name.startswith("offset")]
+    arm = replace(ARM, parameters=tuple(ARM.parameters[k] for k in kept))
+    rows, own = replace(log(nothing), W=log(nothing).W[:, :, kept]), len(kept)
+    found = estimated(wls.Estimator(), rows)
+    plain = Problem(rows, found, own, None, Model(arm, list(range(own))))
+    wide = with_offsets(rows, (1,))
+    fitted = replace(plain, rows=wide, found=estimated(wls.Estimator(), wide), offsets=(1,))
+    for problem, shared in ((plain, []), (fitted, [OFFSET])):
+        effects = problem.diagnosis(0.0).effects
+        assert [effect.name for effect in effects if effect.shared] == shared
+    (offset,) = [effect for effect in fitted.diagnosis(0.0).effects if effect.name == OFFSET]
+    known = np.hypot(offset.moved, offset.errors)
+    np.testing.assert_allclose(np.abs(offset.bias), known)
 
 
 def test_the_diagnostics_of_an_outcome_know_what_was_fitted_for_other_joints() -> None:

@@ -201,7 +201,7 @@ class Diagnosis:
             bursts=() if self.record else bursts_of(rows, trimmed(self._whole)),
             cuts=trial.cuts(self._longer),
             explanations=explanations(trial, self.effects) if explained else (),
-            mismatches=mismatches(trial, self.effects) if explained and not self.shared else (),
+            mismatches=mismatches(trial, self.effects) if explained and trial.bare else (),
             cycles=trial.ripples.cycles,
         )
 

@@ -204,6 +204,11 @@ class Trial:
             few, own, weights, estimates, model, *numbers, noise, places, suspected, shared, fitted
         )
 
+    @property
+    def bare(self) -> bool:
+        """Whether nothing but offsets was fitted for other joints."""
+        return not self.shared - {OFFSET}
+
     @cached_property
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
         """The products with what torques may have beyond the model, and the places of those."""
@@ -232,7 +237,7 @@ class Trial:
         none = np.zeros_like(self.rows.y)
         columns = {
             x: [none if (x, j) in self.fitted else own.column(x, j) for j in joints]
-            for x in (WIDESPREAD if self.shared else MISMATCHES)
+            for x in (MISMATCHES if self.bare else WIDESPREAD)
         }
         return self.products(
             self.rows.scales, {x: np.stack(each, axis=2) for x, each in columns.items()}

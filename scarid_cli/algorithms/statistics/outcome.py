@@ -109,10 +109,16 @@ class Problem:
             doubt=None if doubt is None else doubt[: self.own],
             gain_errors=gain_errors,
             suspected=suspected,
-            shared={CABLE if x.name == CUBE else x.name for x in self.additions} - {OFFSET, TILT},
+            shared=self._shared,
             curves={x.joint for x in self.additions if x.name in DECAYED},
             fitted={(x.name, x.joint) for x in self.additions if x.mismatch or x.name in RELATIVE},
         )
+
+    @property
+    def _shared(self) -> set[str]:
+        """What other joints may have as well: of an offset beside a spring nobody knows."""
+        own = {CABLE if x.name == CUBE else x.name for x in self.additions} - {OFFSET, TILT}
+        return own | ({OFFSET} if self.offsets else set())
 
     def diagnostics(
         self, gain_errors: GainErrors, suspected: frozenset[str] = frozenset()

@@ -121,16 +121,17 @@ def errors_in(size: float) -> str:
     return f"{size:.2g} standard errors" if size < 1000.0 else "over 1000 standard errors"
 
 
-def _offsets(diagnostics: Diagnostics, robot: Robot) -> list[str]:
+def _offsets(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> list[str]:
     found = [
         f"{x:.3g} {robot.joints[j].torque_unit} at joint {j + 1}"
         for j, x in diagnostics.offsets.items()
     ]
     if not found:
         return []
+    elsewhere = _elsewhere(names, diagnostics, OFFSET, {*diagnostics.offsets})
     return [
         "offsets of the torques, for which the robot has no term, were fitted as well: "
-        f"{listed(found)} (add the term offset to the robot)"
+        f"{listed(found)} (add the term offset to the robot){elsewhere}"
     ]
 
 
@@ -141,7 +142,7 @@ def additions_of(
 
     Other joints may have the same: the parameters whose intervals are wider for that are named.
     """
-    notes = _offsets(diagnostics, robot)
+    notes = _offsets(list(estimates), diagnostics, robot)
     for kind, own in _by_kind(diagnostics.additions):
         joints = {x.joint for x in own}
         elsewhere = _elsewhere(list(estimates), diagnostics, kind, joints) if kind != TILT else ""
