@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import cast
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -18,7 +21,10 @@ from scarid_cli.algorithms.changes.hypotheses import (
 )
 from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.gains import Gain, apart
+from scarid_cli.algorithms.statistics.alternatives import GAIN
+from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
+from scarid_cli.algorithms.statistics.effects import Effect
+from scarid_cli.algorithms.statistics.gains import Gain, apart, significant
 
 RNG = np.random.default_rng(3)
 N = 4
@@ -152,6 +158,26 @@ def test_gains_are_relative_to_the_joints_that_agree(
     else:
         assert found is not None
         assert {x.joint: x.factor for x in found} == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("amounts", "expected"),
+    [
+        ((np.nan, -0.05, -0.052, -0.048), {0: 1.05}),
+        ((np.nan, -0.05, 0.001, -0.001), {1: 0.95}),
+        ((np.nan, 0.001, 0.001, -0.001), {}),
+    ],
+)
+def test_gains_that_are_not_fitted_are_those_of_the_joints_that_are_apart(
+    amounts: tuple[float, ...], expected: dict[int, float]
+) -> None:
+    none = np.zeros(3)
+    noise = np.array([np.nan, 0.004, 0.003, 0.007])
+    effect = Effect(GAIN, none, none, none, amounts=np.array(amounts), noise=noise, blocks=50)
+    diagnostics = cast("Diagnostics", SimpleNamespace(effects=(effect,), reference=0))
+    found = significant(diagnostics)
+    assert {x.joint: x.factor for x in found} == pytest.approx(expected, rel=2e-3)
+    assert all(0.0 < x.error < 0.01 for x in found)
 
 
 def test_joints_whose_gains_are_known_less_well_decide_between_two() -> None:

@@ -17,7 +17,7 @@ from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.treatment import GainErrors
 from scarid_cli.algorithms.statistics.additions import Addition
-from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model
+from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model, reference
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.bursts import Interval, bursts_of
 from scarid_cli.algorithms.statistics.consequences import (
@@ -63,8 +63,9 @@ class Diagnostics:
     explain, counted from sample 0 of a record that is known as a whole. `cuts` are the estimates
     before and after some times [s] from its first sample on. `offsets` [N m or N] are those of the
     torques of joints (from 0) that were fitted beside the parameters, and `additions` what else
-    was. Each of the `explanations` alone explains nearly all that the torques are beyond the model;
-    `mismatches` may, which the whole estimation tells.
+    was; gains are relative to the joint `reference` (from 0). Each of the `explanations` alone
+    explains nearly all that the torques are beyond the model; `mismatches` may, which the whole
+    estimation tells.
     `cycles` (ripples, joints) are the periods per rad or m of the likeliest ripples. `totals`
     (joints, columns + 2, columns + 2) are the products of [W, y, 1] of the rows as they were fitted
     and weighted, `counts` (joints) their numbers, and `inflation` is how much larger variances are
@@ -91,6 +92,7 @@ class Diagnostics:
     cycles: Array = field(default_factory=lambda: np.zeros((0, 0)))
     offsets: dict[int, float] = field(default_factory=dict)
     additions: tuple[Addition, ...] = ()
+    reference: int = 0
 
     @property
     def width(self) -> float:
@@ -203,6 +205,7 @@ class Diagnosis:
             explanations=explanations(trial, self.effects) if explained else (),
             mismatches=mismatches(trial, self.effects) if explained and trial.bare else (),
             cycles=trial.ripples.cycles,
+            reference=reference(rows, estimates[:own]),
         )
 
     @cached_property

@@ -60,6 +60,7 @@ def significant(diagnostics: Diagnostics) -> list[Gain]:
     """The gains that differ from 1 by more than noise makes them, and were not fitted.
 
     Where something else of the torques is clearer, such as a base that leans, gains make up for it.
+    They are relative to the joints that agree, where these are most.
     """
     likelier = max(
         (x.clearness(CERTAIN) for x in diagnostics.effects if x.name in RIVALS), default=0.0
@@ -67,9 +68,12 @@ def significant(diagnostics: Diagnostics) -> list[Gain]:
     for effect in diagnostics.effects:
         if effect.name == GAIN and effect.significant() and effect.clearness(CERTAIN) > likelier:
             there = np.flatnonzero(effect.ratios > effect.threshold())
-            return [
+            found = [
                 Gain(int(j), 1.0 + float(effect.amounts[j]), float(effect.noise[j])) for j in there
             ]
+            first = diagnostics.reference
+            less = apart([Gain(first, 1.0, 0.0), *known(diagnostics)], first)
+            return found if less is None else less
     return []
 
 
@@ -93,7 +97,13 @@ def apart(gains: Sequence[Gain], before: int) -> list[Gain] | None:
     agree = [x for x in gains if x not in best[2]]
     weights = [1.0 / (x.error or least) ** 2 for x in agree]
     common = float(np.average([x.factor for x in agree], weights=weights))
-    return [replace(x, factor=x.factor / common, error=x.error / common) for x in best[2]]
+    own = 1.0 / float(np.sqrt(np.sum(weights)))
+    return [
+        replace(
+            x, factor=x.factor / common, error=float(np.hypot(x.error, x.factor * own)) / common
+        )
+        for x in best[2]
+    ]
 
 
 def widening(diagnostics: Diagnostics, own: int) -> tuple[Array, Array] | None:
