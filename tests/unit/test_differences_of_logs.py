@@ -176,7 +176,7 @@ def test_gains_that_are_not_fitted_are_those_of_the_joints_that_are_apart(
     effect = Effect(GAIN, none, none, none, amounts=np.array(amounts), noise=noise, blocks=50)
     diagnostics = cast("Diagnostics", SimpleNamespace(effects=(effect,), reference=0))
     found = significant(diagnostics)
-    assert {x.joint: x.factor for x in found} == pytest.approx(expected, rel=2e-3)
+    assert {x.joint: x.factor for x in found} == pytest.approx(expected, rel=5e-3)
     assert all(0.0 < x.error < 0.01 for x in found)
 
 
