@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import cast
 
@@ -24,7 +25,7 @@ from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics.alternatives import GAIN
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import Effect
-from scarid_cli.algorithms.statistics.gains import Gain, apart, significant
+from scarid_cli.algorithms.statistics.gains import Gain, apart, relative, significant
 
 RNG = np.random.default_rng(3)
 N = 4
@@ -178,6 +179,19 @@ def test_gains_that_are_not_fitted_are_those_of_the_joints_that_are_apart(
     found = significant(diagnostics)
     assert {x.joint: x.factor for x in found} == pytest.approx(expected, rel=5e-3)
     assert all(0.0 < x.error < 0.01 for x in found)
+
+
+def test_intervals_allow_for_the_gain_of_the_joint_that_others_are_relative_to() -> None:
+    """Its own friction, which no other row has, is as much too large as its torque."""
+    none, estimates = np.zeros(2), np.array([2.1, 10.5])  # friction of the joint; of an inertia
+    noise = np.array([np.nan, 0.003, 0.003, 0.003])
+    apart_, right = np.array([np.nan, -1.0, -1.0, -1.0]) / 21.0, np.array([np.nan, 0.05, 0.0, 0.0])
+    moved = np.array([0.0, -0.2])
+    effect = Effect(GAIN, moved, none, none, amounts=apart_, noise=noise, blocks=50)
+    expected = (estimates + moved) / 1.05 - estimates
+    np.testing.assert_allclose(relative(effect, 0, estimates).moved, expected)
+    other = replace(effect, amounts=right)
+    np.testing.assert_allclose(relative(other, 0, estimates).moved, moved, atol=1e-15)
 
 
 def test_joints_whose_gains_are_known_less_well_decide_between_two() -> None:

@@ -29,6 +29,7 @@ from scarid_cli.algorithms.statistics.consequences import (
 from scarid_cli.algorithms.statistics.cuts import Cut
 from scarid_cli.algorithms.statistics.effects import Effect, Trial, of_low_pass
 from scarid_cli.algorithms.statistics.explanations import Explanation, explanations
+from scarid_cli.algorithms.statistics.gains import relative
 from scarid_cli.algorithms.statistics.jackknife import (
     RobustCovariance,
     inflation,
@@ -161,7 +162,9 @@ class Diagnosis:
     @cached_property
     def effects(self) -> tuple[Effect, ...]:
         """How far the alternatives to the model move the estimates."""
-        found = self._trial.effects()
+        estimates = self.found.fit.estimates
+        first = reference(self.rows, estimates[: self.own])
+        found = tuple(relative(effect, first, estimates) for effect in self._trial.effects())
         return found if self.doubt is None else (*found, of_low_pass(self.doubt))
 
     @property

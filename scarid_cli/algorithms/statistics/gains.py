@@ -9,14 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from scarid_cli.algorithms.statistics.alternatives import GAIN, TORQUES
-from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import CERTAIN
+from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect
 from scarid_cli.arrays import Array
 from scarid_cli.interval import plus_minus
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 
 KNOWN = 0.05  # error: beyond, a log says less than a data sheet, which knows constants within 10 %
 RIVALS = {*TORQUES} - {GAIN}  # other causes of torques that do not fit together
@@ -50,8 +53,10 @@ def estimated(diagnostics: Diagnostics, own: int) -> list[Gain]:
 def known(diagnostics: Diagnostics) -> list[Gain]:
     """The gains of all joints compared that the log tells, where none were fitted."""
     effect = next((x for x in diagnostics.effects if x.name == GAIN), None)
-    if effect is None:
-        return []
+    return _known(effect) if effect else []
+
+
+def _known(effect: Effect) -> list[Gain]:
     pairs = enumerate(zip(effect.amounts.tolist(), effect.noise.tolist(), strict=True))
     return [Gain(j, 1.0 + amount, noise) for j, (amount, noise) in pairs if 0.0 < noise < KNOWN]
 
@@ -71,10 +76,26 @@ def significant(diagnostics: Diagnostics) -> list[Gain]:
             found = [
                 Gain(int(j), 1.0 + float(effect.amounts[j]), float(effect.noise[j])) for j in there
             ]
-            first = diagnostics.reference
-            less = apart([Gain(first, 1.0, 0.0), *known(diagnostics)], first)
+            less = _apart(effect, diagnostics.reference)
             return found if less is None else less
     return []
+
+
+def relative(effect: Effect, first: int, estimates: Array) -> Effect:
+    """The effect of gains that were not fitted, relative to the joints that agree.
+
+    If joint `first` (from 0), beside which gains are, is apart, its own parameters are as much too
+    large as its torque, and all others with them. Other effects remain.
+    """
+    less = _apart(effect, first) if effect.name == GAIN and effect.counts else None
+    factor = next((x.factor for x in less or [] if x.joint == first), 1.0)
+    own = estimates[: len(effect.moved)]
+    return replace(effect, moved=(own + effect.moved) / factor - own)
+
+
+def _apart(effect: Effect, first: int) -> list[Gain] | None:
+    """The gains of the joints that are apart, as `apart` has them."""
+    return apart([Gain(first, 1.0, 0.0), *_known(effect)], first)
 
 
 def apart(gains: Sequence[Gain], before: int) -> list[Gain] | None:
