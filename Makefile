@@ -27,6 +27,7 @@
 # make bench-payloads  payloads of arms that are not ideal: errors, and whether intervals contain the truth
 # make bench-aims   the errors of gains and payloads by motions that are planned for them
 # make bench-coarse   the choice of a bandwidth where positions are coarse
+# make bench-arms     random arms that nobody has chosen, identified blind
 # make bench-exported  a call of the exported C file, beside Pinocchio's C++ and Python
 # make bench-mujoco   the blind procedure on arms that MuJoCo moves
 # make bench-checks    what check says of logs with known faults
@@ -54,7 +55,7 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 SCARID := $(BIN)/scarid
 
-.PHONY: all paper paper-montecarlo repetition test test-all docs-test lint bench bench-identify bench-latency bench-exported bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-tilts bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel minute samples clean
+.PHONY: all paper paper-montecarlo repetition test test-all docs-test lint bench bench-identify bench-latency bench-arms bench-exported bench-excitation bench-experiments bench-differentiators crossvalidate montecarlo bench-verdicts bench-coarse bench-loop bench-carried bench-known-load bench-payloads bench-aims bench-gains bench-tilts bench-forgetting bench-friction bench-contacts bench-mixtures bench-mujoco bench-checks bench-within bench-changed gauntlet emps batch test-batch test-slurm bench-batch fuzz mutants faults docs figures site man wheel minute samples clean
 .DELETE_ON_ERROR:
 
 all: paper
@@ -130,6 +131,9 @@ EIGEN := build/eigen/cmeel.prefix/include/eigen3
 
 $(EIGEN): | $(VENV)/tested
 	$(PIP) install --no-deps --target build/eigen cmeel-eigen
+
+bench-arms: $(VENV)/tested
+	$(BIN)/python benchmarks/random_arms.py
 
 bench-exported: $(VENV)/tested $(EIGEN)
 	$(BIN)/python benchmarks/exported.py --eigen $(EIGEN)
