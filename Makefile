@@ -133,7 +133,7 @@ $(EIGEN): | $(VENV)/tested
 	$(PIP) install --no-deps --target build/eigen cmeel-eigen
 
 bench-arms: $(VENV)/tested
-	$(BIN)/python benchmarks/random_arms.py
+	$(BIN)/python benchmarks/random_arms.py --arms 25
 
 bench-exported: $(VENV)/tested $(EIGEN)
 	$(BIN)/python benchmarks/exported.py --eigen $(EIGEN)
