@@ -24,6 +24,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pyarrow.parquet as pq
+from gains import TOLD
 
 from scarid_cli.algorithms.robots.reading import load
 
@@ -116,7 +117,7 @@ def identified(condition: str, seed: int) -> Found:
         rows = pq.read_table(folder / "p.parquet").to_pylist()
         truth = load(str(folder / "r.toml")).apriori
     grade = re.search(r"identify: (good|rough|doubtful|not identifiable)", done.stderr)
-    told = re.findall(r"that of joint (\d) is (\S+) \+- (\S+) times", done.stderr)
+    told = TOLD.findall(done.stderr)
     pairs = zip(rows, truth, strict=True)
     return Found(
         grade[1] if grade else "none",

@@ -23,4 +23,6 @@ start=$(now)
     since "$start"
   done
 } | tee "$folder/transcript.txt"
+grep -q "scarid identify: good" "$folder/transcript.txt"  # the status of a pipe is that of tee
+grep -q "scarid validate: unchanged" "$folder/transcript.txt"
 "$folder/venv/bin/python" -m pip --disable-pip-version-check freeze --exclude scarid > "$folder/installed.txt"

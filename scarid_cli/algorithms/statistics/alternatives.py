@@ -277,23 +277,24 @@ def compared(rows: Rows, estimates: Array, apart: Collection[int] = ()) -> Array
     is what the others are compared with: a common factor cannot be told. Joints that are `apart`
     (from 0), because their gains are estimated, are none of them.
     """
-    power = _shared(rows, estimates)
-    power[list(apart)] = 0.0
+    power = _shared(rows, estimates, apart)
     marks: Array = np.asarray(power > 0.0, dtype=np.float64)
     marks[int(np.argmax(power))] = 0.0
     return marks
 
 
-def reference(rows: Rows, estimates: Array) -> int:
+def reference(rows: Rows, estimates: Array, apart: Collection[int] = ()) -> int:
     """The joint (from 0) with whose torque those of the others are `compared`."""
-    return int(np.argmax(_shared(rows, estimates)))
+    return int(np.argmax(_shared(rows, estimates, apart)))
 
 
-def _shared(rows: Rows, estimates: Array) -> Array:
-    """The squares of the torques (joints) of the parameters that joints share."""
+def _shared(rows: Rows, estimates: Array, apart: Collection[int]) -> Array:
+    """The squares of the torques (joints) of the parameters that joints share; 0 if `apart`."""
     W = rows.W[:, :, : len(estimates)]
     shared = np.count_nonzero(np.any(W != 0.0, axis=0), axis=0) > 1
-    return np.asarray(np.sum((W[:, :, shared] @ estimates[shared]) ** 2, axis=0))
+    power = np.asarray(np.sum((W[:, :, shared] @ estimates[shared]) ** 2, axis=0))
+    power[list(apart)] = 0.0
+    return power
 
 
 def diagonal(values: Array) -> Array:

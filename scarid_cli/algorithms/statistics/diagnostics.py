@@ -17,7 +17,7 @@ from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.treatment import GainErrors
 from scarid_cli.algorithms.statistics.additions import Addition
-from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model, reference
+from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.bursts import Interval, bursts_of
 from scarid_cli.algorithms.statistics.consequences import (
@@ -162,9 +162,8 @@ class Diagnosis:
     @cached_property
     def effects(self) -> tuple[Effect, ...]:
         """How far the alternatives to the model move the estimates."""
-        estimates = self.found.fit.estimates
-        first = reference(self.rows, estimates[: self.own])
-        found = tuple(relative(effect, first, estimates) for effect in self._trial.effects())
+        trial, estimates = self._trial, self.found.fit.estimates
+        found = tuple(relative(x, trial.reference, estimates) for x in trial.effects())
         return found if self.doubt is None else (*found, of_low_pass(self.doubt))
 
     @property
@@ -208,7 +207,7 @@ class Diagnosis:
             explanations=explanations(trial, self.effects) if explained else (),
             mismatches=mismatches(trial, self.effects) if explained and trial.bare else (),
             cycles=trial.ripples.cycles,
-            reference=reference(rows, estimates[:own]),
+            reference=trial.reference,
         )
 
     @cached_property

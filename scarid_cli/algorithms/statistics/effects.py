@@ -23,6 +23,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
     Signals,
     away_from_reversals,
     diagonal,
+    reference,
     torque_columns,
 )
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
@@ -205,6 +206,16 @@ class Trial:
         )
 
     @property
+    def _apart(self) -> list[int]:
+        """The joints whose gains are fitted."""
+        return [j for name, j in self.fitted if name == GAIN]
+
+    @cached_property
+    def reference(self) -> int:
+        """The joint (from 0) beside which the gains of the others are."""
+        return reference(self.rows, self.estimates, self._apart)
+
+    @property
     def bare(self) -> bool:
         """Whether nothing but offsets was fitted for other joints."""
         return not self.shared - {OFFSET}
@@ -212,9 +223,8 @@ class Trial:
     @cached_property
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
         """The products with what torques may have beyond the model, and the places of those."""
-        apart = [j for name, j in self.fitted if name == GAIN]
         of = self.rows, self.model, self.estimates, self.ripples.cycles
-        further = torque_columns(*of, apart)
+        further = torque_columns(*of, self._apart)
         if any(name == TILT for name, _ in self.fitted):
             further.pop(TILT, None)
         if self.model:
@@ -257,6 +267,7 @@ class Trial:
     @cached_property
     def plain(self) -> Solved | None:
         """The fit without any alternative; None if the rows do not determine it."""
+        # Not of `beyond`: those that are refused by their errors alone never need its columns.
         return self.products(self.rows.scales, {})[0].solved([])
 
     def longer(self, white: Rows) -> Array:

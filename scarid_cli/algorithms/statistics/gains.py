@@ -88,7 +88,9 @@ def relative(effect: Effect, first: int, estimates: Array) -> Effect:
     large as its torque, and all others with them. Other effects remain.
     """
     less = _apart(effect, first) if effect.name == GAIN and effect.counts else None
-    factor = next((x.factor for x in less or [] if x.joint == first), 1.0)
+    if less is None:
+        return effect
+    (factor,) = (x.factor for x in less if x.joint == first)
     own = estimates[: len(effect.moved)]
     return replace(effect, moved=(own + effect.moved) / factor - own)
 
@@ -119,12 +121,9 @@ def apart(gains: Sequence[Gain], before: int) -> list[Gain] | None:
     weights = [1.0 / (x.error or least) ** 2 for x in agree]
     common = float(np.average([x.factor for x in agree], weights=weights))
     own = 1.0 / float(np.sqrt(np.sum(weights)))
-    return [
-        replace(
-            x, factor=x.factor / common, error=float(np.hypot(x.error, x.factor * own)) / common
-        )
-        for x in best[2]
-    ]
+    errors = [float(np.hypot(x.error, x.factor * own)) / common for x in best[2]]
+    pairs = zip(best[2], errors, strict=True)
+    return [replace(x, factor=x.factor / common, error=error) for x, error in pairs]
 
 
 def widening(diagnostics: Diagnostics, own: int) -> tuple[Array, Array] | None:

@@ -329,8 +329,8 @@ def _explained(given: _Given, gain_errors: GainErrors) -> tuple[Problem, Diagnos
     if not (given.align and plain.model):
         return plain, diagnostics
     candidates = [*diagnostics.explanations, *diagnostics.mismatches]
+    beside = plain, diagnostics
     for explanation in sorted(candidates, key=lambda x: -x.clearness):
-        beside = plain, diagnostics
         if accepted := _accepted(given, beside, explanation, gain_errors):
             return _regauged(given, *beside, *accepted, gain_errors)
     return plain, diagnostics

@@ -33,6 +33,7 @@ from scarid_cli.algorithms.statistics.alternatives import (
 from scarid_cli.algorithms.statistics.curves import laws
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import REVERSALS, Effect, level_among
+from scarid_cli.algorithms.statistics.gains import CAUSES
 from scarid_cli.algorithms.statistics.mismatches import (
     BACKLASH,
     ELASTIC_GEAR,
@@ -156,8 +157,7 @@ def left_out_of(
     """What a model lacks that has the parameters alone, with what to do about it."""
     gains = {x.joint + 1: 1.0 + x.size for x in additions if x.name == GAIN}
     notes = [
-        f"the torque of joint {i} was logged as {factor:.3g} times that of the others (correct its"
-        " torque_constant)"
+        f"the torque of joint {i} was logged as {factor:.3g} times what the others need ({CAUSES})"
         for i, factor in gains.items()
     ]
     return notes + [_added(kind, own, estimates, robot) for kind, own in _by_kind(additions)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from scarid_cli.algorithms.regression.treatment import Treatment
@@ -14,7 +13,6 @@ from scarid_cli.cli.treatment import for_motion, for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import urdf as stage
 from scarid_cli.stages.estimates import estimates_with_covariance
-from scarid_cli.stages.parameters import identified
 
 
 def run(
@@ -36,25 +34,23 @@ def run(
     stated = the_robot(description, robot)
     out, side = job.text(place), job.side_table(base)
     table = job.read(parameters, "parameters")
-    batches = list(table.batches)
-    read = [replace(table, batches=iter(batches)) for _ in range(2)]
     whole = job.robot(stated, table)
     if not whole.body:
         raise UsageFault(f"{whole.name}: has no URDF to write parameters into")
     text = text_of(whole.body.path)
     arm, treatment = for_robot(whole, treatment, given)
-    estimates = estimates_with_covariance(read[0], arm)
-    for note in identified(read[1], arm).left_out:
-        job.say(f"warning: the URDF has the parameters alone, and lacks: {note}")
+    identified = estimates_with_covariance(table, arm)
     log = job.read_for(motion, "motion", whole, torques=True)[0] if motion else None
-    found = stage.physical(estimates)
-    for line in stage.consistency_report(estimates, found):
+    for note in identified.model.left_out:
+        job.say(f"warning: the URDF has the parameters alone, and lacks: {note}")
+    found = stage.physical(identified)
+    for line in stage.consistency_report(identified, found):
         job.say(line)
     if log:
         treatment = for_motion(log.meta, treatment, given)
-        r2 = stage.r2_before_and_after(log, estimates, found, treatment)
+        r2 = stage.r2_before_and_after(log, identified, found, treatment)
         for line in stage.r2_report(*r2):
             job.say(line)
     out.write(stage.document(text, arm, found, command_line()))
     if side:
-        job.write(job.recorded(stage.base_table(table, estimates, found)), side)
+        job.write(job.recorded(stage.base_table(table, identified, found)), side)
