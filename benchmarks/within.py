@@ -19,8 +19,8 @@ import numpy as np
 from conditions import CONDITIONS, UNSEEN, log, robot_named
 from needed import needed
 
-from scarid_cli.algorithms.statistics.alternatives import away_from_reversals
 from scarid_cli.algorithms.statistics.jackknife import quantile
+from scarid_cli.algorithms.statistics.reversals import away_from_reversals
 from scarid_cli.arrays import Array
 from scarid_cli.stages import blind
 from scarid_cli.stages.parameters import identified

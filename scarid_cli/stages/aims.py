@@ -10,10 +10,10 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.physical import LENGTH, standard_of
 from scarid_cli.algorithms.robots.rigid import Frame
 from scarid_cli.algorithms.statistics.gains import KNOWN
-from scarid_cli.algorithms.statistics.sentences import joints_named
 from scarid_cli.arrays import Array
 from scarid_cli.interval import HALF
 from scarid_cli.stages.payload import frame_of
+from scarid_cli.words import joints_named
 
 RIDGE = 1e-12  # of the information of each parameter: what no motion tells has a large error
 GROUPS = {"mass": [0], "centre": [1, 2, 3], "inertia": [4, 5, 6, 7, 8, 9]}

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.additions import gains
 from scarid_cli.algorithms.changes.columns import Columns
 from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
 from scarid_cli.algorithms.changes.explanation import Change, change
@@ -27,7 +28,6 @@ from scarid_cli.algorithms.regression.normal_equations import inverse
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.additions import gains
 from scarid_cli.algorithms.statistics.bursts import bursts_of
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.ringing import with_ringing

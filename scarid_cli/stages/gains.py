@@ -8,11 +8,11 @@ from statistics import NormalDist
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.changes.known_load import Gains, Load, with_load
 from scarid_cli.algorithms.changes.payload import directions
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.logs import CURRENT
-from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.gains import KNOWN
 from scarid_cli.arrays import Array, Marks
 from scarid_cli.errors import BadData

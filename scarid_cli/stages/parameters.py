@@ -9,17 +9,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
+from scarid_cli.algorithms.beyond.additions import Addition
+from scarid_cli.algorithms.beyond.catalogue import MISMATCHES
+from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.shifting import reach
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.additions import Addition, Shapes
-from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.statistics.additions import Shapes
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.gains import estimated, widening
-from scarid_cli.algorithms.statistics.mismatches import reach as of_mismatch
 from scarid_cli.algorithms.statistics.outcome import Outcome
 from scarid_cli.algorithms.statistics.sentences import left_out_of
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
@@ -62,7 +63,7 @@ class Identified:
 
     def reach(self, period: float) -> int:
         """The samples on either side without which no torque is predicted, `period` [s] apart."""
-        own = [of_mismatch(x.name, period) for x in self.additions if x.mismatch]
+        own = [MISMATCHES[x.name].reach(period) for x in self.additions if x.mismatch]
         return max(own, default=0) + reach(self.delay, period, low_pass=self.low_pass)
 
     @property

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.additions import mean_additions
 from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.changes.pooling import pooled
-from scarid_cli.algorithms.statistics.additions import mean_additions
 from scarid_cli.errors import bad_data
 from scarid_cli.stages.changes import Known
 from scarid_cli.stages.parameters import Identified

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.torques import RelativeGain
 from scarid_cli.algorithms.changes.known_load import Judged
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.alternatives import GAIN
 from scarid_cli.algorithms.statistics.joint_products import JointProducts
 from scarid_cli.algorithms.statistics.outcome import Outcome
 from scarid_cli.errors import BadData, bad_data
@@ -30,7 +30,9 @@ def stored_products(found: Outcome) -> dict[str, Any] | None:
         "rows": products.counts.tolist(),
         "inflation": float(products.inflation),
         "biases": [
-            np.nan_to_num(x.bias).tolist() for x in effects if x.name != GAIN and np.any(x.bias)
+            np.nan_to_num(x.bias).tolist()
+            for x in effects
+            if x.name != RelativeGain.NAME and np.any(x.bias)
         ],
     }
 

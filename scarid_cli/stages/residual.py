@@ -23,7 +23,6 @@ from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.algorithms.statistics.peaks import Peaks
-from scarid_cli.algorithms.statistics.sentences import of_joints
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import (
@@ -39,6 +38,7 @@ from scarid_cli.stages import Sink
 from scarid_cli.stages.changes import Known
 from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.prediction import Part, of_parts
+from scarid_cli.words import of_joints
 
 SHOWN = 3  # contacts that a message names at most
 GAP = 0.1  # s without a contact, by which two of them are apart

@@ -18,12 +18,12 @@ from scarid_cli.algorithms.plants.loop import IndefiniteError
 from scarid_cli.algorithms.plants.rollout import OpenLoop
 from scarid_cli.algorithms.regression.rows import Rows, joined, runs
 from scarid_cli.algorithms.regression.shifting import in_step, reach
-from scarid_cli.algorithms.statistics.sentences import percents_of_joints
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
 from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.prediction import Part
+from scarid_cli.words import percents_of_joints
 
 PARTS = (0.25, 0.5, 1.0)  # of the window: the horizons
 MODEL, STILL, STEADY = range(3)  # what predicts: the model, the first position, the first velocity

@@ -12,10 +12,10 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.statistics.bursts import Interval
-from scarid_cli.algorithms.statistics.sentences import listed
 from scarid_cli.io.table import Table, matrix, segments_of
 from scarid_cli.stages.rows import Gaps
 from scarid_cli.stages.several import LOGS
+from scarid_cli.words import listed
 
 MUCH = 0.75  # of the log: where less would be kept, the other parts are worth a fit as well
 CAUSE = "a contact, or another load?"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.arrays import Array
 
 ARM = load("planar2-gravity")

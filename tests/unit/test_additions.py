@@ -11,31 +11,27 @@ from conftest import seeds
 from unit.pendulum import ARM, MODEL, H, motion
 from unit.regressions import estimated
 
+from scarid_cli.algorithms.beyond.additions import Addition, mean_additions
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.torques import (
+    DECAYED,
+    Asymmetry,
+    Cable,
+    Cube,
+    Curvature,
+    Drift,
+    LoadFriction,
+    Offset,
+    Ripple,
+    RippleSine,
+    Saturation,
+    SlowFriction,
+    Spring,
+    Stribeck,
+)
 from scarid_cli.algorithms.estimators import wls
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
-from scarid_cli.algorithms.statistics.additions import (
-    Addition,
-    Shapes,
-    mean_additions,
-    of_explanation,
-)
-from scarid_cli.algorithms.statistics.alternatives import (
-    ASYMMETRY,
-    CABLE,
-    CUBE,
-    CURVATURE,
-    DECAYED,
-    DRIFT,
-    LOAD,
-    OFFSET,
-    RIPPLE,
-    SATURATION,
-    SINE,
-    SLOW,
-    SPRING,
-    STRIBECK,
-    Model,
-)
+from scarid_cli.algorithms.statistics.additions import Shapes, of_explanation
 from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
 from scarid_cli.algorithms.statistics.explanations import Explanation
 from scarid_cli.algorithms.statistics.offsets import with_offsets
@@ -103,12 +99,15 @@ def diagnosed(rows: Rows) -> Diagnostics:
 @pytest.mark.parametrize(
     ("beyond", "expected"),
     [
-        (of_the_load, {(LOAD, 0), (LOAD, 1)}),
-        (of_the_first_load, {(LOAD, 0)}),
-        (pulled, {(SPRING, 1)}),
-        (bent, {(CABLE, 1)}),
-        (rippled, {(RIPPLE, 0)}),
-        (lambda at: of_the_load(at) + rippled(at), {(LOAD, 0), (LOAD, 1), (RIPPLE, 0)}),
+        (of_the_load, {(LoadFriction.NAME, 0), (LoadFriction.NAME, 1)}),
+        (of_the_first_load, {(LoadFriction.NAME, 0)}),
+        (pulled, {(Spring.NAME, 1)}),
+        (bent, {(Cable.NAME, 1)}),
+        (rippled, {(Ripple.NAME, 0)}),
+        (
+            lambda at: of_the_load(at) + rippled(at),
+            {(LoadFriction.NAME, 0), (LoadFriction.NAME, 1), (Ripple.NAME, 0)},
+        ),
     ],
 )
 def test_what_explains_the_torques_alone_is_found(
@@ -135,7 +134,7 @@ def test_noise_is_seldom_explained() -> None:
     found = [diagnosed(log(nothing, seed)) for seed in seeds(25, 100)]
     most = len(found) // 25
     assert sum(bool(one.explanations) for one in found) <= most
-    ripples = [effect for one in found for effect in one.effects if effect.name == RIPPLE]
+    ripples = [effect for one in found for effect in one.effects if effect.name == Ripple.NAME]
     assert len(ripples) == len(found)
     assert sum(effect.significant() for effect in ripples) <= most  # of hundreds that are tried
 
@@ -183,7 +182,7 @@ def test_other_joints_may_have_what_one_has_as_far_as_the_log_can_tell() -> None
     def fitted(
         joints: Sequence[int], shared: frozenset[str] = frozenset()
     ) -> tuple[float, Diagnostics]:
-        springs = [Addition(SPRING, joint, 1.0) for joint in joints]
+        springs = [Addition(Spring.NAME, joint, 1.0) for joint in joints]
         wide = Shapes(springs, MODEL, ARM.apriori).beside(rows)
         found = estimated(wls.Estimator(), wide)
         return found.fit.estimates[moment], Diagnosis(
@@ -191,14 +190,14 @@ def test_other_joints_may_have_what_one_has_as_far_as_the_log_can_tell() -> None
         ).diagnostics
 
     def bias(found: Diagnostics) -> float:
-        (spring,) = [effect for effect in found.effects if effect.name == SPRING]
+        (spring,) = [effect for effect in found.effects if effect.name == Spring.NAME]
         return float(abs(spring.bias[moment]))
 
     both, known = fitted([0, 1])
-    one, found = fitted([1], frozenset({SPRING}))
+    one, found = fitted([1], frozenset({Spring.NAME}))
     assert bias(found) == pytest.approx(np.hypot(both - one, known.scatter[moment]), rel=0.05)
     assert bias(fitted([1])[1]) == 0.0
-    found = replace(found, additions=(Addition(SPRING, 1, 1.0, 0.1),))
+    found = replace(found, additions=(Addition(Spring.NAME, 1, 1.0, 0.1),))
     (note,) = additions_of(ARM.names, found, ARM)
     assert note.endswith("the intervals of ZZ1R and MX1R allow for the same at joint 1")
 
@@ -211,37 +210,41 @@ def test_other_joints_may_have_an_offset_where_one_has() -> None:
     plain = Problem(rows, found, own, None, Model(arm, list(range(own))))
     wide = with_offsets(rows, (1,))
     fitted = replace(plain, rows=wide, found=estimated(wls.Estimator(), wide), offsets=(1,))
-    for problem, shared in ((plain, []), (fitted, [OFFSET])):
+    for problem, shared in ((plain, []), (fitted, [Offset.NAME])):
         effects = problem.diagnosis(0.0).effects
         assert [effect.name for effect in effects if effect.shared] == shared
-    (offset,) = [effect for effect in fitted.diagnosis(0.0).effects if effect.name == OFFSET]
+    (offset,) = [effect for effect in fitted.diagnosis(0.0).effects if effect.name == Offset.NAME]
     known = np.hypot(offset.moved, offset.errors)
     np.testing.assert_allclose(np.abs(offset.bias), known)
 
 
 def test_the_diagnostics_of_an_outcome_know_what_was_fitted_for_other_joints() -> None:
-    additions = (Addition(SPRING, 1, 1.0, 0.1),)
+    additions = (Addition(Spring.NAME, 1, 1.0, 0.1),)
     rows = Shapes(additions, MODEL, ARM.apriori).beside(log(pulled))
     found = estimated(wls.Estimator(), rows)
     problem = Problem(rows, found, len(ARM.names), None, MODEL, additions=additions)
     effects = problem.diagnostics(0.0).effects
-    assert [effect.name for effect in effects if effect.shared] == [SPRING]
+    assert [effect.name for effect in effects if effect.shared] == [Spring.NAME]
 
 
 def test_a_spring_is_slack_somewhere_unless_the_joint_has_an_offset() -> None:
     explanation = Explanation(
-        frozenset({(SPRING, 0), (SPRING, 1)}),
+        frozenset({(Spring.NAME, 0), (Spring.NAME, 1)}),
         clearness=2.0,
         threshold=4.0,
         cycles=np.zeros((0, 2)),
     )
     found = [(x.name, x.joint) for x in of_explanation(explanation, log(pulled), {0})]
-    assert found == [(OFFSET, 1), (SPRING, 0), (SPRING, 1)]
+    assert found == [(Offset.NAME, 1), (Spring.NAME, 0), (Spring.NAME, 1)]
 
 
 def test_a_bent_cable_is_told_once_for_each_joint() -> None:
     _, found = explained(rows := log(bent), diagnosed(rows))
-    parts = (Addition(CUBE, 1, 1.0, 0.1), Addition(SPRING, 1, 1.0, -0.02), Addition(SPRING, 0, 1.0))
+    parts = (
+        Addition(Cube.NAME, 1, 1.0, 0.1),
+        Addition(Spring.NAME, 1, 1.0, -0.02),
+        Addition(Spring.NAME, 0, 1.0),
+    )
     cable, spring = additions_of(
         dict.fromkeys(ARM.names, 1.0), replace(found, additions=parts), ARM
     )
@@ -255,16 +258,16 @@ def test_the_torques_are_those_of_the_robot_and_not_of_the_log() -> None:
     additions = [
         Addition(name, 1, 0.5, 2.0)
         for name in (
-            OFFSET,
-            ASYMMETRY,
-            SPRING,
-            CUBE,
-            SLOW,
-            STRIBECK,
-            CURVATURE,
-            SATURATION,
-            DRIFT,
-            LOAD,
+            Offset.NAME,
+            Asymmetry.NAME,
+            Spring.NAME,
+            Cube.NAME,
+            SlowFriction.NAME,
+            Stribeck.NAME,
+            Curvature.NAME,
+            Saturation.NAME,
+            Drift.NAME,
+            LoadFriction.NAME,
         )
     ]
     q, v = rows.motion[0, 1], rows.motion[1, 1]
@@ -280,18 +283,18 @@ def test_the_torques_are_those_of_the_robot_and_not_of_the_log() -> None:
 
 
 def test_pooled_additions_are_the_mean_of_those_of_all_logs() -> None:
-    first = [Addition(LOAD, 0, 1.0, 0.02), Addition(STRIBECK, 1, 1.0, 0.3)]
-    other = [Addition(LOAD, 0, 3.0, 0.04)]
+    first = [Addition(LoadFriction.NAME, 0, 1.0, 0.02), Addition(Stribeck.NAME, 1, 1.0, 0.3)]
+    other = [Addition(LoadFriction.NAME, 0, 3.0, 0.04)]
     assert mean_additions([first, other]) == (
-        Addition(LOAD, 0, 2.0, 0.03),
-        Addition(STRIBECK, 1, 1.0, 0.15),
+        Addition(LoadFriction.NAME, 0, 2.0, 0.03),
+        Addition(Stribeck.NAME, 1, 1.0, 0.15),
     )
     assert mean_additions([first]) == tuple(first)
 
 
 def test_pooled_ripples_keep_their_periods() -> None:
     """The mean of the torques of two ripples is not one of a ripple between them."""
-    sets = [[Addition(SINE, 0, 1.0, 0.1, cycles)] for cycles in (9.9, 10.1)]
+    sets = [[Addition(RippleSine.NAME, 0, 1.0, 0.1, cycles)] for cycles in (9.9, 10.1)]
     rows = log(nothing)
     pooled, *own = (
         Shapes(found, MODEL, ARM.apriori).torques(rows) for found in (mean_additions(sets), *sets)
@@ -301,5 +304,10 @@ def test_pooled_ripples_keep_their_periods() -> None:
 
 def test_gears_take_a_part_of_the_load_away() -> None:
     sizes = (-0.01, 0.02, 0.9, 1.5)
-    assert [Addition(LOAD, 0, 1.0, size).possible for size in sizes] == [False, True, True, False]
-    assert all(Addition(SPRING, 0, 1.0, size).possible for size in sizes)
+    assert [Addition(LoadFriction.NAME, 0, 1.0, size).possible for size in sizes] == [
+        False,
+        True,
+        True,
+        False,
+    ]
+    assert all(Addition(Spring.NAME, 0, 1.0, size).possible for size in sizes)

@@ -10,7 +10,7 @@ from conftest import ROOT, Shell
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scarid_cli.algorithms.statistics.curves import REMEDIES, law
+from scarid_cli.algorithms.beyond.curves import REMEDIES, law
 
 SPEEDS = np.linspace(0.05, 2.0, 100)
 

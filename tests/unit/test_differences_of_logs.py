@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from scarid_cli.algorithms.beyond.torques import RelativeGain
 from scarid_cli.algorithms.changes.columns import Columns
 from scarid_cli.algorithms.changes.evidence import LogEvidence, _without
 from scarid_cli.algorithms.changes.explanation import Change, Explanation, _of_search, found_in
@@ -22,7 +23,6 @@ from scarid_cli.algorithms.changes.hypotheses import (
 )
 from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.alternatives import GAIN
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 from scarid_cli.algorithms.statistics.effects import Effect
 from scarid_cli.algorithms.statistics.gains import Gain, apart, relative, significant
@@ -174,7 +174,9 @@ def test_gains_that_are_not_fitted_are_those_of_the_joints_that_are_apart(
 ) -> None:
     none = np.zeros(3)
     noise = np.array([np.nan, 0.004, 0.003, 0.007])
-    effect = Effect(GAIN, none, none, none, amounts=np.array(amounts), noise=noise, blocks=50)
+    effect = Effect(
+        RelativeGain.NAME, none, none, none, amounts=np.array(amounts), noise=noise, blocks=50
+    )
     diagnostics = cast("Diagnostics", SimpleNamespace(effects=(effect,), reference=0))
     found = significant(diagnostics)
     assert {x.joint: x.factor for x in found} == pytest.approx(expected, rel=5e-3)
@@ -187,7 +189,7 @@ def test_intervals_allow_for_the_gain_of_the_joint_that_others_are_relative_to()
     noise = np.array([np.nan, 0.003, 0.003, 0.003])
     apart_, right = np.array([np.nan, -1.0, -1.0, -1.0]) / 21.0, np.array([np.nan, 0.05, 0.0, 0.0])
     moved = np.array([0.0, -0.2])
-    effect = Effect(GAIN, moved, none, none, amounts=apart_, noise=noise, blocks=50)
+    effect = Effect(RelativeGain.NAME, moved, none, none, amounts=apart_, noise=noise, blocks=50)
     expected = (estimates + moved) / 1.05 - estimates
     np.testing.assert_allclose(relative(effect, 0, estimates).moved, expected)
     other = replace(effect, amounts=right)

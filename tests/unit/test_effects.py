@@ -15,29 +15,31 @@ from scipy.signal import butter, sosfiltfilt
 from scipy.stats import binom
 from unit.regressions import estimated
 
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.positions import OwnDelays
+from scarid_cli.algorithms.beyond.rows import Parallel
+from scarid_cli.algorithms.beyond.signals import Signals
+from scarid_cli.algorithms.beyond.torques import (
+    Cable,
+    Curvature,
+    Drift,
+    LoadFriction,
+    Offset,
+    Saturation,
+    Spring,
+    Stribeck,
+)
 from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.regression.rows import Rows, plain, rows_of, thinned
 from scarid_cli.algorithms.regression.shifting import led, shifted
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.statistics import alignment
 from scarid_cli.algorithms.statistics.alignment import Aligned, aligned
-from scarid_cli.algorithms.statistics.alternatives import (
-    CABLE,
-    CURVATURE,
-    DRIFT,
-    LOAD,
-    OFFSET,
-    SATURATION,
-    SPRING,
-    STRIBECK,
-    Model,
-    away_from_reversals,
-    torque_columns,
-)
 from scarid_cli.algorithms.statistics.curvature import Form, form
 from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
-from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
-from scarid_cli.algorithms.statistics.parallel import SIGNALS, differences
+from scarid_cli.algorithms.statistics.effects import Effect
+from scarid_cli.algorithms.statistics.parallel import differences
+from scarid_cli.algorithms.statistics.reversals import away_from_reversals
 from scarid_cli.arrays import Array
 
 AXIS = load("emps")
@@ -108,7 +110,7 @@ def attenuated(motion: Array) -> Array:
 
 
 def test_derivatives_that_are_not_those_of_the_position_are_found() -> None:
-    found = effect(axis(motion=attenuated), PARALLEL)
+    found = effect(axis(motion=attenuated), Parallel.NAME)
     assert found.significant()
     assert found.apart[0] == pytest.approx(-0.1 / 0.9 * AXIS.apriori[0], rel=0.05)
 
@@ -127,7 +129,7 @@ def elastic(motion: Array) -> Array:
 
 @pytest.mark.parametrize("tau", [late, elastic])
 def test_delays_and_flexible_joints_are_found(tau: Change) -> None:
-    assert effect(axis(tau), SIGNALS).significant()
+    assert effect(axis(tau), OwnDelays.NAME).significant()
 
 
 def stribeck(motion: Array) -> Array:
@@ -165,12 +167,12 @@ def saturated(motion: Array) -> Array:
 @pytest.mark.parametrize(
     ("tau", "name"),
     [
-        (stribeck, STRIBECK),
-        (bent, CURVATURE),
-        (loaded, LOAD),
-        (pulled, SPRING),
-        (bent_far, CABLE),
-        (saturated, SATURATION),
+        (stribeck, Stribeck.NAME),
+        (bent, Curvature.NAME),
+        (loaded, LoadFriction.NAME),
+        (pulled, Spring.NAME),
+        (bent_far, Cable.NAME),
+        (saturated, Saturation.NAME),
     ],
 )
 def test_intervals_allow_for_torques_that_the_model_lacks(tau: Change, name: str) -> None:
@@ -188,21 +190,24 @@ def drifting(motion: Array) -> Array:
 
 
 def test_a_drift_of_the_torque_is_found() -> None:
-    assert effect(axis(drifting), DRIFT).significant()
+    assert effect(axis(drifting), Drift.NAME).significant()
 
 
 def test_a_drift_has_no_mean_and_a_spring_has_one() -> None:
     """An offset is the mean over the log, but the torque of a spring where it is slack."""
     rows = replace(axis(), motion=axis().motion + 0.3)
-    columns = torque_columns(rows, None, AXIS.apriori, np.zeros((0, 1)))
-    assert abs(columns[DRIFT].mean()) < 1e-9
-    assert columns[SPRING].shape == (rows.samples, 1, 2)
-    assert columns[SPRING][:, 0, 1].mean() == pytest.approx(rows.motion[0].mean())
+    signals = Signals.of(rows, None, AXIS.apriori)
+    drift, spring = (kind.columns(signals) for kind in (Drift, Spring))
+    assert drift is not None
+    assert spring is not None
+    assert abs(drift.mean()) < 1e-9
+    assert spring.shape == (rows.samples, 1, 2)
+    assert spring[:, 0, 1].mean() == pytest.approx(rows.motion[0].mean())
 
 
 def test_what_the_model_has_is_no_alternative() -> None:
     """The axis has an offset; a second one would be singular."""
-    assert OFFSET not in [effect.name for effect in diagnosed(axis()).effects]
+    assert Offset.NAME not in [effect.name for effect in diagnosed(axis()).effects]
 
 
 def test_a_log_without_noise_has_no_effects_beyond_rounding() -> None:

@@ -9,14 +9,15 @@ import pytest
 from unit.pendulum import ARM, MODEL, H, motion
 from unit.regressions import estimated
 
+from scarid_cli.algorithms.beyond.distances import distance_columns
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.mounting import Geometry
 from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.regression.rows import rows_of
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.planar import MX2
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.alternatives import GEOMETRY, Model
 from scarid_cli.algorithms.statistics.diagnostics import Diagnosis
-from scarid_cli.algorithms.statistics.geometry import distance_columns
 from scarid_cli.algorithms.statistics.sentences import notes_of
 from scarid_cli.arrays import Array
 
@@ -53,7 +54,7 @@ def test_a_longer_link_is_named_with_its_size() -> None:
     rows = rows_of(ARM, np.stack((*true, tau)), np.arange(tau.shape[1]), H)
     fit = estimated(ls.Estimator(), rows)
     found = Diagnosis(rows, fit, len(ARM.parameters), model=MODEL).diagnostics
-    effect = next(effect for effect in found.effects if effect.name == GEOMETRY)
+    effect = next(effect for effect in found.effects if effect.name == Geometry.NAME)
     assert effect.amounts[1] == pytest.approx(0.05, abs=3.0 * effect.noise[1])
     assert effect.significant()
     (note,) = notes_of(ARM.names, found, ARM)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from scipy.stats import norm
 
-from scarid_cli.algorithms.statistics.sentences import percents_of_joints
 from scarid_cli.algorithms.statistics.verdict import GRADES, meets
 from scarid_cli.interval import HALF, plus_minus
+from scarid_cli.words import percents_of_joints
 
 
 def test_it_is_half_the_interval_of_a_normal_distribution() -> None:

@@ -17,18 +17,19 @@ from unit.support import cuts
 from unit.test_additions import diagnosed, nothing
 from unit.test_additions import log as log_of
 
-from scarid_cli.algorithms.regression.rows import Rows, rows_of
-from scarid_cli.algorithms.statistics.additions import Addition, Shapes, mean_additions
-from scarid_cli.algorithms.statistics.mismatches import (
-    BACKLASH,
-    ELASTIC_GEAR,
-    ELASTIC_JOINT,
-    HYSTERESIS,
-    LATE_POSITION,
-    LATE_TORQUE,
-    MISMATCHES,
-    PRESLIDING,
+from scarid_cli.algorithms.beyond.additions import Addition, mean_additions
+from scarid_cli.algorithms.beyond.catalogue import MISMATCHES
+from scarid_cli.algorithms.beyond.gears import (
+    Backlash,
+    ElasticGear,
+    ElasticJoint,
+    Hysteresis,
+    LatePosition,
+    LateTorque,
+    Presliding,
 )
+from scarid_cli.algorithms.regression.rows import Rows, rows_of
+from scarid_cli.algorithms.statistics.additions import Shapes
 from scarid_cli.algorithms.statistics.sentences import additions_of
 from scarid_cli.arrays import Array
 from scarid_cli.io.facts import CHECKS
@@ -89,7 +90,7 @@ def test_a_late_position_is_that_of_a_time_ago(joint: int) -> None:
     late[joint] -= 0.01
     seen = at(late)
     near(
-        change(LATE_POSITION, joint, 0.01, rows(seen)),
+        change(LatePosition.NAME, joint, 0.01, rows(seen)),
         torques(at(time)) - torques(seen),
         seen,
         2e-3,
@@ -101,7 +102,7 @@ def test_a_late_torque_is_that_of_a_time_ago() -> None:
     expected = torques(at(time - 0.01)) - torques(at(time))
     expected[0] = 0.0
     seen = at(time)
-    near(change(LATE_TORQUE, 1, 0.01, rows(seen)), expected, seen, 2e-3)
+    near(change(LateTorque.NAME, 1, 0.01, rows(seen)), expected, seen, 2e-3)
 
 
 @pytest.mark.parametrize(("joint", "stiffness"), [(0, 150.0), (1, 40.0)])
@@ -121,7 +122,7 @@ def test_a_link_behind_an_elastic_gear_is_where_the_torque_leaves_it(
         ahead = np.gradient(ahead, step)
     seen = motors[:, :, ::fine]
     beyond = (MODEL.link_torques(links, THETA) - MODEL.link_torques(motors, THETA)).T[:, ::fine]
-    near(change(ELASTIC_GEAR, joint, 1.0 / stiffness, rows(seen)), beyond, seen, 5e-2)
+    near(change(ElasticGear.NAME, joint, 1.0 / stiffness, rows(seen)), beyond, seen, 5e-2)
 
 
 def test_a_gap_is_crossed_with_the_torque_in_the_gear() -> None:
@@ -133,7 +134,7 @@ def test_a_gap_is_crossed_with_the_torque_in_the_gear() -> None:
     moved = still.copy()
     moved[0, 1] -= 2e-3 * np.sign(carried[:, 1])
     expected = MODEL.link_torques(moved, THETA) - carried
-    found = change(BACKLASH, 1, 2e-3, seen).T
+    found = change(Backlash.NAME, 1, 2e-3, seen).T
     crossing = np.convolve(np.abs(np.gradient(np.sign(carried[:, 1]))), np.ones(9), "same") > 0
     assert np.abs(found - expected)[~crossing].max() < 1e-9
 
@@ -146,7 +147,7 @@ def test_a_torque_with_a_hysteresis_follows_at_a_distance() -> None:
     for x in torque.tolist():
         now = min(max(now, x - 0.1), x + 0.1)
         expected.append(now - x)
-    found = change(HYSTERESIS, 1, 0.1, seen)
+    found = change(Hysteresis.NAME, 1, 0.1, seen)
     assert np.all(found[0] == 0.0)
     differs = np.abs(found[1] - expected) > 1e-9
     assert np.mean(differs) < 0.02  # where the torque stays within the play for longer than that
@@ -157,7 +158,7 @@ def test_friction_builds_up_behind_a_reversal() -> None:
     q = np.concatenate((np.linspace(0.0, 1.0, 300), np.linspace(1.0, 0.0, 300)))
     still = np.zeros((3, 2, 600))
     still[0, 1], still[1, 1] = q, np.sign(np.gradient(q))
-    found = change(PRESLIDING, 1, 0.05, rows(still))[1] + ARM.value("coulomb", 2) * still[1, 1]
+    found = change(Presliding.NAME, 1, 0.05, rows(still))[1] + ARM.value("coulomb", 2) * still[1, 1]
     behind = 1.0 - q[300:]
     expected = ARM.value("coulomb", 2) * np.maximum(1.0 - behind / 0.05, -1.0)
     assert found[302:598] == pytest.approx(expected[2:298], abs=1e-3)
@@ -169,7 +170,7 @@ def test_a_motor_oscillates_against_its_link() -> None:
     carried = MODEL.link_torques(seen, THETA)[:, 1]
     expected = np.zeros((2, seen.shape[2]))
     expected[1] = 2e-4 * np.gradient(np.gradient(carried, H), H)
-    near(change(ELASTIC_JOINT, 1, 2e-4, rows(seen)), expected, seen, 1e-9)
+    near(change(ElasticJoint.NAME, 1, 2e-4, rows(seen)), expected, seen, 1e-9)
 
 
 @given(parts=cuts(400))
@@ -187,9 +188,9 @@ def test_predictions_do_not_depend_on_the_batches(parts: Sequence[slice]) -> Non
 
 
 LATE = [
-    ("position-delay", (0.0, 0.004), LATE_POSITION, 1),
-    ("position-delay", (0.006, 0.0), LATE_POSITION, 0),
-    ("torque-delay", (0.0, 0.006), LATE_TORQUE, 1),
+    ("position-delay", (0.0, 0.004), LatePosition.NAME, 1),
+    ("position-delay", (0.006, 0.0), LatePosition.NAME, 0),
+    ("torque-delay", (0.0, 0.006), LateTorque.NAME, 1),
 ]
 
 
@@ -224,15 +225,15 @@ def test_the_stiffness_of_a_gear_is_found_within_a_tenth(frequency: float) -> No
     condition = Condition("elastic", {"flexibility": (0.0, frequency)})
     found, _ = blind(name, log(robot, condition, 62_000))
     (addition,) = (x for x in found.meta.extra["additions"] if x["joint"] == 1)
-    assert addition["name"] == ELASTIC_GEAR
+    assert addition["name"] == ElasticGear.NAME
     stiffness = robot.value("ZZ2") * (2.0 * np.pi * frequency) ** 2
     assert addition["size"] * stiffness == pytest.approx(1.0, abs=0.1)
 
 
 SIZES = {
-    "backlash 0.2 deg": (BACKLASH, np.radians(0.1)),
-    "Maxwell slip 20 mrad": (PRESLIDING, 0.01),
-    "Maxwell slip 60 mrad": (PRESLIDING, 0.03),
+    "backlash 0.2 deg": (Backlash.NAME, np.radians(0.1)),
+    "Maxwell slip 20 mrad": (Presliding.NAME, 0.01),
+    "Maxwell slip 60 mrad": (Presliding.NAME, 0.03),
 }
 
 
@@ -249,13 +250,13 @@ def test_gaps_and_presliding_are_found_with_their_sizes(name: str) -> None:
 def test_sizes_are_told_with_their_units_and_intervals() -> None:
     found = diagnosed(log_of(nothing))
     additions = (
-        Addition(LATE_POSITION, 1, 1.0, 0.004, error=1e-4),
-        Addition(LATE_TORQUE, 0, 1.0, 0.002, error=2e-4),
-        Addition(ELASTIC_GEAR, 0, 1.0, 0.01, error=1e-4),
-        Addition(ELASTIC_JOINT, 1, 1.0, (40.0 * np.pi) ** -2.0, error=1e-6),
-        Addition(BACKLASH, 1, 1.0, 0.001, error=1e-4),
-        Addition(HYSTERESIS, 0, 1.0, 0.2, error=0.01),
-        Addition(PRESLIDING, 1, 1.0, 0.01, error=1e-3),
+        Addition(LatePosition.NAME, 1, 1.0, 0.004, error=1e-4),
+        Addition(LateTorque.NAME, 0, 1.0, 0.002, error=2e-4),
+        Addition(ElasticGear.NAME, 0, 1.0, 0.01, error=1e-4),
+        Addition(ElasticJoint.NAME, 1, 1.0, (40.0 * np.pi) ** -2.0, error=1e-6),
+        Addition(Backlash.NAME, 1, 1.0, 0.001, error=1e-4),
+        Addition(Hysteresis.NAME, 0, 1.0, 0.2, error=0.01),
+        Addition(Presliding.NAME, 1, 1.0, 0.01, error=1e-3),
     )
     told = additions_of(dict.fromkeys(ARM.names, 1.0), replace(found, additions=additions), ARM)
     assert told == [
@@ -282,7 +283,7 @@ def test_what_yields_or_is_late_has_a_size_above_0() -> None:
 
 
 def test_the_error_of_a_mean_is_that_of_independent_ones() -> None:
-    sets = [[Addition(LATE_TORQUE, 0, 1.0, x, error=3e-4)] for x in (0.002, 0.004)]
+    sets = [[Addition(LateTorque.NAME, 0, 1.0, x, error=3e-4)] for x in (0.002, 0.004)]
     (found,) = mean_additions(sets)
     assert found.size == pytest.approx(0.003)
     assert found.error == pytest.approx(3e-4 / np.sqrt(2.0))
@@ -290,7 +291,7 @@ def test_the_error_of_a_mean_is_that_of_independent_ones() -> None:
 
 def test_tables_without_errors_of_what_was_fitted_are_read() -> None:
     """As those were that earlier versions wrote."""
-    told = {"name": LATE_TORQUE, "joint": 0, "usual": 1.0, "size": 2e-3, "cycles": 0.0}
+    told = {"name": LateTorque.NAME, "joint": 0, "usual": 1.0, "size": 2e-3, "cycles": 0.0}
     assert CHECKS["additions"]([told])
     assert CHECKS["additions"]([{**told, "error": 1e-4}])
     assert CHECKS["additions"]([{**told, "error": None}])

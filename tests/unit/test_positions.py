@@ -11,19 +11,20 @@ from unit.arms import URDF
 from unit.pendulum import ARM, MODEL, H, motion
 from unit.regressions import estimated
 
-from scarid_cli.algorithms.estimators import ls
-from scarid_cli.algorithms.regression.rows import rows_of
-from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.alternatives import UNEVEN, Model
-from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
-from scarid_cli.algorithms.statistics.effects import Effect
-from scarid_cli.algorithms.statistics.parallel import ELASTICITY, ENCODERS, LATE, ZEROS
-from scarid_cli.algorithms.statistics.positions import (
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.positions import Elasticity, Encoders, Late, Zeros
+from scarid_cli.algorithms.beyond.sensitivities import (
     Sensitivities,
     eccentric_columns,
     elastic_columns,
     zero_columns,
 )
+from scarid_cli.algorithms.beyond.torques import Uneven
+from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.regression.rows import rows_of
+from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
+from scarid_cli.algorithms.statistics.effects import Effect
 from scarid_cli.algorithms.statistics.sentences import notes_of
 from scarid_cli.arrays import Array
 
@@ -105,7 +106,7 @@ def test_errors_of_encoders_that_other_parameters_express_are_not_tested(tmp_pat
     found = Diagnosis(
         rows, estimated(ls.Estimator(), rows), len(arm.names), model=model
     ).diagnostics
-    assert (named(found, ZEROS).tests, named(found, ENCODERS).tests) == (1, 5)
+    assert (named(found, Zeros.NAME).tests, named(found, Encoders.NAME).tests) == (1, 5)
 
 
 def named(found: Diagnostics, name: str) -> Effect:
@@ -118,14 +119,14 @@ def test_another_zero_is_found_with_its_joint_and_its_size() -> None:
     logged = true.copy()
     logged[0, 0] += 0.02
     found, _ = diagnosed(logged, true)
-    effect = named(found, ZEROS)
+    effect = named(found, Zeros.NAME)
     assert effect.significant()
     assert abs(effect.amounts[0] + 0.02) < 3.0 * effect.noise[0] < 0.002
     (note,) = notes_of(ARM.names, found, ARM)
     assert note.startswith("where the log has a position of 0, joint 1 is at -0.0")
     # The zero of the other joint is likely to be off as well, as far as the log can tell.
     assert np.abs(effect.bias) == pytest.approx(np.hypot(effect.moved, effect.errors))
-    assert not named(diagnosed(true, true)[0], ZEROS).bias.any()
+    assert not named(diagnosed(true, true)[0], Zeros.NAME).bias.any()
 
 
 def eccentric(true: Array) -> Array:
@@ -147,7 +148,7 @@ def late(true: Array) -> Array:
 
 
 @pytest.mark.parametrize(
-    ("seen", "name"), [(eccentric, ENCODERS), (elastic, ELASTICITY), (late, LATE)]
+    ("seen", "name"), [(eccentric, Encoders.NAME), (elastic, Elasticity.NAME), (late, Late.NAME)]
 )
 def test_intervals_allow_for_positions_that_are_off(
     seen: Callable[[Array], Array], name: str
@@ -163,7 +164,7 @@ def test_how_late_a_position_is_is_found() -> None:
     """8 ms, with the torques of the links and with friction."""
     true = motion()
     found, _ = diagnosed(late(true), true)
-    effect = named(found, LATE)
+    effect = named(found, Late.NAME)
     assert effect.amounts[1] == pytest.approx(0.008, abs=3.0 * effect.noise[1])
     assert effect.noise[1] < 0.0005
     for other in (0, 2, 3):  # the position of joint 1, and both torques
@@ -182,7 +183,7 @@ def test_friction_that_varies_over_a_turn_is_found_with_its_size() -> None:
     found = Diagnosis(
         rows, estimated(ls.Estimator(), rows), len(ARM.parameters), model=MODEL
     ).diagnostics
-    effect = named(found, UNEVEN)
+    effect = named(found, Uneven.NAME)
     sine, cosine = effect.amounts[1], effect.amounts[3]
     assert cosine == pytest.approx(0.15, abs=3.0 * effect.noise[3])
     assert abs(sine) < 4.0 * effect.noise[1]

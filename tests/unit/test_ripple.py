@@ -9,9 +9,9 @@ import pytest
 from scipy.signal import butter, sosfiltfilt
 from unit.pendulum import ARM, H, motion
 
+from scarid_cli.algorithms.beyond.ripple import Ripples, gain
 from scarid_cli.algorithms.filters.two_sided import two_sided_bandwidth
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
-from scarid_cli.algorithms.statistics.ripple import Ripples, gain
 from scarid_cli.arrays import Array
 
 CUTOFF = 8.0  # Hz

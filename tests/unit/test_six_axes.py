@@ -12,8 +12,8 @@ from gauntlet import blind_of
 
 pinocchio = pytest.importorskip("pinocchio")
 
+from scarid_cli.algorithms.beyond.model import Model, tilted  # noqa: E402
 from scarid_cli.algorithms.robots.reading import load  # noqa: E402
-from scarid_cli.algorithms.statistics.alternatives import Model, tilted  # noqa: E402
 from scarid_cli.arrays import Array  # noqa: E402
 
 

@@ -7,16 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from scarid_cli.algorithms.beyond.model import tilted
+from scarid_cli.algorithms.beyond.positions import OwnDelays
+from scarid_cli.algorithms.beyond.rows import Parallel
+from scarid_cli.algorithms.beyond.torques import Stribeck
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.alternatives import STRIBECK, tilted
 from scarid_cli.algorithms.statistics.bursts import Interval
 from scarid_cli.algorithms.statistics.consequences import Consequences
 from scarid_cli.algorithms.statistics.cuts import Cut
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
-from scarid_cli.algorithms.statistics.parallel import SIGNALS
+from scarid_cli.algorithms.statistics.effects import Effect
 from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
 from scarid_cli.arrays import Array
@@ -59,7 +61,7 @@ def evidence(**changes: object) -> Evidence:
         quantiles=2.0 * np.ones(8),
         matrix=1e-4 * np.eye(8),
         joints=(GOOD, replace(GOOD, torque=0.5)),
-        effects=(effect(PARALLEL), effect(SIGNALS)),
+        effects=(effect(Parallel.NAME), effect(OwnDelays.NAME)),
         gains=np.ones((2, 8)),
         consequences=KNOWN,
         totals=np.zeros((2, 10, 10)),
@@ -99,21 +101,29 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             "1 0.61 %, joint 2 0.81 %; R2 joint 1 0.9990, joint 2 0.9990; condition number 20",
         ),
         (
-            {"effects": (effect(PARALLEL, **FAR),)},
+            {"effects": (effect(Parallel.NAME, **FAR),)},
             "doubtful",
             "the estimates depend on the soft sensor: with the same low-pass for derivatives "
             "and torques, Fv1 would change from 1 to 0.96 (4 standard errors)",
         ),
         (
-            {"effects": (effect(PARALLEL), effect(SIGNALS, **FAR))},
+            {"effects": (effect(Parallel.NAME), effect(OwnDelays.NAME, **FAR))},
             "doubtful",
             "Fv1 would change from 1 to 0.96 (4 standard errors); --align fits a delay",
         ),
-        ({"effects": (effect(PARALLEL, moved=-4.0, largest=2.0),)}, "good", "8 of 8 parameters"),
-        ({"effects": (effect(PARALLEL, moved=-2.0, largest=9.0),)}, "good", "8 of 8 parameters"),
+        (
+            {"effects": (effect(Parallel.NAME, moved=-4.0, largest=2.0),)},
+            "good",
+            "8 of 8 parameters",
+        ),
+        (
+            {"effects": (effect(Parallel.NAME, moved=-2.0, largest=9.0),)},
+            "good",
+            "8 of 8 parameters",
+        ),
         (
             {
-                "effects": (effect(PARALLEL, moved=-4.0, largest=9.0),),
+                "effects": (effect(Parallel.NAME, moved=-4.0, largest=9.0),),
                 **consequence(parts=np.full(8, 1e-3)),
             },
             "good",  # no torque changes by a ten-thousandth
@@ -121,7 +131,7 @@ NOT_KNOWN = np.array([np.nan, np.nan])
         ),
         ({"effects": ()}, "doubtful", "the estimates were not tested for bias"),
         (
-            {"effects": (effect(PARALLEL), effect(STRIBECK, **FAR))},
+            {"effects": (effect(Parallel.NAME), effect(Stribeck.NAME, **FAR))},
             "good",
             "friction of joints 1 and 2 decreases with speed (add Stribeck friction with "
             "--estimator separable); the interval of Fv1 allows for it",
@@ -277,7 +287,7 @@ def test_a_log_that_fails_a_check_is_not_to_be_relied_on(scaled: float) -> None:
 
 
 def test_a_delay_is_not_advised_twice() -> None:
-    effects = (effect(PARALLEL), effect(SIGNALS, **FAR))
+    effects = (effect(Parallel.NAME), effect(OwnDelays.NAME, **FAR))
     judged = verdict(evidence(treatment=Treatment(align=True), effects=effects), SCARA)
     assert "--align" not in judged.reasons[0]
 
@@ -331,7 +341,7 @@ def test_a_direction_that_is_singular_to_rounding_is_found_as_well() -> None:
 
 def test_a_motion_that_is_matched_is_not_to_be_matched() -> None:
     advice = "--match"
-    doubtful = evidence(effects=(effect(PARALLEL, moved=-4.0, largest=9.0),))
+    doubtful = evidence(effects=(effect(Parallel.NAME, moved=-4.0, largest=9.0),))
     assert advice in verdict(doubtful, SCARA).reasons[0]
     assert advice not in verdict(replace(doubtful, matched=True), SCARA).reasons[0]
 

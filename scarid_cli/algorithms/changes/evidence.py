@@ -13,12 +13,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.sensitivities import Sensitivities, zero_columns
 from scarid_cli.algorithms.changes.columns import TILTS, Columns
 from scarid_cli.algorithms.regression.normal_equations import inverse, roots, solved
 from scarid_cli.algorithms.regression.rows import Rows, curvature, delay_column
-from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
-from scarid_cli.algorithms.statistics.positions import Sensitivities, zero_columns
 from scarid_cli.arrays import Array, Numbers
 
 REFITS = 3  # times that the joints are weighted by their residuals

@@ -19,9 +19,9 @@ from scarid_cli.algorithms.changes.hypotheses import (
     ZERO,
     Hypothesis,
 )
-from scarid_cli.algorithms.statistics.sentences import joints_named, percents, percents_of_joints
 from scarid_cli.arrays import Array
 from scarid_cli.interval import plus_minus
+from scarid_cli.words import joints_named, percents, percents_of_joints
 
 SHOWN = 4  # amounts that a message names at most
 CLEAR = 3.0  # errors: a smaller amount is not named

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.signals import diagonal
 from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.regression.normal_equations import inverse, roots
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.alternatives import diagonal
 from scarid_cli.arrays import Array, Marks, Numbers
 
 if TYPE_CHECKING:

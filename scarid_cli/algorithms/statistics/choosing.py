@@ -1,6 +1,6 @@
 """Friction chosen by the data: `scarid identify --friction auto`.
 
-Candidates are the shapes of friction beyond the model (alternatives.py), each for each joint,
+Candidates are the shapes of friction beyond the model (beyond/torques.py), each for each joint,
 beside what `identify` fits anyway. One after another is added, the best one first, while it lowers
 the error of parts of the log that are left out of the fit by more than the uncertainty of this.
 Then those that the others have made superfluous are dropped. Coulomb friction that differs between
@@ -18,26 +18,20 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.additions import Addition
+from scarid_cli.algorithms.beyond.catalogue import SHAPES
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.signals import turning
+from scarid_cli.algorithms.beyond.torques import Offset, Ripple, Uneven
 from scarid_cli.algorithms.regression.rows import Rows, thinned
-from scarid_cli.algorithms.statistics.additions import Addition, Shapes
-from scarid_cli.algorithms.statistics.alternatives import (
-    ASYMMETRY,
-    DECAYED,
-    LOAD,
-    OFFSET,
-    RIPPLE,
-    SINE,
-    UNEVEN,
-    WAVES,
-    Model,
-    turning,
-)
+from scarid_cli.algorithms.statistics.additions import Shapes
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.consequences import held_out_squares
 from scarid_cli.algorithms.statistics.jackknife import quantile
 from scarid_cli.arrays import Array
 
-SHAPES = (ASYMMETRY, *DECAYED, LOAD)
+# Of each joint; offsets are there already.
+FRICTION = [name for name, kind in SHAPES.items() if kind.FRICTION and name != Offset.NAME]
 PARTS = 20  # of the log, each left out once
 LEVEL = 0.05  # of choosing anything where there is nothing
 REFITS = 3  # times that the joints are weighted by their residuals
@@ -89,13 +83,13 @@ def friction(
     """
     rows = thinned(rows)
     there = {(x.name, x.joint) for x in fitted}
-    there |= {(WAVES[UNEVEN][0], j) for j in np.flatnonzero(~turning(rows, model)).tolist()}
+    there |= {(Uneven.PARTS[0].NAME, j) for j in np.flatnonzero(~turning(rows, model)).tolist()}
     further = list(_candidates(rows, cycles, rows.W.shape[2], there))
     additions = [addition for each in further for addition in each.additions]
     wide = Shapes(additions, model, theta).beside(rows)
     first = len(theta) + len(fitted)
     constant = [
-        Candidate(OFFSET, j, (Addition(OFFSET, j, 1.0),), (k,))
+        Candidate(Offset.NAME, j, (Addition(Offset.NAME, j, 1.0),), (k,))
         for k, j in enumerate(offsets, start=first)
     ]
     candidates = [*constant, *further]
@@ -113,17 +107,19 @@ def _candidates(
     """All candidates that are not `there`, whose columns begin at the `first`."""
     usual = np.sqrt(np.mean(rows.motion[1] ** 2, axis=1)).tolist()
     for j, speed in enumerate(usual):
-        for name in (name for name in SHAPES if (name, j) not in there):
+        for name in (name for name in FRICTION if (name, j) not in there):
             yield Candidate(name, j, (Addition(name, j, speed),), (first,))
             first += 1
-        pair = tuple(Addition(wave, j, speed) for wave in WAVES[UNEVEN])
+        pair = tuple(Addition(part.NAME, j, speed) for part in Uneven.PARTS)
         if (pair[0].name, j) not in there:
-            yield Candidate(UNEVEN, j, pair, (first, first + 1))
+            yield Candidate(Uneven.NAME, j, pair, (first, first + 1))
             first += 2
-        ripples = [] if (SINE, j) in there else cycles[:, j][cycles[:, j] > 0.0].tolist()
+        ripples = (
+            [] if (Ripple.PARTS[0].NAME, j) in there else cycles[:, j][cycles[:, j] > 0.0].tolist()
+        )
         for own in ripples:
-            pair = tuple(Addition(wave, j, speed, cycles=own) for wave in WAVES[RIPPLE])
-            yield Candidate(RIPPLE, j, pair, (first, first + 1))
+            pair = tuple(Addition(part.NAME, j, speed, cycles=own) for part in Ripple.PARTS)
+            yield Candidate(Ripple.NAME, j, pair, (first, first + 1))
             first += 2
 
 

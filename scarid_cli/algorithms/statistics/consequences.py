@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.jackknife import regular
 from scarid_cli.arrays import Array, median

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows, runs
-from scarid_cli.algorithms.statistics.alternatives import away_from_reversals
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
 from scarid_cli.algorithms.statistics.parallel import Window
+from scarid_cli.algorithms.statistics.reversals import away_from_reversals
 from scarid_cli.arrays import Array, Numbers
 
 MARGIN = 0.25  # periods of the bandwidth, beyond those that are left out near a reversal

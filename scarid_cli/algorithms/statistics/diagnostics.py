@@ -12,12 +12,14 @@ from functools import cached_property
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.additions import Addition
+from scarid_cli.algorithms.beyond.catalogue import POSITIONS, TORQUES
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.torques import Curvature
 from scarid_cli.algorithms.regression.estimation import Estimation
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.treatment import GainErrors
-from scarid_cli.algorithms.statistics.additions import Addition
-from scarid_cli.algorithms.statistics.alternatives import CURVATURE, TORQUES, Model
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.bursts import Interval, bursts_of
 from scarid_cli.algorithms.statistics.consequences import (
@@ -39,7 +41,6 @@ from scarid_cli.algorithms.statistics.jackknife import (
     quantile,
 )
 from scarid_cli.algorithms.statistics.mismatched import mismatches
-from scarid_cli.algorithms.statistics.parallel import ENCODERS, ZEROS
 from scarid_cli.algorithms.statistics.residuals import JointResidual, residuals
 from scarid_cli.algorithms.statistics.trimmed import trimmed
 from scarid_cli.arrays import Array, median
@@ -268,12 +269,14 @@ def _stated(fit: Fit, scatter: Array, effects: tuple[Effect, ...], gains: Array)
     shifts = np.array([effect.bias for effect in effects]).reshape(-1, len(scatter))
     widest = np.max(shifts**2, axis=0, initial=0.0) + np.sum(gains**2, axis=0)
     moves = {effect.name: effect.direction(scatter) for effect in effects}
-    if any(effect.name == ENCODERS and effect.counts for effect in effects):
-        moves.pop(ZEROS, None)  # whose columns are among those of the encoders
+    for effect in effects:
+        if effect.name in POSITIONS and effect.counts:
+            for other in POSITIONS[effect.name].BESIDE:
+                moves.pop(other, None)  # whose columns are among its own
     # What other columns gain the parameters lose: the torque on this motion remains what it was.
     lasting = [move for name, move in moves.items() if name not in TORQUES]
     # Without its column this one would change the torque most, where `scarid urdf` must keep it.
-    most = [move for name, move in moves.items() if name != CURVATURE]
+    most = [move for name, move in moves.items() if name != Curvature.NAME]
     return _Stated(
         errors=np.sqrt(scatter**2 + np.nan_to_num(widest)),
         matrix=_matrix(fit, scatter, [*most, *gains]),

@@ -9,36 +9,29 @@ from itertools import pairwise
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.catalogue import (
+    MISMATCHES,
+    PHENOMENA,
+    TORQUES,
+    WIDESPREAD,
+)
+from scarid_cli.algorithms.beyond.gears import Gears
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.mounting import Tilt
+from scarid_cli.algorithms.beyond.ripple import Ripples
+from scarid_cli.algorithms.beyond.rows import LowPass, Parallel, Reversals
+from scarid_cli.algorithms.beyond.signals import Signals, compared, diagonal, reference
+from scarid_cli.algorithms.beyond.torques import Curvature, Offset, RelativeGain, Ripple
 from scarid_cli.algorithms.regression.rows import Rows, thinned
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
-from scarid_cli.algorithms.statistics.alternatives import (
-    GAIN,
-    GEOMETRY,
-    OFFSET,
-    RIPPLE,
-    SLOW,
-    STRIBECK,
-    TILT,
-    Model,
-    Signals,
-    away_from_reversals,
-    diagonal,
-    reference,
-    torque_columns,
-)
 from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
 from scarid_cli.algorithms.statistics.cuts import Cut, cuts
-from scarid_cli.algorithms.statistics.geometry import distance_columns
 from scarid_cli.algorithms.statistics.jackknife import block_numbers, quantile
-from scarid_cli.algorithms.statistics.mismatches import MISMATCHES, WIDESPREAD, Mismatches
-from scarid_cli.algorithms.statistics.parallel import ZEROS, smoothed
+from scarid_cli.algorithms.statistics.parallel import smoothed
 from scarid_cli.algorithms.statistics.products import Products, Solved, jackknifed
-from scarid_cli.algorithms.statistics.ripple import Ripples
+from scarid_cli.algorithms.statistics.reversals import away_from_reversals
 from scarid_cli.arrays import Array, Numbers
 
-REVERSALS, PARALLEL, LOW_PASS = "reversals", "parallel", "low-pass"
-# Those that widen the intervals whether significant or not.
-ALWAYS = (REVERSALS, OFFSET, STRIBECK, PARALLEL, LOW_PASS)
 FINER = (0.1, 0.17, 0.3, 0.55, 1.0)  # speeds of DECAYED, and others between them
 BLOCKS = 5.0  # effective ones, below which the error of the size of slow friction is not known
 CERTAIN = 0.01  # probability of calling an effect significant that is none
@@ -104,12 +97,13 @@ class Effect:
     @property
     def counts(self) -> bool:
         """Whether the intervals allow for it."""
-        return self.suspected or self.shared or self.name in ALWAYS or self.significant()
+        always = self.suspected or self.shared or PHENOMENA[self.name].ALWAYS
+        return always or self.significant()
 
     @property
     def widespread(self) -> bool:
         """Whether all joints are likely to have what some have, as zeros of one calibration."""
-        return self.shared or (self.name == ZEROS and self.significant())
+        return self.shared or (PHENOMENA[self.name].TOGETHER and self.significant())
 
     @property
     def _trust(self) -> float:
@@ -145,7 +139,7 @@ class Effect:
 def of_low_pass(moved: Array) -> Effect:
     """The effect (parameters) of a low-pass for a delay, or the reverse, whose size is known."""
     none = np.zeros_like(moved)
-    return Effect(LOW_PASS, moved, none, moved, amounts=none, noise=none, blocks=2)
+    return Effect(LowPass.NAME, moved, none, moved, amounts=none, noise=none, blocks=2)
 
 
 def level_among(effects: Sequence[Effect]) -> float:
@@ -208,7 +202,7 @@ class Trial:
     @property
     def _apart(self) -> list[int]:
         """The joints whose gains are fitted."""
-        return [j for name, j in self.fitted if name == GAIN]
+        return [j for name, j in self.fitted if name == RelativeGain.NAME]
 
     @cached_property
     def reference(self) -> int:
@@ -218,19 +212,20 @@ class Trial:
     @property
     def bare(self) -> bool:
         """Whether nothing but offsets was fitted for other joints."""
-        return not self.shared - {OFFSET}
+        return not self.shared - {Offset.NAME}
 
     @cached_property
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
         """The products with what torques may have beyond the model, and the places of those."""
-        of = self.rows, self.model, self.estimates, self.ripples.cycles
-        further = torque_columns(*of, self._apart)
-        if any(name == TILT for name, _ in self.fitted):
-            further.pop(TILT, None)
-        if self.model:
-            theta = self.estimates[: self.own]
-            columns = distance_columns(self.model, theta, self.rows.motion[:3])
-            further |= {} if columns is None else {GEOMETRY: columns}
+        signals = replace(
+            Signals.of(self.rows, self.model, self.estimates),
+            ripples=self.ripples.cycles,
+            others=compared(self.rows, self.estimates, self._apart),
+        )
+        leans = any(name == Tilt.NAME for name, _ in self.fitted)
+        kinds = (kind for name, kind in TORQUES.items() if not (leans and name == Tilt.NAME))
+        found = {kind.NAME: kind.columns(signals) for kind in kinds}
+        further = {name: columns for name, columns in found.items() if columns is not None}
         return self.products(self.rows.scales, further)
 
     @cached_property
@@ -243,11 +238,11 @@ class Trial:
         if self.model is None or not self.rows.order:
             return self.products(self.rows.scales, {})
         joints = range(self.rows.y.shape[1])
-        own = Mismatches(self.rows, self.model, self.estimates[: self.own])
+        of = Gears(self.rows, self.model, self.estimates[: self.own])
         none = np.zeros_like(self.rows.y)
         columns = {
-            x: [none if (x, j) in self.fitted else own.column(x, j) for j in joints]
-            for x in (MISMATCHES if self.bare else WIDESPREAD)
+            name: [none if (name, j) in self.fitted else kind.secant(of, j) for j in joints]
+            for name, kind in (MISMATCHES if self.bare else WIDESPREAD).items()
         }
         return self.products(
             self.rows.scales, {x: np.stack(each, axis=2) for x, each in columns.items()}
@@ -304,7 +299,7 @@ class Trial:
         same = [(self.rows.scales, self.plain)]
         found = self.beside(*self.beyond, self.plain, self.plain)
         if solved:
-            found.append(self.effect(REVERSALS, self.plain, self.plain, solved))
+            found.append(self.effect(Reversals.NAME, self.plain, self.plain, solved))
             same.insert(0, (away, solved))
         return (*found, *self.memories(self.plain), *self.signals(self.plain, same))
 
@@ -315,13 +310,14 @@ class Trial:
         """
         signals, own = Signals.of(self.rows, self.model, self.estimates), list(joints)
         shapes = [diagonal(signals.friction(speed))[:, :, own] for speed in FINER]
-        further = {"curve": np.concatenate(shapes, axis=2)}
+        further = {Curvature.NAME: np.concatenate(shapes, axis=2)}
         products, places = self.products(self.rows.scales, further)
-        solved = products.solved(products.independent(places["curve"]))
+        solved = products.solved(products.independent(places[Curvature.NAME]))
         if solved is None or self.plain is None:
             return np.zeros(self.own)
         errors = jackknifed(solved.deviations[:, : self.own])
-        curve = replace(self.effect("curve", self.plain, self.plain, solved), suspected=True)
+        curve = self.effect(Curvature.NAME, self.plain, self.plain, solved)
+        curve = replace(curve, suspected=True)
         return np.asarray(np.hypot(errors, curve.bias))
 
     def products(
@@ -369,7 +365,7 @@ class Trial:
 
         def tried(name: str, columns: list[int]) -> list[Effect]:
             new = [c for c in products.independent([*given, *columns]) if c not in given]
-            if name in (SLOW, RIPPLE):
+            if PHENOMENA[name].SPARSE:
                 new = [c for c in new if products.spread[c] >= BLOCKS]
             solved = products.solved([*given, *new]) if new else None
             if solved is None:
@@ -380,8 +376,8 @@ class Trial:
         found = []
         for name, columns in places.items():
             effects = tried(name, columns)
-            if name == TILT:  # a short log tells it better than what else it makes of joint 1
-                effects += tried(name, columns[:2])
+            if first := PHENOMENA[name].FIRST:
+                effects += tried(name, columns[:first])
             found += sorted(effects, key=lambda x: -x.clearness(CERTAIN))[:1]
         return found
 
@@ -397,7 +393,7 @@ class Trial:
         for scales, without in same:
             products = self._of([smooth.A], scales, smooth.centres)
             if parallel := products.solved([]):
-                found = self.effect(PARALLEL, plain, without, parallel)
+                found = self.effect(Parallel.NAME, plain, without, parallel)
                 return [found, *self.beside(products, smooth.places, plain, parallel)]
         return []
 
@@ -435,5 +431,5 @@ class Trial:
             self.count,
             suspected=name in self.suspected,
             shared=name in self.shared,
-            searched=self.ripples.tried if name == RIPPLE else 1.0,
+            searched=self.ripples.tried if name == Ripple.NAME else 1.0,
         )

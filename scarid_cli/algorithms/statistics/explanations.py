@@ -9,24 +9,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from scarid_cli.algorithms.statistics.alternatives import (
-    DECAYED,
-    OFFSET,
-    PARTS,
-    RIPPLE,
-    SHAPES,
-    TILT,
-)
+from scarid_cli.algorithms.beyond.catalogue import PHENOMENA, kind_of
+from scarid_cli.algorithms.beyond.mounting import Tilt
+from scarid_cli.algorithms.beyond.torques import Ripple
 from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial, clear, level_among
-from scarid_cli.algorithms.statistics.mismatches import ELASTIC_GEAR, ELASTIC_JOINT, WIDESPREAD
-from scarid_cli.algorithms.statistics.parallel import ELASTICITY, SIGNALS
 from scarid_cli.arrays import Array
 
 # The names of alternatives for the torques, with the joints (from 0) to whose torques they belong.
 Torques = frozenset[tuple[str, int]]
 RARE = 0.001  # probability of fitting what is not there
 LEFT = 0.25  # times as clear as the alternative itself: what it may leave unexplained
-FITTED = {*SHAPES.keys(), *PARTS, TILT} - {OFFSET}  # which offsets.py looks for
 
 
 @dataclass(frozen=True)
@@ -47,9 +39,7 @@ class Explanation:
     @property
     def kindred(self) -> set[str]:
         """What other joints may have of the same, for which their intervals are wider."""
-        names = {name for name, _ in self.torques}
-        yields = names & {ELASTIC_GEAR, ELASTIC_JOINT}
-        return {*({ELASTICITY, SIGNALS} if yields else ()), *(names & {*WIDESPREAD})}
+        return {other for name, _ in self.torques for other in PHENOMENA[name].WIDER}
 
     @property
     def rest(self) -> float:
@@ -64,7 +54,7 @@ def explanations(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, 
     level = level_among(effects)
     found = []
     for effect in clear(effects):
-        if effect.name in FITTED:
+        if PHENOMENA[effect.name].FITTED:
             torques = _torques(trial, [effect], level)
             least = effect.threshold(RARE / CERTAIN * level)
             one = Explanation(torques, effect.clearness(level), least, trial.ripples.cycles)
@@ -77,11 +67,9 @@ def _completed(trial: Trial, one: Explanation) -> Explanation | None:
 
     A ripple goes with any of them: none is like it, so that neither makes up for the other.
     """
-    kinds = {RIPPLE, *(name for name, _ in one.torques)}
-    if kinds & DECAYED.keys():  # one curve of friction
-        kinds |= DECAYED.keys()
+    kinds = {Ripple.NAME, *(kind_of(name) for name, _ in one.torques)}
     while (left := _beside(trial, one.torques)) is not None:
-        kindred = [effect for effect in clear(left) if effect.name in kinds]
+        kindred = [effect for effect in clear(left) if kind_of(effect.name) in kinds]
         more = _torques(trial, kindred, level_among(left))
         if more <= one.torques:
             return None if clear(left, one.rest) else one
@@ -102,8 +90,8 @@ def _beside(trial: Trial, torques: Torques) -> list[Effect] | None:
 def _leaning(trial: Trial) -> list[int]:
     """The columns of a tilted base that the rows determine."""
     products, places = trial.beyond
-    there = products.independent(places[TILT])
-    return [k for k, column in enumerate(places[TILT]) if column in there]
+    there = products.independent(places[Tilt.NAME])
+    return [k for k, column in enumerate(places[Tilt.NAME]) if column in there]
 
 
 def _torques(trial: Trial, effects: Sequence[Effect], level: float) -> Torques:
@@ -115,5 +103,5 @@ def _torques(trial: Trial, effects: Sequence[Effect], level: float) -> Torques:
     return frozenset(
         (x.name, j)
         for x in effects
-        for j in (_leaning(trial) if x.name == TILT else x.joints(level, joints))
+        for j in (_leaning(trial) if x.name == Tilt.NAME else x.joints(level, joints))
     )

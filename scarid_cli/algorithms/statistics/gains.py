@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scarid_cli.algorithms.statistics.alternatives import GAIN, TORQUES
+from scarid_cli.algorithms.beyond.catalogue import TORQUES
+from scarid_cli.algorithms.beyond.torques import RelativeGain
 from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect
 from scarid_cli.arrays import Array
 from scarid_cli.interval import plus_minus
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
 
 KNOWN = 0.05  # error: beyond, a log says less than a data sheet, which knows constants within 10 %
-RIVALS = {*TORQUES} - {GAIN}  # other causes of torques that do not fit together
+RIVALS = {*TORQUES} - {RelativeGain.NAME}  # other causes of torques that do not fit together
 CAUSES = "a torque constant, a gear ratio or a unit is wrong, there or at the others"
 
 
@@ -41,7 +42,7 @@ def fitted(diagnostics: Diagnostics, own: int) -> list[Gain]:
     return [
         Gain(addition.joint, 1.0 + addition.size, float(error))
         for addition, error in zip(diagnostics.additions, errors, strict=False)
-        if addition.name == GAIN
+        if addition.name == RelativeGain.NAME
     ]
 
 
@@ -52,7 +53,7 @@ def estimated(diagnostics: Diagnostics, own: int) -> list[Gain]:
 
 def known(diagnostics: Diagnostics) -> list[Gain]:
     """The gains of all joints compared that the log tells, where none were fitted."""
-    effect = next((x for x in diagnostics.effects if x.name == GAIN), None)
+    effect = next((x for x in diagnostics.effects if x.name == RelativeGain.NAME), None)
     return _known(effect) if effect else []
 
 
@@ -71,7 +72,11 @@ def significant(diagnostics: Diagnostics) -> list[Gain]:
         (x.clearness(CERTAIN) for x in diagnostics.effects if x.name in RIVALS), default=0.0
     )
     for effect in diagnostics.effects:
-        if effect.name == GAIN and effect.significant() and effect.clearness(CERTAIN) > likelier:
+        if (
+            effect.name == RelativeGain.NAME
+            and effect.significant()
+            and effect.clearness(CERTAIN) > likelier
+        ):
             there = np.flatnonzero(effect.ratios > effect.threshold())
             found = [
                 Gain(int(j), 1.0 + float(effect.amounts[j]), float(effect.noise[j])) for j in there
@@ -87,7 +92,7 @@ def relative(effect: Effect, first: int, estimates: Array) -> Effect:
     If joint `first` (from 0), beside which gains are, is apart, its own parameters are as much too
     large as its torque, and all others with them. Other effects remain.
     """
-    less = _apart(effect, first) if effect.name == GAIN and effect.counts else None
+    less = _apart(effect, first) if effect.name == RelativeGain.NAME and effect.counts else None
     if less is None:
         return effect
     (factor,) = (x.factor for x in less if x.joint == first)
@@ -131,7 +136,9 @@ def widening(diagnostics: Diagnostics, own: int) -> tuple[Array, Array] | None:
 
     It is the same in all logs of a robot, so that it does not count where two are compared.
     """
-    effect = next((x for x in diagnostics.effects if x.name == GAIN and x.counts), None)
+    effect = next(
+        (x for x in diagnostics.effects if x.name == RelativeGain.NAME and x.counts), None
+    )
     if effect is None:
         return None
     others = [x.bias**2 for x in diagnostics.effects if x is not effect]

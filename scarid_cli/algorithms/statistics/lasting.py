@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.statistics.alternatives import away_from_reversals
+from scarid_cli.algorithms.statistics.reversals import away_from_reversals
 from scarid_cli.arrays import Array, Marks, Numbers
 
 # Periods of the bandwidth, from beyond the first zero to before the motion has changed.

@@ -1,4 +1,4 @@
-"""Which mismatches (mismatches.py) may explain what the torques are beyond the model.
+"""Which mismatches (beyond/gears.py) may explain what the torques are beyond the model.
 
 A column of each, for a small size, stands beside W. Sets of columns that are clear are tried with
 the whole estimation, whose columns are those of the sizes found.
@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.catalogue import MISMATCHES
+from scarid_cli.algorithms.beyond.gears import LatePosition, LateTorque
 from scarid_cli.algorithms.statistics.effects import CERTAIN, Effect, Trial
 from scarid_cli.algorithms.statistics.explanations import RARE, Explanation, Torques
 from scarid_cli.algorithms.statistics.jackknife import quantile
-from scarid_cli.algorithms.statistics.mismatches import LATE_POSITION, LATE_TORQUE, MISMATCHES
 from scarid_cli.algorithms.statistics.products import Products, jackknifed
 from scarid_cli.arrays import Array
 
@@ -48,7 +49,7 @@ def mismatches(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, ..
 def _common(torques: Torques, joints: int) -> bool:
     """Whether all joints are late, which is the delay of the torques that is fitted anyway."""
     names = [name for name, _ in torques]
-    return any(names.count(late) == joints for late in (LATE_POSITION, LATE_TORQUE))
+    return any(names.count(late) == joints for late in (LatePosition.NAME, LateTorque.NAME))
 
 
 @dataclass(frozen=True)

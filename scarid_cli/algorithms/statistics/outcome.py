@@ -7,35 +7,29 @@ from functools import partial
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.additions import Addition, gains
+from scarid_cli.algorithms.beyond.catalogue import TORQUES
+from scarid_cli.algorithms.beyond.gears import Presliding
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.mounting import Tilt
+from scarid_cli.algorithms.beyond.signals import reference
+from scarid_cli.algorithms.beyond.torques import (
+    DECAYED,
+    Cable,
+    Cube,
+    Offset,
+    RelativeGain,
+    Ripple,
+    Spring,
+)
 from scarid_cli.algorithms.changes.evidence import LogEvidence, Products
 from scarid_cli.algorithms.regression.estimation import BaseEstimator, Estimation
 from scarid_cli.algorithms.regression.information import Fit, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, faded, regressed, spread, thinned
 from scarid_cli.algorithms.regression.treatment import GainErrors, Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.additions import (
-    COMPARED,
-    RELATIVE,
-    Addition,
-    Shapes,
-    gains,
-    of_explanation,
-)
+from scarid_cli.algorithms.statistics.additions import Shapes, of_explanation
 from scarid_cli.algorithms.statistics.alignment import Aligned, Lead, aligned
-from scarid_cli.algorithms.statistics.alternatives import (
-    CABLE,
-    COSINE,
-    CUBE,
-    DECAYED,
-    GAIN,
-    OFFSET,
-    SINE,
-    SPRING,
-    TILT,
-    TORQUES,
-    Model,
-    reference,
-)
 from scarid_cli.algorithms.statistics.blocks import Blocks
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.choosing import friction
@@ -46,7 +40,6 @@ from scarid_cli.algorithms.statistics.essential import Essential, Noise, essenti
 from scarid_cli.algorithms.statistics.explanations import Explanation
 from scarid_cli.algorithms.statistics.gains import Gain, apart, fitted, known
 from scarid_cli.algorithms.statistics.joint_products import JointProducts
-from scarid_cli.algorithms.statistics.mismatches import PRESLIDING
 from scarid_cli.algorithms.statistics.offsets import offset_joints, offsets, with_offsets
 from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.arrays import Array, median
@@ -111,14 +104,15 @@ class Problem:
             suspected=suspected,
             shared=self._shared,
             curves={x.joint for x in self.additions if x.name in DECAYED},
-            fitted={(x.name, x.joint) for x in self.additions if x.mismatch or x.name in RELATIVE},
+            fitted={(x.name, x.joint) for x in self.additions if x.mismatch or x.entry.RELATIVE},
         )
 
     @property
     def _shared(self) -> set[str]:
         """What other joints may have as well: of an offset beside a spring nobody knows."""
-        own = {CABLE if x.name == CUBE else x.name for x in self.additions} - {OFFSET, TILT}
-        return own | ({OFFSET} if self.offsets else set())
+        names = {Cable.NAME if x.name == Cube.NAME else x.name for x in self.additions}
+        own = names - {Offset.NAME, Tilt.NAME}
+        return own | ({Offset.NAME} if self.offsets else set())
 
     def diagnostics(
         self, gain_errors: GainErrors, suspected: frozenset[str] = frozenset()
@@ -151,7 +145,8 @@ class Problem:
         if any(addition.mismatch for addition in self.additions):
             largest = [ratios[names == name].max() for name in {*names.tolist()}]
             return bool(min(largest) > explanation.threshold and ratios.min() > explanation.each)
-        own = {*names.tolist()} - {OFFSET, SINE, COSINE} or {SINE, COSINE}
+        waves = {part.NAME for part in Ripple.PARTS}
+        own = {*names.tolist()} - {Offset.NAME, *waves} or waves
         return bool(ratios[[name in own for name in names]].max() > explanation.threshold)
 
     @property
@@ -160,7 +155,7 @@ class Problem:
         accelerations = np.sqrt(np.mean(self.rows.motion[2] ** 2, axis=1))
         least = 0.25 * accelerations * (ROWS * self.rows.h) ** 2  # half the distance from rest
         return all(
-            x.possible and not (x.name == PRESLIDING and x.size < least[x.joint])
+            x.possible and not (x.name == Presliding.NAME and x.size < least[x.joint])
             for x in self.additions
         )
 
@@ -172,7 +167,7 @@ class Problem:
         """
         moved = np.zeros(self.own)
         squares = np.mean(self.rows.motion[0] ** 2, axis=1)
-        springs = {x.joint: x.size for x in self.additions if x.name == SPRING}
+        springs = {x.joint: x.size for x in self.additions if x.name == Spring.NAME}
         for index, joint in offset_joints(robot).items():
             if joint in springs and index in kept:
                 moved[kept.index(index)] = abs(springs[joint]) * float(np.sqrt(squares[joint]))
@@ -183,7 +178,9 @@ class Problem:
         """What the rows of each joint say, with the torques as they were logged."""
         if not self.model:
             return None
-        gains = [k for k, x in enumerate(self.additions, start=self.own) if x.name == GAIN]
+        gains = [
+            k for k, x in enumerate(self.additions, start=self.own) if x.name == RelativeGain.NAME
+        ]
         return JointProducts.of(found.totals, self.own, gains, found.counts, found.inflation)
 
     @property
@@ -191,9 +188,9 @@ class Problem:
         """The rows without their gains, and without columns that a comparison has by itself."""
         start = self.own + len(self.additions)
         dropped = {*range(start, start + len(self.offsets))}
-        dropped |= {k for k, x in enumerate(self.additions, self.own) if x.name in COMPARED}
+        dropped |= {k for k, x in enumerate(self.additions, self.own) if x.entry.COMPARED}
         kept = [k for k in range(self.rows.W.shape[2] - self.delayed) if k not in dropped]
-        tilts = [k for k, x in enumerate(self.additions, self.own) if x.name == TILT]
+        tilts = [k for k, x in enumerate(self.additions, self.own) if x.name == Tilt.NAME]
         y = self.rows.y - self.rows.W[:, :, tilts] @ self.found.fit.estimates[tilts]
         torques = y / gains(self.additions, self.rows.y.shape[1])
         return replace(self.rows, W=self.rows.W.take(kept, axis=2), y=torques)
@@ -394,8 +391,8 @@ def _regauged(
     every = [Gain(first, 1.0, 0.0), *own, *known(found)]
     if (less := apart(every, first)) is None:
         return wider, found
-    rest = [x for x in wider.additions if x.name != GAIN]
-    added = [Addition(GAIN, x.joint, 1.0, x.factor - 1.0) for x in less]
+    rest = [x for x in wider.additions if x.name != RelativeGain.NAME]
+    added = [Addition(RelativeGain.NAME, x.joint, 1.0, x.factor - 1.0) for x in less]
     try:
         other = _problem(given, _beside(given, plain, plain.model, (*rest, *added)))
     except NotIdentifiableError:

@@ -12,18 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from scarid_cli.algorithms.beyond.catalogue import POSITIONS
+from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.positions import Differences
+from scarid_cli.algorithms.beyond.sensitivities import Sensitivities
 from scarid_cli.algorithms.regression.rows import Rows, delay_column, runs
-from scarid_cli.algorithms.statistics.alternatives import Model, diagonal, hann
-from scarid_cli.algorithms.statistics.positions import (
-    Sensitivities,
-    eccentric_columns,
-    elastic_columns,
-    zero_columns,
-)
+from scarid_cli.algorithms.statistics.reversals import hann
 from scarid_cli.arrays import Array, Numbers
 
-SIGNALS, ZEROS, ENCODERS, ELASTICITY = "signals", "zeros", "encoders", "elasticity"
-LATE = "late"
 STEP = 0.025  # s between the rows that are kept: the window passes hardly anything above 10 Hz
 CENTRES = 1024  # rows that are computed at once: many columns stand beside them
 EDGE = 4  # samples at both ends of a run where the differences are not central
@@ -46,12 +42,9 @@ class Smoothed:
 def smoothed(rows: Rows, model: Model | None, estimates: Array, own: int) -> Smoothed | None:
     """The rows behind one zero-phase Hann window, with W from differences of the position.
 
-    The further columns of the signals are, for each joint, the first derivative of the torque of
-    inertia, the second one of the torque that it transmits and, unless a delay is fitted, the first
-    one of the other torques; those of the encoders and of elastic transmissions are in
-    positions.py. Positions and torques of single joints that are late have a column each, whose
-    size is the delay [s]. Without a model the columns of W are only smoothed, and there are no
-    further columns. None if every run between gaps is shorter than the window.
+    The further columns are those of beyond/positions.py. Without a model the columns of W are only
+    smoothed, and there are no further ones. None if every run between gaps is shorter than the
+    window.
     """
     window = Window.of(rows.h)
     parts = [part for run in runs(rows.at) for part in window.parts(run)]
@@ -76,9 +69,11 @@ def _places(sizes: dict[str, int]) -> dict[str, list[int]]:
     for name, size in sizes.items():
         places[name] = list(range(start, start + size))
         start += size
-    if ENCODERS in places:  # an eccentric encoder may have another zero as well
-        places[ENCODERS] = places[ZEROS] + places[ENCODERS]
-    return {name: own for name, own in places.items() if name not in ("W", "y")}
+    beside = {name: kind.BESIDE for name, kind in POSITIONS.items() if name in places}
+    return {
+        name: [k for other in (*others, name) for k in places[other]]
+        for name, others in beside.items()
+    }
 
 
 @dataclass(frozen=True)
@@ -129,47 +124,22 @@ def _columns(
     dq, ddq = differences(q, h)
     W = model.regressor(q, dq, ddq)
     carried = np.flatnonzero(model.transmits)
-    transmitted = W[:, :, carried] @ theta[carried]
-    whole, rest = W @ theta, model.regressor(q, dq, np.zeros_like(ddq)) @ theta
-    moved = replace(rows, motion=np.stack((q, dq, ddq, rows.motion[3])))
-    first = np.gradient(whole - rest, h, axis=0)
-    speed = np.gradient(transmitted, h, axis=0)
-    curvature = np.gradient(speed, h, axis=0)
-    signals = [diagonal(first), diagonal(curvature)]
-    if rows.W.shape[2] > own:
-        delay = delay_column(moved, whole)
-        W = np.concatenate((W, rows.W[:, :, own:-1], delay[:, :, None]), axis=2)
-    else:
-        signals.append(diagonal(delay_column(moved, rest)))
     motion = np.stack((q, dq, ddq))
-    links = model.link_torques(motion, theta)
-    torque = np.stack((transmitted.T, speed.T, curvature.T))
-    sensitivities = Sensitivities.of(model, theta, motion)
-    return {
-        "W": window.passed(W),
-        SIGNALS: window.passed(np.concatenate(signals, axis=2)),
-        ZEROS: window.passed(zero_columns(sensitivities)),
-        ENCODERS: window.passed(eccentric_columns(model, sensitivities, motion)),
-        LATE: window.passed(_late(moved, whole, links, sensitivities, motion)),
-        ELASTICITY: window.passed(elastic_columns(sensitivities, torque)),
-        "y": y,
-    }
-
-
-def _late(
-    rows: Rows, whole: Array, links: Array, sensitivities: Sensitivities, motion: Array
-) -> Array:
-    """The columns (samples, joints, 2 joints) of late positions, then of late torques, of a joint.
-
-    A position that is late by T is that of the joint before T dq. What is no torque of a link is
-    friction or inertia of the motor, and depends on the motion of its own joint.
-    """
-    _, dq, ddq = motion
-    jerk = np.gradient(ddq, rows.h, axis=1)
-    own = delay_column(rows, whole - links)
-    errors = np.stack((dq, ddq, jerk)).swapaxes(0, 1)
-    moved = np.stack([sensitivities.column(k, x) for k, x in enumerate(errors)], axis=2)
-    return np.concatenate((moved + diagonal(own), -diagonal(delay_column(rows, whole))), axis=2)
+    further = Differences(
+        rows=replace(rows, motion=np.stack((q, dq, ddq, rows.motion[3]))),
+        model=model,
+        sensitivities=Sensitivities.of(model, theta, motion),
+        whole=W @ theta,
+        links=model.link_torques(motion, theta),
+        transmitted=W[:, :, carried] @ theta[carried],
+        still=model.regressor(q, dq, np.zeros_like(ddq)) @ theta,
+        delayed=rows.W.shape[2] > own,
+    )
+    if further.delayed:
+        delay = delay_column(further.rows, further.whole)
+        W = np.concatenate((W, rows.W[:, :, own:-1], delay[:, :, None]), axis=2)
+    columns = {name: window.passed(kind.columns(further)) for name, kind in POSITIONS.items()}
+    return {"W": window.passed(W), **columns, "y": y}
 
 
 def differences(q: Array, h: float) -> tuple[Array, Array]:

@@ -10,15 +10,11 @@ own, beside those of the parameters.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from scarid_cli.algorithms.filters.two_sided import (
-    PERIODS,
-    two_sided_bandwidth,
-    two_sided_gain,
-)
+from scarid_cli.algorithms.regression.low_pass import LowPass
 from scarid_cli.algorithms.regression.rows import Rows, runs
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics.jackknife import block_numbers
@@ -26,31 +22,6 @@ from scarid_cli.arrays import Array
 
 SHORTEST = 0.5  # periods of the cut-off, of a run that may have rows away from its reversals
 BLOCKS = 5.0  # effective ones, below which the error of an estimate is not known
-
-
-@dataclass(frozen=True)
-class LowPass:
-    """A Butterworth filter, forwards and backwards; the cut-off in cycles per sample."""
-
-    cutoff: float
-    order: int
-
-    @classmethod
-    def behind(cls, rows: Rows) -> LowPass | None:
-        """The one behind the rows; None if it is not known to be such a filter, or passes all."""
-        if not (rows.order and rows.bandwidth and rows.h > 0.0):
-            return None
-        cutoff = rows.bandwidth / two_sided_bandwidth(rows.order)
-        return cls(cutoff * rows.h, rows.order) if cutoff * rows.h < 0.5 else None
-
-    def over(self, x: Array) -> Array:
-        """x (samples of a run) behind the filter, as if its first and last value went on."""
-        edge = int(PERIODS / self.cutoff) + 1
-        length = 1 << (len(x) + 2 * edge - 1).bit_length()
-        padded = np.pad(x, (edge, length - len(x) - edge), mode="edge")
-        gain = two_sided_gain(np.asarray(np.fft.rfftfreq(length)) / self.cutoff, self.order)
-        passed = np.fft.irfft(gain * np.fft.rfft(padded), length)
-        return np.asarray(passed[edge : edge + len(x)])
 
 
 def with_ringing(rows: Rows, robot: Robot) -> Rows:

@@ -8,27 +8,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.model import transmitted
+from scarid_cli.algorithms.beyond.positions import OwnDelays
+from scarid_cli.algorithms.beyond.rows import Parallel
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.statistics import gains
-from scarid_cli.algorithms.statistics.alternatives import transmitted
 from scarid_cli.algorithms.statistics.cuts import Cut
 from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import PARALLEL, Effect
-from scarid_cli.algorithms.statistics.parallel import SIGNALS
+from scarid_cli.algorithms.statistics.effects import Effect
 from scarid_cli.algorithms.statistics.residuals import JointResidual
 from scarid_cli.algorithms.statistics.sentences import (
     additions_of,
     changed,
     errors_in,
-    joints_named,
-    listed,
     notes_of,
-    of_joints,
-    percents,
-    percents_of_joints,
 )
 from scarid_cli.arrays import Array, Marks
+from scarid_cli.words import joints_named, listed, of_joints, percents, percents_of_joints
 
 if TYPE_CHECKING:  # cvxpy takes a second to import
     from scarid_cli.algorithms.robots.possible import Possible
@@ -185,18 +182,18 @@ def _forgotten(diagnostics: Diagnostics) -> list[str]:
 def _biased(evidence: Evidence) -> list[str]:
     """Alternatives to the signals that would move the estimates by more than their errors."""
     found = {effect.name: effect for effect in evidence.diagnostics.effects}
-    if PARALLEL not in found:
+    if Parallel.NAME not in found:
         return [
             "the estimates were not tested for bias, because no part of the log without a gap or a "
             "row left out is long enough: use a longer log"
         ]
     reasons = []
-    if moved := _moved(evidence, found[PARALLEL]):
+    if moved := _moved(evidence, found[Parallel.NAME]):
         reasons.append(
             "the estimates depend on the soft sensor: with the same low-pass for derivatives and "
             f"torques, {moved}{'' if evidence.matched else UNMATCHED}"
         )
-    if SIGNALS in found and (moved := _moved(evidence, found[SIGNALS])):
+    if OwnDelays.NAME in found and (moved := _moved(evidence, found[OwnDelays.NAME])):
         advice = "" if evidence.treatment.align else "; --align fits a delay"
         reasons.append(
             "torque and motion are not those of one instant, or a joint is flexible: with a delay "

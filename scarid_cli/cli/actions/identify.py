@@ -10,21 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.catalogue import PHENOMENA
 from scarid_cli.algorithms.checks.finding import WARNING, Finding
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.choices.settings import names_of
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.alternatives import (
-    ASYMMETRY,
-    CURVATURE,
-    LOAD,
-    OFFSET,
-    SLOW,
-    STRIBECK,
-    UNEVEN,
-)
 from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
 from scarid_cli.algorithms.statistics.verdict import meets
 from scarid_cli.arrays import Array
@@ -55,15 +47,6 @@ from scarid_cli.stages.identify import SoFar
 from scarid_cli.stages.parameters import identified
 from scarid_cli.stages.possible import require_bodies
 
-FRICTION = {  # as people call the shapes
-    OFFSET: "offset or asymmetric Coulomb friction",
-    ASYMMETRY: "asymmetric viscous friction",
-    SLOW: "fall from slow speeds on",
-    STRIBECK: "fall from medium speeds on",
-    CURVATURE: "curve over the speed",
-    LOAD: "growth with the load",
-    UNEVEN: "Coulomb friction that varies over a turn",
-}
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
 
 
@@ -387,7 +370,7 @@ def chosen_friction(extra: dict[str, Any]) -> str:
     if (found := extra.get("friction")) is None:
         return ""
     parts = [
-        f"{FRICTION.get(x['name'], x['name'])} of joint {x['joint']} ({x['lower']:.2g} +- "
+        f"{PHENOMENA[x['name']].FRICTION} of joint {x['joint']} ({x['lower']:.2g} +- "
         f"{x['half_interval']:.2g} %)"
         for x in found
     ]

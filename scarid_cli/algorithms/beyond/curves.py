@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.terms import AxisTerm
-from scarid_cli.algorithms.statistics.additions import Addition
-from scarid_cli.algorithms.statistics.alternatives import DECAYED
 from scarid_cli.arrays import Array
+
+if TYPE_CHECKING:
+    from scarid_cli.algorithms.beyond.additions import Addition
 
 RANGE = (0.05, 2.0)  # of the usual speed, where a log shows friction
 SPEEDS = 100
@@ -27,16 +29,22 @@ REMEDIES = {
 }  # fmt: skip
 
 
-def laws(additions: Sequence[Addition], estimates: Mapping[str, float], robot: Robot) -> str:
+def laws(
+    additions: Sequence[Addition],
+    decayed: Mapping[str, float],
+    estimates: Mapping[str, float],
+    robot: Robot,
+) -> str:
     """`it grows faster than the speed, as its square does, at joint 1 (...)`, by joints.
 
-    The additions are those of friction's curve.
+    The additions are those of friction's curve, of which each has `decayed` at a part of the usual
+    speed.
     """
     found: dict[tuple[str, str], list[int]] = {}
     for joint in sorted({addition.joint for addition in additions}):
         own = [addition for addition in additions if addition.joint == joint]
         speeds = np.linspace(*RANGE, SPEEDS) * own[0].usual
-        text, remedy = law(speeds, curve(own, estimates, robot, speeds))
+        text, remedy = law(speeds, curve(own, decayed, estimates, robot, speeds))
         found.setdefault((text, remedy), []).append(joint + 1)
     return ", ".join(
         f"it {text} at joint{'s' if len(joints) > 1 else ''} "
@@ -46,7 +54,11 @@ def laws(additions: Sequence[Addition], estimates: Mapping[str, float], robot: R
 
 
 def curve(
-    additions: Sequence[Addition], estimates: Mapping[str, float], robot: Robot, speeds: Array
+    additions: Sequence[Addition],
+    decayed: Mapping[str, float],
+    estimates: Mapping[str, float],
+    robot: Robot,
+    speeds: Array,
 ) -> Array:
     """The friction of a joint at these speeds: the terms of its model and the additions [N m, N].
 
@@ -59,7 +71,7 @@ def curve(
             both = term.torque(speeds) - term.torque(-speeds) if term.NAME != "mass" else 0.0
             total += 0.5 * estimates.get(parameter.name, 0.0) * both
     for addition in additions:
-        scale = DECAYED[addition.name] * addition.usual
+        scale = decayed[addition.name] * addition.usual
         total += addition.size * np.exp(-((speeds / scale) ** 2))
     return total
 

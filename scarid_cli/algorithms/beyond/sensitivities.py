@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scarid_cli.algorithms.statistics.alternatives import Model
+from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.arrays import Array
 
 SMALL = 1e-4  # of the motion, or rad and m: by which it is moved for the derivatives

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.robots import newton_euler
 from scarid_cli.algorithms.robots.mechanism import Mechanism, mechanism
-from scarid_cli.algorithms.statistics.alternatives import Model
 from scarid_cli.arrays import Array
 
 STEP = 1e-4  # of a distance: its torques are a polynomial of degree two
