@@ -41,7 +41,7 @@
 # make man      the man pages, into build/man
 # make wheel    the source distribution and the wheel, audited, into build/dist
 # make minute   from the wheel to README's first verdict in an empty environment, with times
-# make docs     generate docs/tables.md from schemas/
+# make docs     generate docs/tables.md and docs/beyond.md from what they describe
 # make figures  the figures of the documentation (FIGURES="pipe stated": these only)
 # make site     the documentation as a site that needs no network: build/site/index.html
 # make samples  generate the small log and its parameters under samples/
@@ -250,6 +250,7 @@ bench-batch: $(VENV)/installed $(BATCH)/installed
 
 docs: $(VENV)/installed
 	$(BIN)/python -m scarid_cli.reporting.schemas > docs/tables.md
+	$(BIN)/python -m scarid_cli.reporting.beyond > docs/beyond.md
 
 FIGURES :=
 figures: $(VENV)/installed

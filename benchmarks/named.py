@@ -13,9 +13,10 @@ from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
-from altered import Recorded
+from altered import Recorded, coulomb
 from conditions import CONDITIONS, UNSEEN, Condition, log, robot_named
 from gauntlet import blind
+from mechanics import velocity
 
 from scarid_cli.algorithms.beyond.catalogue import PHENOMENA
 from scarid_cli.algorithms.beyond.gears import (
@@ -54,12 +55,26 @@ def zeroed(_: Robot, log: Recorded) -> Recorded:
     return t, q + 0.05 * np.where(np.arange(len(q)) % 2, -1.0, 1.0)[:, None], tau
 
 
-ZEROED = Condition("zeros off", altered=zeroed)
+def sided(robot: Robot, log: Recorded) -> Recorded:
+    """Viscous friction grows by a quarter of Coulomb friction, in both directions."""
+    t, q, tau = log
+    speed = np.abs(velocity(log))
+    return t, q, tau + 0.25 * coulomb(robot) * speed / speed.max(axis=1, keepdims=True)
+
+
+OWN = [
+    Condition(
+        "flexible joint 15 Hz, link encoder", {"flexibility": (15.0,), "encoder-side": ("link",)}
+    ),
+    Condition("zeros off", altered=zeroed),
+    Condition("asymmetric viscous friction", altered=sided),
+]
 # Which entries are a right name for what the log has: some say the same of it.
 LACKING: dict[str, tuple[type[Phenomenon], ...]] = {
     "clean": (),
     "torque offset": (Offset,),
-    "asymmetric friction": (Asymmetry,),
+    "asymmetric friction": (Offset,),  # of Coulomb's
+    "asymmetric viscous friction": (Asymmetry,),
     "Stribeck friction": (SlowFriction, Stribeck, Curvature),
     "load friction": (LoadFriction,),
     "cable pulls": (Spring,),
@@ -72,7 +87,7 @@ LACKING: dict[str, tuple[type[Phenomenon], ...]] = {
     "position of joint 2 late 10 ms": (LatePosition, Late),
     "torque of joint 2 late 10 ms": (LateTorque, Late),
     "flexible joint 15 Hz, motor encoder": (ElasticGear, Elasticity),
-    "flexible joint 15.0 Hz": (ElasticJoint,),
+    "flexible joint 15 Hz, link encoder": (ElasticJoint,),
     "backlash 0.2 deg": (Backlash,),
     "torque hysteresis 2 %": (Hysteresis,),
     "Maxwell slip 60 mrad": (Presliding, Reversals),
@@ -80,7 +95,7 @@ LACKING: dict[str, tuple[type[Phenomenon], ...]] = {
     "zeros off": (Zeros,),
 }
 FITTED = "offsets of the torques"  # which are not alternatives, but fitted with the parameters
-KNOWN = {condition.name: condition for condition in (*CONDITIONS, *UNSEEN, ZEROED)}
+KNOWN = {condition.name: condition for condition in (*CONDITIONS, *UNSEEN, *OWN)}
 SEED = 30_000
 
 

@@ -39,6 +39,7 @@ SECTIONS: Navigation = {
         "reference/exit-statuses.md",
         "pipes.md",
         "tables.md",
+        "beyond.md",
         "formats.md",
         "robots.md",
         "simulator.md",

@@ -9,7 +9,6 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.changes.carried import BLOCK, SIZES, VARIES, Carrying, Piece, Sums
-from scarid_cli.algorithms.changes.hypotheses import FRICTION
 from scarid_cli.algorithms.changes.payload import directions, located
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.treatment import Treatment
@@ -166,7 +165,7 @@ def _free(estimates: Estimates) -> tuple[Array, Array]:
     """How the parameters depend on those that are free, and the sizes that these may have."""
     robot, sizes = estimates.robot, np.abs(estimates.full)
     terms = [parameter.term for parameter in robot.parameters]
-    free = [k for k, term in enumerate(terms) if isinstance(term, (*FRICTION, Offset))]
+    free = [k for k, term in enumerate(terms) if term.FRICTION or isinstance(term, Offset)]
     for k, joint in offset_joints(robot).items():  # which may be 0: it changes with the friction
         own = [i for i, x in enumerate(terms) if x.JUMPS and x.joints == (joint + 1,)]
         sizes[k] = max(sizes[own], default=sizes[k])

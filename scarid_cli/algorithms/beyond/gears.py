@@ -131,7 +131,7 @@ class Mismatch(Phenomenon):
 
 
 class LatePosition(Mismatch):
-    """tau(q_j(t + s)), s in s."""
+    """A position that is older than the other signals: tau(q_j(t + s))."""
 
     NAME = "late position"
     UNIT = "ms"
@@ -159,7 +159,7 @@ class LatePosition(Mismatch):
 
 
 class LateTorque(Mismatch):
-    """tau_j(t - s), s in s."""
+    """A torque that is older than the other signals: tau_j(t - s)."""
 
     NAME = "late torque"
     UNIT = "ms"
@@ -176,7 +176,7 @@ class LateTorque(Mismatch):
 
 
 class ElasticGear(Mismatch):
-    """tau_links(q_j - s tau_t), s in rad/(N m), with the encoder on the motor."""
+    """A gear or belt that yields behind the encoder: tau_links(q_j - s tau_t), s in rad/(N m)."""
 
     NAME = "elastic gear"
     UNIT = "{torque}/{position}"
@@ -198,7 +198,7 @@ class ElasticGear(Mismatch):
 
 
 class ElasticJoint(Mismatch):
-    """tau_j + s d2(tau_t)/dt2, s in s2, with the encoder on the link."""
+    """A joint that yields before the encoder on the link: tau_j + s d2(tau_t)/dt2, s in s2."""
 
     NAME = "elastic joint"
     UNIT = "Hz"
@@ -217,7 +217,7 @@ class ElasticJoint(Mismatch):
 
 
 class Backlash(Mismatch):
-    """tau_links(q_j - s sign(tau_t)), s in rad, half the gap, with the encoder on the motor."""
+    """A gap in the gear, 2 s wide, behind the encoder: tau_links(q_j - s sign(tau_t))."""
 
     NAME = "backlash"
     UNIT = "{position}"
@@ -238,7 +238,7 @@ class Backlash(Mismatch):
 
 
 class Hysteresis(Mismatch):
-    """The play of tau_j by s in N m, as of a torque sensor."""
+    """A hysteresis, as of a torque sensor: the play of tau_j by s."""
 
     NAME = "hysteresis"
     UNIT = "{torque}"
@@ -255,9 +255,9 @@ class Hysteresis(Mismatch):
 
 
 class Presliding(Mismatch):
-    """Coulomb friction times (q_j - play of q_j by s) / s in place of sign(dq_j).
+    """Friction that builds up over a distance 2 s behind a reversal.
 
-    s in rad is half the distance.
+    It is Coulomb friction times (q_j - play of q_j by s) / s in place of sign(dq_j).
     """
 
     NAME = "presliding"

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from scarid_cli.algorithms.robots.coupled import CoupledInertia
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.terms import Mass, Term
+from scarid_cli.algorithms.robots.terms import Mass, Offset, Term
 from scarid_cli.arrays import Array, Marks
 
-BESIDE_FRICTION = ("offset", "stribeck", "quadratic")
+MOTORS = (Mass, CoupledInertia)  # terms of their inertia
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class Model:
 
         motion (3, joints, samples): positions, velocities and accelerations.
         """
-        links = self.transmits & self._marks(lambda term: not isinstance(term, Mass))
+        links = self.transmits & self._marks(lambda term: not isinstance(term, MOTORS))
         kept = [i for i, chosen in zip(self.kept, links, strict=True) if chosen]
         return self.robot.partial_torques(motion, kept, theta[links])
 
@@ -105,4 +106,4 @@ def _sideways(gravity: Array) -> Array:
 
 def transmitted(term: Term) -> bool:
     """Whether a joint transmits the torques of this term: it is no friction, nor goes with it."""
-    return not (term.NEVER_NEGATIVE or term.NAME in BESIDE_FRICTION)
+    return not (term.FRICTION or isinstance(term, Offset))

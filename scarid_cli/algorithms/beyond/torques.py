@@ -40,7 +40,7 @@ class Offset(Shape):
         "robot)"
     )
     TERMS = ("offset",)
-    IMPERFECTIONS = ("torque-offset",)
+    IMPERFECTIONS = ("torque-offset", "friction-asymmetry")
     CHANGE = "offset"
     FRICTION = "offset or asymmetric Coulomb friction"
     ALWAYS = True
@@ -62,7 +62,6 @@ class Asymmetry(Shape):
         "and viscous-backward to the robot)"
     )
     TERMS = ("viscous-forward", "viscous-backward")
-    IMPERFECTIONS = ("friction-asymmetry",)
     FRICTION = "asymmetric viscous friction"
 
     @staticmethod

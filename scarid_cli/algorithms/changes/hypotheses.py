@@ -7,34 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from scarid_cli.algorithms.changes.columns import Columns
-from scarid_cli.algorithms.robots.coupled import CoupledCoulomb, CoupledViscous
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.rigid import STANDARD_UNITS, SYMBOLS
-from scarid_cli.algorithms.robots.terms import (
-    Coulomb,
-    CoulombBackward,
-    CoulombForward,
-    Offset,
-    Quadratic,
-    Stribeck,
-    Viscous,
-    ViscousBackward,
-    ViscousForward,
-)
+from scarid_cli.algorithms.robots.terms import Offset
 from scarid_cli.arrays import Array
 
-FRICTION = (
-    Viscous,
-    Coulomb,
-    Stribeck,
-    Quadratic,
-    ViscousForward,
-    ViscousBackward,
-    CoulombForward,
-    CoulombBackward,
-    CoupledViscous,
-    CoupledCoulomb,
-)
 PAYLOAD, DELAY, MOTOR, DRIFT = "payload", "delay", "motor constant", "friction"
 OFFSET, ZERO, SCALE = "offset", "zero", "scale"
 TILT, LOW_PASS = "tilt", "low-pass"
@@ -96,7 +73,9 @@ def _payload(robot: Robot) -> Hypothesis:
     parameters = robot.parameters
     if not robot.body:
         inertial = [
-            i for i, p in enumerate(parameters) if not isinstance(p.term, (*FRICTION, Offset))
+            i
+            for i, p in enumerate(parameters)
+            if not (p.term.FRICTION or isinstance(p.term, Offset))
         ]
         return Hypothesis(PAYLOAD, _of_parameters(robot, inertial), *_labels(parameters, inertial))
     last = robot.body.link_numbers[-1]
@@ -150,7 +129,7 @@ def _friction(robot: Robot, joints: tuple[int, ...]) -> Hypothesis:
     chosen = [
         i
         for i, p in enumerate(robot.parameters)
-        if isinstance(p.term, FRICTION) and set(p.term.joints) & set(joints)
+        if p.term.FRICTION and set(p.term.joints) & set(joints)
     ]
     labels = _labels(robot.parameters, chosen)
     return Hypothesis(DRIFT, _of_parameters(robot, chosen), *labels, joints)

@@ -47,6 +47,7 @@ class CoupledViscous(CoupledTerm):
     """Viscous friction of the motor."""
 
     NAME, SYMBOL, UNIT = "coupled-viscous", "fvm{i}", VISCOUS[0]
+    FRICTION = True
 
     def column(self, samples: JointMotion) -> Column:
         one, two = self.joint - 1, self.other - 1
@@ -57,7 +58,7 @@ class CoupledCoulomb(CoupledTerm):
     """Coulomb friction of the motor."""
 
     NAME, SYMBOL, UNIT = "coupled-coulomb", "fsm{i}", TORQUE[0]
-    JUMPS = True
+    FRICTION = JUMPS = True
 
     def column(self, samples: JointMotion) -> Column:
         one, two = self.joint - 1, self.other - 1

@@ -34,11 +34,12 @@ class JointMotion:
 class Term:
     """What the torques are per unit of one parameter; a subclass has its own constants.
 
-    `NEVER_NEGATIVE`: a negative parameter would drive the robot. `JUMPS`: the torque jumps where
-    the velocity changes its sign.
+    `FRICTION`: a joint does not transmit it. `NEVER_NEGATIVE`: a negative parameter would drive the
+    robot. `JUMPS`: the torque jumps where the velocity changes its sign.
     """
 
     NAME: ClassVar[str]
+    FRICTION: ClassVar[bool] = False
     NEVER_NEGATIVE: ClassVar[bool] = False
     JUMPS: ClassVar[bool] = False
 
@@ -99,7 +100,7 @@ class Viscous(AxisTerm):
     """Viscous friction, proportional to the velocity (paper eq. 2)."""
 
     NAME, SYMBOL, UNITS = "viscous", "fv{i}", VISCOUS
-    NEVER_NEGATIVE = True
+    FRICTION = NEVER_NEGATIVE = True
 
     def torque(self, dq: Array) -> Array:
         return dq
@@ -113,7 +114,7 @@ class Coulomb(AxisTerm):
     """
 
     NAME, SYMBOL, UNITS = "coulomb", "fs{i}", TORQUE
-    NEVER_NEGATIVE, JUMPS = True, True
+    FRICTION = NEVER_NEGATIVE = JUMPS = True
     velocity: float = 0.0
 
     def __post_init__(self) -> None:
@@ -130,6 +131,7 @@ class Stribeck(AxisTerm):
     """Friction that Coulomb friction has more at low speed: sign(dq) exp(-(dq / velocity)^2)."""
 
     NAME, SYMBOL, UNITS = "stribeck", "Fst{i}", TORQUE
+    FRICTION = True
     velocity: float  # rad/s or m/s
 
     def __post_init__(self) -> None:
@@ -146,6 +148,7 @@ class Quadratic(AxisTerm):
     """Friction with the square of the velocity, as of a fan or of thick oil: dq |dq|."""
 
     NAME, SYMBOL, UNITS = "quadratic", "fq{i}", SQUARE
+    FRICTION = True
 
     def torque(self, dq: Array) -> Array:
         return dq * np.abs(dq)
@@ -155,7 +158,7 @@ class ViscousForward(AxisTerm):
     """Viscous friction at positive velocities only."""
 
     NAME, SYMBOL, UNITS = "viscous-forward", "fv{i}+", VISCOUS
-    NEVER_NEGATIVE = True
+    FRICTION = NEVER_NEGATIVE = True
 
     def torque(self, dq: Array) -> Array:
         return np.maximum(dq, 0.0)
@@ -165,7 +168,7 @@ class ViscousBackward(AxisTerm):
     """Viscous friction at negative velocities only."""
 
     NAME, SYMBOL, UNITS = "viscous-backward", "fv{i}-", VISCOUS
-    NEVER_NEGATIVE = True
+    FRICTION = NEVER_NEGATIVE = True
 
     def torque(self, dq: Array) -> Array:
         return np.minimum(dq, 0.0)
@@ -175,7 +178,7 @@ class CoulombForward(AxisTerm):
     """Coulomb friction at positive velocities only."""
 
     NAME, SYMBOL, UNITS = "coulomb-forward", "fs{i}+", TORQUE
-    NEVER_NEGATIVE, JUMPS = True, True
+    FRICTION = NEVER_NEGATIVE = JUMPS = True
 
     def torque(self, dq: Array) -> Array:
         return (dq > 0.0).astype(np.float64)
@@ -185,7 +188,7 @@ class CoulombBackward(AxisTerm):
     """Coulomb friction at negative velocities only."""
 
     NAME, SYMBOL, UNITS = "coulomb-backward", "fs{i}-", TORQUE
-    NEVER_NEGATIVE, JUMPS = True, True
+    FRICTION = NEVER_NEGATIVE = JUMPS = True
 
     def torque(self, dq: Array) -> Array:
         return -(dq < 0.0).astype(np.float64)
