@@ -22,10 +22,10 @@ from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table
-from scarid_cli.stages.changes import known
 from scarid_cli.stages.compare import compare
 from scarid_cli.stages.identify import identify
-from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.results.changes import known
+from scarid_cli.stages.results.parameters import identified
 from scarid_cli.stages.validate import validate
 
 JUDGING, TUNING = (range(110, 120), 2000), (range(4), 0)  # arms, and the first seed

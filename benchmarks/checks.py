@@ -19,7 +19,7 @@ from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.reader import open_table
 from scarid_cli.stages.check import check
-from scarid_cli.stages.logs import log_of
+from scarid_cli.stages.records.logs import log_of
 
 ROOT = Path(__file__).parent.parent
 URDF = ROOT.parent / "shared" / "data" / "urdf"

@@ -19,10 +19,10 @@ import numpy as np
 import pyarrow.parquet as pq
 from shells import shell
 
+from scarid_cli.algorithms.filters.likelihood import noise_of
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.tuning import scatter
-from scarid_cli.algorithms.tuning.likelihood import noise_of
 from scarid_cli.algorithms.tuning.lowpassed import Segment, lowpassed
 from scarid_cli.arrays import Array
 

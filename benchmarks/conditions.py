@@ -18,16 +18,16 @@ from arms import URDFS, described
 from mechanics import BUILT, CHANGES, FREQUENCIES, LOADED, cubic, geared, one_flexible
 
 from scarid_cli.algorithms.choices.registry import EXCITATIONS
+from scarid_cli.algorithms.plants import building
 from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.imperfections import PlantImperfections
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.algorithms.plants.model import dynamics, model
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.sensors import building
 from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.arrays import Array
-from scarid_cli.cli.imperfections import imperfections
+from scarid_cli.cli.declaring.imperfections import imperfections
 from scarid_cli.io.table import Metadata, Table, concatenated
 from scarid_cli.stages.resample import resample
 from scarid_cli.stages.simulate import simulate

@@ -11,8 +11,9 @@ from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.excitations.quintic import Excitation
 from scarid_cli.algorithms.filters.butterworth import Butterworth
 from scarid_cli.algorithms.plants.controllers import law
-from scarid_cli.algorithms.plants.loop import ClosedLoop, LoopLog
+from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.algorithms.robots import reading
+from scarid_cli.algorithms.sensors.signals import LoopLog
 from scarid_cli.algorithms.trajectories.hermite import refine
 from scarid_cli.algorithms.trajectories.limits import Limits
 

@@ -31,9 +31,9 @@ from signals import H, TrueMotion, errors, motions, seen
 
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.filters.likelihood import best_model
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.tuning import judges, search
-from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 
 

@@ -19,8 +19,8 @@ from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.robots import reading
 from scarid_cli.arrays import Array
-from scarid_cli.stages.bandwidth import bandwidth, tune_for
-from scarid_cli.stages.record import Record
+from scarid_cli.stages.procedure.bandwidth import bandwidth, tune_for
+from scarid_cli.stages.records.record import Record
 from scarid_cli.stages.tune import chosen
 
 ROBOT, PUBLISHED, H = reading.load("emps"), 95.1089, 1e-3

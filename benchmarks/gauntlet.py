@@ -51,18 +51,18 @@ from conditions import (
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.estimators import rls, wls
+from scarid_cli.algorithms.inference.alignment import aligned
 from scarid_cli.algorithms.regression.rows import joined, regressed
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.alignment import aligned
 from scarid_cli.algorithms.tuning.equivalent import chain
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, ScaridError
 from scarid_cli.io.table import Table, matrix
-from scarid_cli.stages.blind import Choices, counted, estimated, evened, prepared
 from scarid_cli.stages.differentiate import matched
 from scarid_cli.stages.identify import identify
-from scarid_cli.stages.rows import treated
+from scarid_cli.stages.procedure.blind import Choices, counted, estimated, evened, prepared
+from scarid_cli.stages.records.rows import treated
 
 ARMS = ("ur10", "panda", "xarm7", "so101")  # whose URDFs are not in the repository
 ROBOTS = ("scara2", "planar2-gravity", "ur10", "panda")

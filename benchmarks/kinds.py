@@ -10,6 +10,7 @@ from numpy.random import Generator
 from spoiled import (
     clipped,
     coarse,
+    copied,
     dead,
     deadened,
     degrees,
@@ -84,6 +85,11 @@ def torques_exchanged(log: Log, rng: Generator) -> tuple[Spoils, str]:
 def joints_exchanged(log: Log, rng: Generator) -> tuple[Spoils, str]:
     one, two = pair(log, rng)
     return joints_swapped(one, two), f"joints {one}, {two} exchanged"
+
+
+def one_position_twice(log: Log, rng: Generator) -> tuple[Spoils, str]:
+    one, two = pair(log, rng)
+    return copied(two, one), f"q{two} is q{one} in all"
 
 
 def another_zero(log: Log, rng: Generator) -> tuple[Spoils, str]:
@@ -279,6 +285,7 @@ KINDS = {
     "a torque that saturates": Kind(
         "saturation", lambda _, rng: (clipped(float(rng.uniform(0.4, 0.8))), "torque of joint 1")
     ),
+    "a position logged twice": Kind("equal positions", one_position_twice),
     "a torque that is not logged": Kind(
         "constant torque",
         lambda log, rng: (dead(joint := any_joint(log, rng)), f"joint {joint} never changes"),

@@ -23,7 +23,7 @@ from scarid_cli.algorithms.regression.rows import Rows, rows_of
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import concatenated, matrix
-from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.results.parameters import identified
 
 ROBOTS = ("scara2", "planar2-gravity")
 LACKING = ("load friction", "Stribeck friction", "cable pulls", "motor saturates")

@@ -21,7 +21,7 @@ from gauntlet import cells
 
 from scarid_cli.algorithms.checks.finding import OK, Finding
 from scarid_cli.stages.check import check
-from scarid_cli.stages.logs import log_of
+from scarid_cli.stages.records.logs import log_of
 
 ALL = "the friction of every joint would drive it"
 CHOSEN = "clean,all together,Stribeck,outliers,standstill"

@@ -174,6 +174,17 @@ def dead(joint: int) -> Callable[[Log], Log]:
     return spoil
 
 
+def copied(joint: int, of: int) -> Callable[[Log], Log]:
+    """A recorder that writes the position of another joint for that of a joint."""
+
+    def spoil(log: Log) -> Log:
+        q = log.q.copy()
+        q[joint - 1] = q[of - 1]
+        return replace(log, q=q)
+
+    return spoil
+
+
 def deadened(joint: int, share: float) -> Callable[[Log], Log]:
     """A drive that reports the smaller ones of the torques, this share of the rows, as 0."""
 
@@ -310,6 +321,9 @@ SPOILED = {
     "joint 2 braked": Spoiled("scara", frozen(2), "motion", "joint 2 hardly moves"),
     "small torques of joint 2 not measured": Spoiled(
         "scara", deadened(2, 0.8), "dead zone", "joint 2 is one and the same value in"
+    ),
+    "position of joint 1 twice": Spoiled(
+        "scara", copied(2, 1), "equal positions", "q2 is q1 in all"
     ),
     "no torque of joint 1": Spoiled("arm", dead(1), "constant torque", "joint 1 never changes"),
 }

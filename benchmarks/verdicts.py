@@ -26,8 +26,8 @@ from crossvalidation import FAST, seen
 from defaults import PERIOD, RATIO, ROBOT, experiment
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
-from scarid_cli.algorithms.plants.loop import LoopLog
 from scarid_cli.algorithms.regression.treatment import Treatment
+from scarid_cli.algorithms.sensors.signals import LoopLog
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Metadata, Table, doubles
 from scarid_cli.stages.identify import identify

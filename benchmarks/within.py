@@ -19,11 +19,11 @@ import numpy as np
 from conditions import CONDITIONS, UNSEEN, log, robot_named
 from needed import needed
 
-from scarid_cli.algorithms.statistics.jackknife import quantile
-from scarid_cli.algorithms.statistics.reversals import away_from_reversals
+from scarid_cli.algorithms.uncertainty.jackknife import quantile
+from scarid_cli.algorithms.uncertainty.reversals import away_from_reversals
 from scarid_cli.arrays import Array
-from scarid_cli.stages import blind
-from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.procedure import blind
+from scarid_cli.stages.results.parameters import identified
 
 ROBOTS = ("scara2", "planar2-gravity")
 UNTOLD = ("motor constant", "gain of", "base vibrates", "positions held", "torques held")

@@ -17,8 +17,8 @@ import click
 from scarid import tables
 from scarid.results import RequirementError, Text, result
 from scarid_cli.cli import COMMANDS as ALL
-from scarid_cli.cli import chain
 from scarid_cli.cli import scarid as group
+from scarid_cli.cli.running import chain
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
 

@@ -10,7 +10,7 @@ import sys
 import click
 
 from scarid.calls import COMMANDS, documentation, of_name, options_of, writes_table
-from scarid_cli.cli.options import InputFile
+from scarid_cli.cli.declaring.options import InputFile
 
 HEAD = '''"""The commands of scarid as functions on tables (written by `python -m scarid.stubs`)."""
 

@@ -18,8 +18,9 @@ os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
 
 import click  # noqa: E402
 
-from scarid_cli.cli import chain, scarid  # noqa: E402
-from scarid_cli.cli.terminal import told  # noqa: E402
+from scarid_cli.cli import scarid  # noqa: E402
+from scarid_cli.cli.running import chain  # noqa: E402
+from scarid_cli.cli.running.terminal import told  # noqa: E402
 from scarid_cli.errors import (  # noqa: E402
     BAD_DATA,
     BROKEN_PIPE,
@@ -69,7 +70,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _usage(error: click.UsageError) -> str:
     """What is wrong with the command line."""
     if isinstance(error, click.NoSuchOption):
-        from scarid_cli.cli import unknown
+        from scarid_cli.cli.declaring import unknown
 
         return unknown.told(error)
     return error.format_message().rstrip(".")
@@ -104,7 +105,7 @@ def run() -> None:
     if not sys.warnoptions:  # python -W, PYTHONWARNINGS
         warnings.simplefilter("ignore")  # those of libraries are for programmers
     if instruction := os.environ.get("_SCARID_COMPLETE"):  # the Tab key of a shell
-        from scarid_cli.cli import completing
+        from scarid_cli.cli.declaring import completing
 
         completing.answer(scarid, instruction)
         sys.exit(_flushed(0))

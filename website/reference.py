@@ -11,7 +11,7 @@ import click
 from relinking import relinked, title
 
 from scarid_cli.cli import COMMANDS, scarid
-from scarid_cli.cli.headings import KEY, OUTPUT
+from scarid_cli.cli.declaring.headings import KEY, OUTPUT
 from scarid_cli.cli.methods import REGISTRIES
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -80,7 +80,7 @@ class LazyGroup(click.Group):
 def _version(ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
     if not wanted or ctx.resilient_parsing:
         return
-    from scarid_cli.cli.interpreted import interpreted
+    from scarid_cli.cli.declaring.interpreted import interpreted
 
     click.echo(f"scarid {__version__} (kernels: {'interpreted' if interpreted() else 'compiled'})")
     ctx.exit()

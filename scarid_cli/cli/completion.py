@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from scarid_cli.cli import completing, options
+from scarid_cli.cli.declaring import completing, options
 
 
 @click.command(name="completion")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import click
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
-from scarid_cli.cli import options, selecting
-from scarid_cli.cli.declare import declare
-from scarid_cli.cli.described import listed, recommended
-from scarid_cli.cli.headings import METHOD, heading
+from scarid_cli.cli.declaring import options, selecting
+from scarid_cli.cli.declaring.declare import declare
+from scarid_cli.cli.declaring.described import listed, recommended
+from scarid_cli.cli.declaring.headings import METHOD, heading
 
 
 @declare("differentiate")

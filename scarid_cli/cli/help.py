@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import click
 
-from scarid_cli.cli.headings import Command
-from scarid_cli.cli.options import offered
+from scarid_cli.cli.declaring.headings import Command
+from scarid_cli.cli.declaring.options import offered
 
 
 @click.command(name="help", cls=Command)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import click
 
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
-from scarid_cli.cli import options, selecting
-from scarid_cli.cli.declare import declare
-from scarid_cli.cli.described import describing
-from scarid_cli.cli.headings import DATA, ERRORS, METHOD, MODEL, OUTPUT, heading
+from scarid_cli.cli.declaring import options, selecting
+from scarid_cli.cli.declaring.declare import declare
+from scarid_cli.cli.declaring.described import describing
+from scarid_cli.cli.declaring.headings import DATA, ERRORS, METHOD, MODEL, OUTPUT, heading
 
 
 @declare("identify", describing(ESTIMATORS, "Estimators"))

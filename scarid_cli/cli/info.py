@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from scarid_cli.cli import options, selecting
-from scarid_cli.cli.declare import declare
+from scarid_cli.cli.declaring import options, selecting
+from scarid_cli.cli.declaring.declare import declare
 
 
 @declare("info")

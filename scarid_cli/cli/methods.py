@@ -13,8 +13,8 @@ from scarid_cli.algorithms.choices.registry import (
     ESTIMATORS,
     EXCITATIONS,
 )
-from scarid_cli.cli import options
-from scarid_cli.cli.terminal import wrapped
+from scarid_cli.cli.declaring import options
+from scarid_cli.cli.running.terminal import wrapped
 from scarid_cli.errors import UsageFault
 
 REGISTRIES = {

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from scarid_cli.cli import options
+from scarid_cli.cli.declaring import options
 from scarid_cli.printable import printable
 
 if TYPE_CHECKING:

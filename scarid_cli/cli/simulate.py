@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import click
 
-from scarid_cli.cli import options
-from scarid_cli.cli.declare import declare
-from scarid_cli.cli.headings import OUTPUT, heading
-from scarid_cli.cli.imperfections import WithImperfections
-from scarid_cli.cli.options import NUMBERS
+from scarid_cli.cli.declaring import options
+from scarid_cli.cli.declaring.declare import declare
+from scarid_cli.cli.declaring.headings import OUTPUT, heading
+from scarid_cli.cli.declaring.imperfections import WithImperfections
+from scarid_cli.cli.declaring.options import NUMBERS
 
 GAINS = options.Numbers(options.Range(-1e12, 1e12))
 

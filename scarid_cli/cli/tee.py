@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import click
 
-from scarid_cli.cli import options
-from scarid_cli.cli.declare import declare
+from scarid_cli.cli.declaring import options
+from scarid_cli.cli.declaring.declare import declare
 
 
 @declare("tee")

@@ -5,11 +5,11 @@ from __future__ import annotations
 import click
 
 from scarid_cli.algorithms.choices.registry import EXCITATIONS
-from scarid_cli.cli import options
-from scarid_cli.cli.declare import declare
-from scarid_cli.cli.described import describing
-from scarid_cli.cli.headings import ERRORS, heading
-from scarid_cli.cli.options import NUMBERS
+from scarid_cli.cli.declaring import options
+from scarid_cli.cli.declaring.declare import declare
+from scarid_cli.cli.declaring.described import describing
+from scarid_cli.cli.declaring.headings import ERRORS, heading
+from scarid_cli.cli.declaring.options import NUMBERS
 
 
 @declare("trajgen", describing(EXCITATIONS, "Excitations"))

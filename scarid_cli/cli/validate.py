@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import click
 
-from scarid_cli.cli import options, selecting
-from scarid_cli.cli.declare import declare
-from scarid_cli.cli.headings import DATA, OUTPUT, heading
+from scarid_cli.cli.declaring import options, selecting
+from scarid_cli.cli.declaring.declare import declare
+from scarid_cli.cli.declaring.headings import DATA, OUTPUT, heading
 
 
 @declare("validate")

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import pyarrow as pa
 
 from scarid_cli.errors import BadData, bad_data, bad_row
-from scarid_cli.io.csvio import NUMERIC
+from scarid_cli.io.cells import NUMERIC
 
 Parse = Callable[[bytes, pa.Schema], object]
 UNITS = (

@@ -7,7 +7,7 @@ import io
 import re
 import shlex
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from itertools import chain
 
 import pyarrow as pa
@@ -16,6 +16,7 @@ import pyarrow.csv as pacsv
 from scarid_cli.errors import BadData, bad_data, cut_short
 from scarid_cli.io.bytesource import ByteSource, require_moderate_row
 from scarid_cli.io.carried import Carried, facts_of
+from scarid_cli.io.cells import NUMERIC, csv_text
 from scarid_cli.io.few import Few
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.stop import STOP
@@ -36,7 +37,6 @@ MISSING = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
 # Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
 INDEX = "index"  # a first column without a name, which pandas writes
-NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
 
 
 PICKLE = "a pickle, which can run any program: save the arrays with numpy.savez, or as CSV"
@@ -423,10 +423,3 @@ def _has_text(schema: pa.Schema) -> bool:
 def _one_of_numbers(schema: pa.Schema) -> bool:
     """Whether there is a single column, of numbers: an empty cell of it would be an empty line."""
     return len(schema) == 1 and not pa.types.is_string(schema.field(0).type)
-
-
-def csv_text(rows: Sequence[Sequence[str]]) -> bytes:
-    """Rows of texts as CSV."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue().encode()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from scarid_cli.io.csvio import NUMERIC
+from scarid_cli.io.cells import NUMERIC
 
 STAMP = ("sec", "nanosec")
 ARRAYS = ("position", "velocity", "effort")  # of sensor_msgs/msg/JointState, in this order

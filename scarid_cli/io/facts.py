@@ -80,7 +80,7 @@ SINCE = {"error": _or_none(_size)}  # which the additions of older tables have n
 
 
 def _addition(x: Any) -> bool:
-    """What was fitted beside the parameters (statistics/additions.py)."""
+    """What was fitted beside the parameters (effects/additions.py)."""
     if not _of(ADDITION)(x):
         return False
     further = set(x) - set(ADDITION)
@@ -95,7 +95,7 @@ def _gains(x: Any) -> bool:
 
 
 def _products(x: Any) -> bool:
-    """The products of the rows of each joint, by the lower triangles (stages/products.py)."""
+    """The products of the rows of each joint, by the lower triangles (results/products.py)."""
     own = {"columns": _list(_place), "products": _list(number)}
     parts = {"joints": _list(_of(own)), "rows": _list(_size), "inflation": _size}
     if not _of({**parts, "biases": _list(_list(number))})(x) or len(x["rows"]) != len(x["joints"]):

@@ -13,7 +13,7 @@ import pyarrow as pa
 
 from scarid_cli.errors import BadData, ScaridError, UsageFault, bad_data
 from scarid_cli.io.bytesource import ByteSource, Wrapped, max_batch, require_moderate
-from scarid_cli.io.csvio import csv_text
+from scarid_cli.io.cells import csv_text
 from scarid_cli.io.matfile import COPIES, TOO_LARGE
 from scarid_cli.io.notation import SPACE, Notation, without_names
 from scarid_cli.io.table import Metadata, Table, doubles
@@ -63,16 +63,17 @@ class TranslatedCsv(Wrapped):
 
 def read_archive(
     path: str, named: Collection[str] = (), header: Sequence[str] = ()
-) -> tuple[Table, list[str]]:
+) -> tuple[Table, list[str], list[str]]:
     """The arrays of an .npz, .npy, .mat or HDF5 file as columns; a matrix `q` becomes q1, q2, ...
 
-    The columns of the one matrix of an .npy file have the names of the `header`. Single numbers
-    are left out. If the other arrays are not the columns of one table, only those
-    are read that are `named`, by themselves or one of their columns; the second value are the names
-    of those that are left out. An array that is not of real numbers, or whose numbers a double
+    The columns of the one matrix of an .npy file have the names of the `header`. If the arrays are
+    not the columns of one table, only those are read that are `named`, by themselves or one of
+    their columns; the second value are the names of those that are left out, and the third one are
+    single numbers: `dt = 0.005`. An array that is not of real numbers, or whose numbers a double
     cannot hold exactly, is BadData, as is a file that cannot be read.
     """
-    arrays = {name: array for name, array in _read(path).items() if array.size > 1}
+    every = _read(path)
+    arrays = {name: array for name, array in every.items() if array.size > 1}
     kept = {name: array for name, array in arrays.items() if {*_names(name, array)} & {*named}}
     if not kept or _are_a_table(arrays):
         kept = arrays
@@ -96,7 +97,12 @@ def read_archive(
         raise bad_data(path, found, expected="arrays of one length", remedy=remedy)
     batch = pa.RecordBatch.from_arrays([doubles(x) for x in columns.values()], list(columns))
     table = Table(path, batch.schema, Metadata(), iter([batch]))
-    return table, [name for name in arrays if name not in kept]
+    singles = [f"{name} = {x.item():.6g}" for name, x in every.items() if _is_single(x)]
+    return table, [name for name in arrays if name not in kept], singles
+
+
+def _is_single(array: np.ndarray[Any, Any]) -> bool:
+    return array.size == 1 and array.dtype.kind in "fiu"
 
 
 def _with_header(path: str, columns: dict[str, Any], header: Sequence[str]) -> dict[str, Any]:

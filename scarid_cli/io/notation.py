@@ -11,7 +11,7 @@ from pathlib import Path
 
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bytesource import ByteSource
-from scarid_cli.io.csvio import NUMERIC
+from scarid_cli.io.cells import NUMERIC
 from scarid_cli.io.echoed import joint_state_names
 
 SPACE = " "  # any white space between values

@@ -6,5 +6,5 @@ nothing when compiled, and keeps numpy's slower scalars out of the interpreted a
 
 The docstring of a function is the one place that says what each number of its arrays is. Callers
 read them by name: `filters.kalman.KalmanState`, `differentiators.p2smd.Z1`,
-`regression.information.Information`, `statistics.prediction.Quality`.
+`regression.information.Information`, `inference.prediction.Quality`.
 """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite, nan
 
-from scarid_cli.algorithms.statistics.verdict import DOUBT
+from scarid_cli.algorithms.inference.verdict import DOUBT
 from scarid_cli.reporting.kinds import Comparison, Metrics, Parameters, Result
 from scarid_cli.reporting.parts import Bars, Section, number
 from scarid_cli.reporting.said import ALARMING, FINE, Said

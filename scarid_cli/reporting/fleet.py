@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from scarid_cli.algorithms.statistics.comparison import LEVEL
+from scarid_cli.algorithms.uncertainty.comparison import LEVEL
 from scarid_cli.reporting.fleet_history import History
 
 # What may be found in a log, from the most serious finding to none; the numbers are ranks.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from scarid_cli.algorithms.inference.prediction import Quality
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.arrays import Array
 from scarid_cli.reporting.naming import Name
 from scarid_cli.reporting.said import Said

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import nan
 
-from scarid_cli.algorithms.statistics.prediction import Quality
+from scarid_cli.algorithms.inference.prediction import Quality
 from scarid_cli.io.table import Table
 from scarid_cli.printable import printable
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result, Trace

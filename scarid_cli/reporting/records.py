@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
+from scarid_cli.algorithms.inference.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data, bad_row
 from scarid_cli.io.reader import require

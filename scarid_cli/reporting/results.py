@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.inference.prediction import Quality
 from scarid_cli.algorithms.robots import reading
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.prediction import Quality
 from scarid_cli.errors import BadData, UsageFault, bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.reader import checked

@@ -6,10 +6,10 @@ import numpy as np
 
 from scarid_cli.algorithms.changes import payload
 from scarid_cli.algorithms.design.prediction import Moments, standard_errors
+from scarid_cli.algorithms.inference.gains import KNOWN
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.physical import LENGTH, standard_of
 from scarid_cli.algorithms.robots.rigid import Frame
-from scarid_cli.algorithms.statistics.gains import KNOWN
 from scarid_cli.arrays import Array
 from scarid_cli.interval import HALF
 from scarid_cli.stages.payload import frame_of

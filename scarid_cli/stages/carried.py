@@ -10,21 +10,21 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.changes.carried import BLOCK, SIZES, VARIES, Carrying, Piece, Sums
 from scarid_cli.algorithms.changes.payload import directions, located
+from scarid_cli.algorithms.effects.offsets import offset_joints
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.rigid import Frame
 from scarid_cli.algorithms.robots.terms import Offset
-from scarid_cli.algorithms.statistics.offsets import offset_joints
 from scarid_cli.arrays import Array, Marks
 from scarid_cli.errors import bad_data
 from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, matrix, table_of
 from scarid_cli.stages import Sink
-from scarid_cli.stages.changes import known
-from scarid_cli.stages.estimates import Estimates
 from scarid_cli.stages.payload import frame_of
-from scarid_cli.stages.prediction import predicted
+from scarid_cli.stages.results.changes import known
+from scarid_cli.stages.results.estimates import Estimates
+from scarid_cli.stages.results.prediction import predicted
 
 NAMES = ("mass", "x", "y", "z")
 HEAVIER, LIGHTER = "picked up", "put down"

@@ -62,6 +62,8 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
     if empty:
         yield failed("values", f"no value in {', '.join(empty)}", "log these columns")
         return
+    copied = values.copied(log.q)
+    yield copied
     driven = values.constant(log.tau)
     yield driven
     if driven.status == OK and time.period:
@@ -73,18 +75,19 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
         figure = f"{log.rows} rows, too few without a gap for the checks of motion and model"
         yield failed("length", figure, "give a longer log")
         return
-    yield from _moving(log, robot, motion, driven=driven.status == OK)
+    whole = copied.status == driven.status == OK
+    yield from _moving(log, robot, motion, whole=whole)
 
 
-def _moving(log: Log, robot: Robot, motion: Motion, *, driven: bool) -> Iterator[Finding]:
-    """The findings on the motion, and on the model if every joint is `driven` by a torque."""
+def _moving(log: Log, robot: Robot, motion: Motion, *, whole: bool) -> Iterator[Finding]:
+    """The findings on the motion, and on the model if every joint has its own signals (`whole`)."""
     parts = motion.parts()
     speeds = np.max([np.abs(part.motion[1]).max(axis=1) for part in parts], axis=0)
     finding, factors = units.positions(log, robot, speeds)
     motion = motion.scaled(factors)
     parts = motion.parts()
     moved = movement.range_of_joints(parts, robot)
-    explained = driven and moved.status == OK
+    explained = whole and moved.status == OK
     suspected = finding.status == FAILED
     found = unlike(robot, motion, suspected=suspected) if explained else None
     if found and found.geared and suspected:  # neither degrees nor mm

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from scarid_cli.algorithms.statistics.comparison import (
+from scarid_cli.algorithms.uncertainty.comparison import (
     LEVEL,
     MOST_FREEDOM,
     Comparison,
@@ -23,8 +23,8 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
-from scarid_cli.stages.estimates import array_of, errors_of
-from scarid_cli.stages.parameters import GAINS, WIDENED_BY_GAINS
+from scarid_cli.stages.results.estimates import array_of, errors_of
+from scarid_cli.stages.results.parameters import GAINS, WIDENED_BY_GAINS
 
 SAME, DIFFER = "same", "differ"  # verdicts
 GAIN = "gain of joint "  # how the name of one begins

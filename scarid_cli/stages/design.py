@@ -27,7 +27,7 @@ from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Metadata, Table, table_of
-from scarid_cli.stages.estimates import estimates_with_covariance
+from scarid_cli.stages.results.estimates import estimates_with_covariance
 from scarid_cli.stages.trajgen import samples
 
 ACTIVE = 5e-3  # of a limit: a motion that comes so near is limited by it

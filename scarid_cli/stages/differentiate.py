@@ -17,7 +17,7 @@ from scarid_cli.algorithms.processes.method import MatchedForm, Method
 from scarid_cli.errors import TooShort
 from scarid_cli.io.facts import ORDER
 from scarid_cli.io.table import SEGMENT, Table, matrix, number, without
-from scarid_cli.stages.columns import Edges, Plan, Task, processed
+from scarid_cli.stages.records.columns import Edges, Plan, Task, processed
 
 
 def differentiate(

@@ -16,7 +16,7 @@ import numpy as np
 from scarid_cli.algorithms.plants.model import model
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
-from scarid_cli.stages.parameters import Identified
+from scarid_cli.stages.results.parameters import Identified
 
 WORD = re.compile(r"\W")
 

@@ -8,7 +8,7 @@ from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.errors import TooShort
 from scarid_cli.io.facts import ORDER
 from scarid_cli.io.table import Table
-from scarid_cli.stages.columns import Plan, Task, processed
+from scarid_cli.stages.records.columns import Plan, Task, processed
 
 
 def filtered(

@@ -11,16 +11,16 @@ import numpy as np
 from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.changes.known_load import Gains, Load, with_load
 from scarid_cli.algorithms.changes.payload import directions
+from scarid_cli.algorithms.inference.gains import KNOWN
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.logs import CURRENT
-from scarid_cli.algorithms.statistics.gains import KNOWN
 from scarid_cli.arrays import Array, Marks
 from scarid_cli.errors import BadData
 from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
 from scarid_cli.stages.payload import frame_of
-from scarid_cli.stages.products import products_of
+from scarid_cli.stages.results.products import products_of
 
 LEVEL = 0.05  # probability of calling any of the joints wrong if none is
 

@@ -11,26 +11,26 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from scarid_cli.algorithms.checks.finding import FAILED, Finding
+from scarid_cli.algorithms.inference.outcome import Outcome, outcome
+from scarid_cli.algorithms.inference.verdict import combination
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.information import RESIDUAL, NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, regressed, thinning
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
-from scarid_cli.algorithms.statistics.outcome import Outcome, outcome
-from scarid_cli.algorithms.statistics.subsample import MOST_COVERED, Subsample
-from scarid_cli.algorithms.statistics.verdict import combination
+from scarid_cli.algorithms.uncertainty.checkpoint import Checkpoint
+from scarid_cli.algorithms.uncertainty.subsample import MOST_COVERED, Subsample
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, bad_data
 from scarid_cli.io.table import SEGMENT, Table, number, segment_field, with_columns
 from scarid_cli.memory import limit
 from scarid_cli.stages import Sink
-from scarid_cli.stages.corrected import TORQUE_GAINS
-from scarid_cli.stages.parameters import parameters
-from scarid_cli.stages.reach import Reach
-from scarid_cli.stages.rows import treated
-from scarid_cli.stages.suspicions import of_model, of_velocities, without_placeholders
-from scarid_cli.stages.times import Times
+from scarid_cli.stages.records.corrected import TORQUE_GAINS
+from scarid_cli.stages.records.rows import treated
+from scarid_cli.stages.records.times import Times
+from scarid_cli.stages.remarks.reach import Reach
+from scarid_cli.stages.remarks.suspicions import of_model, of_velocities, without_placeholders
+from scarid_cli.stages.results.parameters import parameters
 
 if TYPE_CHECKING:  # cvxpy takes a second to import
     from scarid_cli.algorithms.robots.possible import Possible
@@ -161,7 +161,7 @@ def _held(table: Table, robot: Robot, estimator: BaseEstimator, treatment: Treat
 
 def _constrained(found: Outcome, robot: Robot, rows: Rows) -> tuple[Outcome, Possible]:
     """The outcome, and the nearest estimates that rigid bodies can have."""
-    from scarid_cli.stages.possible import constrained  # cvxpy takes a second to import
+    from scarid_cli.stages.results.possible import constrained  # cvxpy takes a second to import
 
     return constrained(found, robot, rows)
 

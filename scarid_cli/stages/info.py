@@ -17,7 +17,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.clock import DRIFT, nominal_period
 from scarid_cli.io.table import SEGMENT, Instant, Table, matrix, steps_of
 from scarid_cli.printable import printable
-from scarid_cli.stages.wording import renamable
+from scarid_cli.stages.conversion.wording import renamable
 
 FEW = 8  # values of a list, or entries of a dictionary, that are shown
 

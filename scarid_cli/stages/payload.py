@@ -17,8 +17,8 @@ from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
-from scarid_cli.stages.controllers import settings
-from scarid_cli.stages.estimates import Estimates
+from scarid_cli.stages.models.controllers import settings
+from scarid_cli.stages.results.estimates import Estimates
 
 OF_TORQUES = (
     "the intervals assume that the logged torques are right: if they are 1 % too large, so is the "

@@ -34,9 +34,9 @@ from scarid_cli.io.table import (
     with_columns,
 )
 from scarid_cli.runs import remedy_back
-from scarid_cli.stages.holding import FirstIntervals, Holding, measured
-from scarid_cli.stages.slower import Filling, slower_groups
-from scarid_cli.stages.splitting import Splitting
+from scarid_cli.stages.records.holding import FirstIntervals, Holding, measured
+from scarid_cli.stages.records.slower import Filling, slower_groups
+from scarid_cli.stages.records.splitting import Splitting
 
 MOST = 1 << 18  # new rows that are made at once, and that lie between two of the log
 SLOWEST_RATE = 100_000  # times slower than the log at most

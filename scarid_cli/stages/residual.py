@@ -2,7 +2,7 @@
 
 `scarid validate --residual` writes it. The band of a joint has two parts, whose squares add up:
 half the 95 % interval of the predicted torque at that row, which the errors of the parameters
-give, and the level that the residuals pass as rarely as is asked for (statistics/peaks.py), which
+give, and the level that the residuals pass as rarely as is asked for (uncertainty/peaks.py), which
 noise and all that the model lacks give, as they were in the log of the identification.
 """
 
@@ -21,8 +21,8 @@ from scarid_cli.algorithms.regression.momentum import Observer
 from scarid_cli.algorithms.regression.normal_equations import inverse
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.jackknife import quantile
-from scarid_cli.algorithms.statistics.peaks import Peaks
+from scarid_cli.algorithms.uncertainty.jackknife import quantile
+from scarid_cli.algorithms.uncertainty.peaks import Peaks
 from scarid_cli.arrays import Array
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import (
@@ -35,9 +35,9 @@ from scarid_cli.io.table import (
     with_columns,
 )
 from scarid_cli.stages import Sink
-from scarid_cli.stages.changes import Known
-from scarid_cli.stages.parameters import Identified
-from scarid_cli.stages.prediction import Part, of_parts
+from scarid_cli.stages.results.changes import Known
+from scarid_cli.stages.results.parameters import Identified
+from scarid_cli.stages.results.prediction import Part, of_parts
 from scarid_cli.words import of_joints
 
 SHOWN = 3  # contacts that a message names at most

@@ -21,8 +21,8 @@ from scarid_cli.algorithms.regression.shifting import in_step, reach
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
-from scarid_cli.stages.parameters import Identified
-from scarid_cli.stages.prediction import Part
+from scarid_cli.stages.results.parameters import Identified
+from scarid_cli.stages.results.prediction import Part
 from scarid_cli.words import percents_of_joints
 
 PARTS = (0.25, 0.5, 1.0)  # of the window: the horizons

@@ -10,15 +10,15 @@ import pyarrow as pa
 
 from scarid_cli.algorithms.imperfections.registry import Imperfections
 from scarid_cli.algorithms.imperfections.rows import StandstillAfter, StandstillBefore
+from scarid_cli.algorithms.plants import building
 from scarid_cli.algorithms.plants.loop import (
     ClosedLoop,
     DivergedError,
     IndefiniteError,
-    LoopLog,
     LoopState,
 )
-from scarid_cli.algorithms.sensors import building
 from scarid_cli.algorithms.sensors.recorder import Recorder, Rows
+from scarid_cli.algorithms.sensors.signals import LoopLog
 from scarid_cli.algorithms.sensors.standstill import with_standstill
 from scarid_cli.algorithms.trajectories.hermite import Motion, refine
 from scarid_cli.arrays import Array

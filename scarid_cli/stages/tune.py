@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.filters.likelihood import best_model
 from scarid_cli.algorithms.processes.bandwidth import lowpass_bandwidth
 from scarid_cli.algorithms.tuning import judges, search
-from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData, TooShort
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
-from scarid_cli.stages.record import Record
+from scarid_cli.stages.records.record import Record
 
 Settings = dict[str, list[float]]
 Progress = Callable[[], object]

@@ -15,8 +15,8 @@ from scarid_cli.algorithms.robots.physical import Physical, chi_square, inertia_
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table, number, table_of
 from scarid_cli.io.urdf import Inertial, rewritten
-from scarid_cli.stages.estimates import Estimates
-from scarid_cli.stages.prediction import qualities
+from scarid_cli.stages.results.estimates import Estimates
+from scarid_cli.stages.results.prediction import qualities
 
 SHOWN = 5  # parameters that a message names at most
 COLLAPSE = 2.0  # ratio of residual variances above which a warning is given: physical consistency

@@ -10,19 +10,19 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.algorithms.changes.wording import UNEXPLAINED
+from scarid_cli.algorithms.inference.prediction import Quality, empty
 from scarid_cli.algorithms.regression.counting import LeftOut
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
-from scarid_cli.algorithms.statistics.prediction import Quality, empty
+from scarid_cli.algorithms.uncertainty.checkpoint import Checkpoint
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, number, numbers, segment_field, table_of, with_columns
 from scarid_cli.stages import Sink
-from scarid_cli.stages.changes import Known, verdict
-from scarid_cli.stages.parameters import Identified
-from scarid_cli.stages.prediction import Part, added, of_parts
-from scarid_cli.stages.rows import treated
-from scarid_cli.stages.times import Times
+from scarid_cli.stages.records.rows import treated
+from scarid_cli.stages.records.times import Times
+from scarid_cli.stages.results.changes import Known, verdict
+from scarid_cli.stages.results.parameters import Identified
+from scarid_cli.stages.results.prediction import Part, added, of_parts
 
 
 class Beside(Protocol):

@@ -147,7 +147,7 @@ def test_a_motion_that_is_matched_is_not_to_be_matched(
     words: str, scarid: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, advised: bool
 ) -> None:
     """Nor is a measurement, which `identify` matches; a CSV says so by its settling rows only."""
-    module = "scarid_cli.algorithms.statistics.verdict"
+    module = "scarid_cli.algorithms.inference.verdict"
     monkeypatch.setattr(f"{module}._moved", lambda *_: "Fv1 would change")
     log, motion = ROOT / "samples" / "scara2.csv", tmp_path / "motion"
     words = words.replace("LOG", str(log)).replace("MOTION", str(motion))

@@ -12,6 +12,7 @@ import scipy.io
 from conftest import Result, refused
 
 Shell = Callable[..., Result]
+Run = Callable[..., Result]
 
 
 def test_names_units_customs_and_a_missing_header(shell: Shell) -> None:
@@ -255,3 +256,14 @@ def test_wraps_and_glitches_are_taken_out_and_told(shell: Shell, tmp_path: Path)
     assert np.flatnonzero(np.isnan(found["tau1"])).tolist() == [50, 300]
     np.testing.assert_array_equal(np.delete(found["tau1"], [50, 300]), np.delete(tau, [50, 300]))
     assert shell(named).err.count("leaps") == 0
+
+
+@pytest.mark.parametrize("extension", ["npz", "mat"])
+def test_single_numbers_of_an_archive_are_told(extension: str, scarid: Run, tmp_path: Path) -> None:
+    """Such as the period of a log without a clock."""
+    path = tmp_path / f"log.{extension}"
+    arrays = {"q": np.zeros((5, 2)), "tau": np.ones((5, 2)), "dt": np.array(0.005)}
+    np.savez(path, **arrays) if extension == "npz" else scipy.io.savemat(path, arrays)
+    told = scarid("convert", path, "-o", tmp_path / "out.csv").err
+    assert "single numbers are left out: dt = 0.005\n" in told
+    assert "no clock: give --rate HZ" in told

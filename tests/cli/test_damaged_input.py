@@ -15,7 +15,7 @@ from scipy.io import savemat
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.errors import UsageFault
-from scarid_cli.stages.continuation import restored
+from scarid_cli.stages.results.continuation import restored
 
 Run = Callable[..., Result]
 

@@ -260,6 +260,11 @@ LACKING = {
         "no torques: perhaps --map 'tau*=tau_est_*'; no clock: perhaps --map t=tick",
     "pos_1,pos_2,torque_1,torque_2,x": "no clock: give --rate HZ",
     "time,cmd_pos_1,cmd_pos_2,torque_1,torque_2": "--map t=time --map 'tau*=torque_*'",
+    "time,rob1_1,rob1_2,torque_rob1_1,torque_rob1_2":
+        "--map t=time --map 'q*=rob1_*' --map 'tau*=torque_rob1_*'",
+    "Time,A1,A2,MomentA1,MomentA2": "--map t=Time --map 'q*=A*' --map 'tau*=MomentA*'",
+    "time,q1,q2,u1,u2": "no torques: perhaps --map 'tau*=u*'",
+    "time,q1,q2,temp1,temp2": "no torques\n",
     "a,b,c,d,e": "as in --map q1=a",
 }  # fmt: skip
 

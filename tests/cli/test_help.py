@@ -11,7 +11,7 @@ from conftest import Result
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS, EXCITATIONS
 from scarid_cli.cli import COMMANDS
 from scarid_cli.cli import scarid as group
-from scarid_cli.cli.headings import DATA, ERRORS, METHOD, MODEL, OUTPUT
+from scarid_cli.cli.declaring.headings import DATA, ERRORS, METHOD, MODEL, OUTPUT
 
 Run = Callable[..., Result]
 MANY = 16  # options of one command, which a person does not look through without headings

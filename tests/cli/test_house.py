@@ -24,8 +24,9 @@ from scarid_cli.algorithms.choices.registry import (
     EXCITATIONS,
     Registry,
 )
-from scarid_cli.cli import COMMANDS, options
+from scarid_cli.cli import COMMANDS
 from scarid_cli.cli import scarid as scarid_group
+from scarid_cli.cli.declaring import options
 from scarid_cli.io import schemas
 from scarid_cli.reporting import schemas as page
 

@@ -10,8 +10,9 @@ import click
 import pytest
 from conftest import Result, refused
 
-from scarid_cli.cli import COMMANDS, options
+from scarid_cli.cli import COMMANDS
 from scarid_cli.cli import scarid as group
+from scarid_cli.cli.declaring import options
 from scarid_cli.errors import OutputFailure
 from scarid_cli.io.bytesource import ByteSource
 

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from scarid_cli.cli import convert
 from scarid_cli.io.bytesource import ByteSource, unpacked
-from scarid_cli.stages.recorders import OTHER_NAMES, RECORDERS
+from scarid_cli.stages.conversion.recorders import OTHER_NAMES, RECORDERS
 
 Run = Callable[..., Result]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from scarid_cli.algorithms.robots.lines import line_of
+from scarid_cli.algorithms.keys.lines import line_of
 from tests.conftest import Result, refused
 
 Run = Callable[..., Result]

@@ -15,8 +15,8 @@ from scarid_cli.algorithms.checks import units
 from scarid_cli.algorithms.checks.finding import FAILED, WARNING
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.stages.glance import of_extremes
-from scarid_cli.stages.reach import Reach
+from scarid_cli.stages.remarks.glance import of_extremes
+from scarid_cli.stages.remarks.reach import Reach
 
 Run = Callable[..., Result]
 

@@ -16,7 +16,8 @@ import pyarrow as pa
 import pytest
 from conftest import Result
 
-from scarid_cli.cli import progress, terminal
+import scarid_cli
+from scarid_cli.cli.running import progress, terminal
 
 SCARID = str(Path(sys.executable).with_name("scarid"))
 MAIN = "from scarid_cli.__main__ import run; run()"
@@ -168,7 +169,7 @@ def test_a_word_is_never_broken(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def without_kernels(folder: Path) -> Path:
     """A copy of the package without its compiled kernels."""
-    package = Path(progress.__file__).parents[1]
+    package = Path(scarid_cli.__file__).parent
     leave = shutil.ignore_patterns("*.so", "__pycache__")
     shutil.copytree(package, folder / "scarid_cli", ignore=leave)
     shutil.copytree(package.parent / "schemas", folder / "scarid_cli" / "schemas")

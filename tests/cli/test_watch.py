@@ -20,7 +20,7 @@ from conftest import Result
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
-from scarid_cli.cli.board import Board
+from scarid_cli.cli.running.board import Board
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Table
 from scarid_cli.stages.identify import SoFar

@@ -116,7 +116,7 @@ simulate --robot arm.toml arm.parquet -o arm-log.parquet
 differentiate arm-log.parquet -o arm-motion.parquet
 identify --robot arm.toml --estimator wls arm-motion.parquet -o arm-toml.parquet
 identify --robot arm.urdf --estimator wls arm-motion.parquet -o arm-urdf.parquet
-simulate --robot arm.toml --with payload=1,0,0,0,0,0,0,0,0,0,0 arm.parquet -o loaded.parquet
+simulate --robot arm.toml --with payload=2,0,0,0.1,0,0,0,0,0,0,0 arm.parquet -o loaded.parquet
 convert loaded.parquet -o loaded.csv
 identify --robot arm.toml arm-log.parquet -o bare.parquet
 """

@@ -189,7 +189,7 @@ def together(count: int) -> Iterator[tuple[str, str]]:
 
 def everything_imported() -> None:
     """Import what commands import when they run, so that forks need not."""
-    import scarid_cli.cli.job
+    import scarid_cli.cli.running.job
     import scarid_cli.io.pages  # noqa: F401
 
     os.environ["NO_COLOR"] = "1"

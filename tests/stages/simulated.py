@@ -10,9 +10,9 @@ import numpy as np
 from stages.tables import SCARA, collected, references, table
 
 from scarid_cli.algorithms.imperfections.registry import Imperfections, values_of
+from scarid_cli.algorithms.plants import building
 from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
-from scarid_cli.algorithms.sensors import building
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table
 from scarid_cli.stages.simulate import simulate

@@ -16,9 +16,9 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Output, all_or_none
-from scarid_cli.stages import blind
 from scarid_cli.stages.differentiate import matched
-from scarid_cli.stages.recommended import smoothed_motion
+from scarid_cli.stages.procedure import blind
+from scarid_cli.stages.procedure.recommended import smoothed_motion
 
 Run = Callable[..., Result]
 PLAIN = Condition("plain", duration=8.0)

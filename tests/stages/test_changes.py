@@ -24,11 +24,11 @@ from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Metadata, Table, doubles
-from scarid_cli.stages.changes import known
 from scarid_cli.stages.differentiate import matched
-from scarid_cli.stages.estimates import errors_of
 from scarid_cli.stages.identify import identify
-from scarid_cli.stages.parameters import EVIDENCE, identified
+from scarid_cli.stages.results.changes import known
+from scarid_cli.stages.results.estimates import errors_of
+from scarid_cli.stages.results.parameters import EVIDENCE, identified
 from scarid_cli.stages.validate import validate
 
 PERIOD = 0.005

@@ -20,11 +20,11 @@ from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
 from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.io.table import Table
-from scarid_cli.stages.changes import Known
 from scarid_cli.stages.differentiate import differentiate, matched
 from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
-from scarid_cli.stages.parameters import Identified
+from scarid_cli.stages.results.changes import Known
+from scarid_cli.stages.results.parameters import Identified
 from scarid_cli.stages.simulate import simulate
 from scarid_cli.stages.validate import validate
 

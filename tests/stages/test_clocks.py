@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from scarid_cli.io.echoed import joint_state_names
 from scarid_cli.io.signals import Series
 from scarid_cli.io.table import Metadata, Table
-from scarid_cli.stages.adapt import adapted
-from scarid_cli.stages.recorded import recorded
-from scarid_cli.stages.seconds import clock_columns, with_one_clock
+from scarid_cli.stages.conversion.adapt import adapted
+from scarid_cli.stages.conversion.recorded import recorded
+from scarid_cli.stages.conversion.seconds import clock_columns, with_one_clock
 
 START = 1_695_196_914_311_943_531  # ns since 1970
 PERIOD = 10_000_000  # ns

@@ -15,7 +15,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Metadata, Table
-from scarid_cli.stages.estimates import estimates_with_covariance
+from scarid_cli.stages.results.estimates import estimates_with_covariance
 from scarid_cli.stages.urdf import base_table, physical, r2_report
 
 pytest.importorskip("pinocchio")

@@ -17,14 +17,14 @@ from defaults import PERIOD
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS, ESTIMATORS
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics import subsample
-from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
+from scarid_cli.algorithms.uncertainty import subsample
+from scarid_cli.algorithms.uncertainty.checkpoint import Checkpoint
 from scarid_cli.arrays import Array
 from scarid_cli.errors import BadData
 from scarid_cli.io.facts import ORDER
 from scarid_cli.io.table import Metadata, Table, doubles
 from scarid_cli.stages.identify import identify
-from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.results.parameters import identified
 from scarid_cli.stages.validate import validate
 
 SCARA = load("scara2")

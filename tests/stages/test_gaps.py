@@ -24,8 +24,8 @@ from scarid_cli.io.table import Table, segments, without
 from scarid_cli.stages.differentiate import differentiate, matched
 from scarid_cli.stages.filter import filtered
 from scarid_cli.stages.identify import identify
-from scarid_cli.stages.parameters import Identified
 from scarid_cli.stages.resample import resample
+from scarid_cli.stages.results.parameters import Identified
 from scarid_cli.stages.validate import validate
 
 Stage = Callable[[Table], Table]

@@ -16,7 +16,7 @@ from scarid_cli.algorithms.processes.holding import FIRST, held_rows, intervals
 from scarid_cli.algorithms.processes.resampling import Clock
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import doubles
-from scarid_cli.stages.holding import FirstIntervals
+from scarid_cli.stages.records.holding import FirstIntervals
 from scarid_cli.stages.resample import resample
 
 Columns = dict[str, Any]

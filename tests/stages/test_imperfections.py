@@ -11,7 +11,7 @@ from stages.simulated import LOG_LEVEL, Values, closed_loop, log, simulated
 from stages.tables import collected, references, table
 
 from scarid_cli.algorithms.imperfections.registry import IMPERFECTIONS, Imperfections, values_of
-from scarid_cli.algorithms.sensors import building
+from scarid_cli.algorithms.plants import building
 
 EXAMPLES: Values = {
     **LOG_LEVEL,

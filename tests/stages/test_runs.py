@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from scarid_cli.io.table import Metadata, Table
 from scarid_cli.runs import RUN, run_starts
-from scarid_cli.stages.runs import runs_joined
+from scarid_cli.stages.records.runs import runs_joined
 
 PERIOD = 0.01
 

@@ -19,7 +19,7 @@ from scarid_cli.io.reader import checked
 from scarid_cli.io.selection import Lacking, Selection, within
 from scarid_cli.io.table import Table, number
 from scarid_cli.stages.identify import identify
-from scarid_cli.stages.several import joined
+from scarid_cli.stages.records.several import joined
 
 ROWS = 60
 SIZES = st.lists(st.sampled_from([1, 2, 7, 8192]), min_size=1, max_size=4)

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.regression.rows import plain
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
-from scarid_cli.stages.soundness import require_state
+from scarid_cli.algorithms.uncertainty.checkpoint import Checkpoint
+from scarid_cli.stages.results.soundness import require_state
 
 JOINTS, PARAMETERS = 2, 8
 ROWS = plain(np.ones((5, JOINTS, PARAMETERS)), np.ones((5, JOINTS)))

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Metadata, Table
-from scarid_cli.stages.cells import in_their_order, names_in_cells
-from scarid_cli.stages.turns import one_row_for_all
+from scarid_cli.stages.conversion.cells import in_their_order, names_in_cells
+from scarid_cli.stages.conversion.turns import one_row_for_all
 
 JOINTS = ["elbow", "shoulder", "wrist"]
 

@@ -18,8 +18,8 @@ from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.processes.method import Matching
 from scarid_cli.io.table import Table
+from scarid_cli.stages.conversion.velocities import apart
 from scarid_cli.stages.differentiate import differentiate, matched
-from scarid_cli.stages.velocities import apart
 
 Run = Callable[..., Result]
 LINEAR = [n for n in DIFFERENTIATORS.names if DIFFERENTIATORS.load(n)().suits_velocities]

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scarid_cli.stages.recorders import Recognised
-from scarid_cli.stages.wording import Unclear, in_short, in_words, renamable
+from scarid_cli.stages.conversion.recorders import Recognised
+from scarid_cli.stages.conversion.wording import Unclear, in_short, in_words, renamable
 
 # Headers as recorders, robots' tools and people write them, with the columns that become
 # t, q1, ..., and tau1, ..., in this order.

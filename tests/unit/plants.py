@@ -9,8 +9,9 @@ import numpy as np
 from unit.support import adjusted
 
 from scarid_cli.algorithms.plants.controllers import Law
-from scarid_cli.algorithms.plants.loop import ClosedLoop, LoopLog, LoopState
+from scarid_cli.algorithms.plants.loop import ClosedLoop, LoopState
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.sensors.signals import LoopLog
 from scarid_cli.arrays import Array
 
 RATE = 1000.0

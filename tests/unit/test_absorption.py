@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from scarid_cli.algorithms.regression.rows import plain
-from scarid_cli.algorithms.statistics.absorption import INTERVAL, LAGS, absorbed
+from scarid_cli.algorithms.uncertainty.absorption import INTERVAL, LAGS, absorbed
 
 SAMPLES, PARAMETERS = 80, 5
 

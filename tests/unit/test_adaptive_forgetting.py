@@ -15,9 +15,9 @@ from scarid_cli.algorithms.estimators.adaptive import Bank, Estimator
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
+from scarid_cli.algorithms.uncertainty.checkpoint import Checkpoint
 from scarid_cli.arrays import Array
-from scarid_cli.stages.continuation import restored, saved
+from scarid_cli.stages.results.continuation import restored, saved
 
 ROBOT = load("scara2")
 H = 0.005

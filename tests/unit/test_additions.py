@@ -29,14 +29,14 @@ from scarid_cli.algorithms.beyond.torques import (
     Spring,
     Stribeck,
 )
+from scarid_cli.algorithms.effects.additions import Shapes, of_explanation
+from scarid_cli.algorithms.effects.explanations import Explanation
+from scarid_cli.algorithms.effects.offsets import with_offsets
 from scarid_cli.algorithms.estimators import wls
+from scarid_cli.algorithms.inference.diagnostics import Diagnosis, Diagnostics
+from scarid_cli.algorithms.inference.outcome import Problem
+from scarid_cli.algorithms.inference.sentences import additions_of
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
-from scarid_cli.algorithms.statistics.additions import Shapes, of_explanation
-from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
-from scarid_cli.algorithms.statistics.explanations import Explanation
-from scarid_cli.algorithms.statistics.offsets import with_offsets
-from scarid_cli.algorithms.statistics.outcome import Problem
-from scarid_cli.algorithms.statistics.sentences import additions_of
 from scarid_cli.arrays import Array
 
 NOISE = 0.02  # N m

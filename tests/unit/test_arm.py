@@ -14,10 +14,10 @@ from unit.arms import URDF, described_arm, seven_axes
 from unit.plants import closed_loop, free, moving, pushed, reference
 
 from scarid_cli.algorithms.plants.controllers import law
-from scarid_cli.algorithms.plants.loop import LoopLog
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.terms import Stribeck
+from scarid_cli.algorithms.sensors.signals import LoopLog
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from scarid_cli.algorithms.changes.body import HELD, LIGHT, nearest
 from scarid_cli.algorithms.robots.physical import LENGTH, pseudo_inertia
-from scarid_cli.stages.controllers import settings as lines_of
+from scarid_cli.stages.models.controllers import settings as lines_of
 
 SIZES = np.array([*np.full(6, LENGTH**2), *np.full(3, LENGTH), 1.0])
 

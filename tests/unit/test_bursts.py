@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from stages.tables import PERIOD, collected, table
 
-from scarid_cli.algorithms.statistics.bursts import Interval, bursts
+from scarid_cli.algorithms.uncertainty.bursts import Interval, bursts
 from scarid_cli.arrays import Array, Marks
-from scarid_cli.stages.several import joined
-from scarid_cli.stages.times import Times, advice
+from scarid_cli.stages.records.several import joined
+from scarid_cli.stages.records.times import Times, advice
 
 H, ROWS = 0.004, 5000
 T = H * np.arange(ROWS)

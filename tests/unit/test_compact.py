@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scarid_cli.io.table import SEGMENT, Metadata, Table
-from scarid_cli.stages import compact
-from scarid_cli.stages.compact import Compact
+from scarid_cli.stages.records import compact
+from scarid_cli.stages.records.compact import Compact
 
 
 def measurement(rows: int, batch: int, *, segments: bool = True) -> pa.Table:

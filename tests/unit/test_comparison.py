@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
-from scarid_cli.algorithms.statistics.comparison import (
+from scarid_cli.algorithms.uncertainty.comparison import (
     Estimate,
     comparison,
     freedom_of,
@@ -15,7 +15,7 @@ from scarid_cli.algorithms.statistics.comparison import (
     p_values,
     trend,
 )
-from scarid_cli.algorithms.statistics.jackknife import quantile
+from scarid_cli.algorithms.uncertainty.jackknife import quantile
 from scarid_cli.arrays import Array
 from scarid_cli.stages.compare import _listed
 

@@ -12,9 +12,9 @@ from unit.slow_motions import THETA, P, regression
 from unit.test_effects import axis, diagnosed
 
 from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.inference.diagnostics import Diagnosis
 from scarid_cli.algorithms.regression.rows import Rows
-from scarid_cli.algorithms.statistics.cuts import Cut
-from scarid_cli.algorithms.statistics.diagnostics import Diagnosis
+from scarid_cli.algorithms.uncertainty.cuts import Cut
 from scarid_cli.arrays import Array
 
 PAYLOAD = 2.0  # kg

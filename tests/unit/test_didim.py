@@ -14,8 +14,8 @@ from scarid_cli.algorithms.excitations.quintic import Excitation
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.jackknife import jackknife
 from scarid_cli.algorithms.trajectories.limits import Limits
+from scarid_cli.algorithms.uncertainty.jackknife import jackknife
 from scarid_cli.errors import UsageFault
 
 SCARA = load("scara2")

@@ -22,10 +22,10 @@ from scarid_cli.algorithms.changes.hypotheses import (
     hypotheses,
 )
 from scarid_cli.algorithms.changes.likelihood import Difference, _scatter
+from scarid_cli.algorithms.effects.effects import Effect
+from scarid_cli.algorithms.inference.diagnostics import Diagnostics
+from scarid_cli.algorithms.inference.gains import Gain, apart, relative, significant
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import Effect
-from scarid_cli.algorithms.statistics.gains import Gain, apart, relative, significant
 
 RNG = np.random.default_rng(3)
 N = 4

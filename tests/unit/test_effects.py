@@ -29,17 +29,17 @@ from scarid_cli.algorithms.beyond.torques import (
     Spring,
     Stribeck,
 )
+from scarid_cli.algorithms.effects.curvature import Form, form
+from scarid_cli.algorithms.effects.effects import Effect
+from scarid_cli.algorithms.effects.parallel import differences
 from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.inference import alignment
+from scarid_cli.algorithms.inference.alignment import Aligned, aligned
+from scarid_cli.algorithms.inference.diagnostics import Diagnosis, Diagnostics
 from scarid_cli.algorithms.regression.rows import Rows, plain, rows_of, thinned
 from scarid_cli.algorithms.regression.shifting import led, shifted
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics import alignment
-from scarid_cli.algorithms.statistics.alignment import Aligned, aligned
-from scarid_cli.algorithms.statistics.curvature import Form, form
-from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
-from scarid_cli.algorithms.statistics.effects import Effect
-from scarid_cli.algorithms.statistics.parallel import differences
-from scarid_cli.algorithms.statistics.reversals import away_from_reversals
+from scarid_cli.algorithms.uncertainty.reversals import away_from_reversals
 from scarid_cli.arrays import Array
 
 AXIS = load("emps")

@@ -7,9 +7,9 @@ import pytest
 import scipy.stats
 from unit.slow_motions import P, least_squares, regression
 
+from scarid_cli.algorithms.inference.essential import RATIO, Noise, essential, without
 from scarid_cli.algorithms.regression.information import Fit
 from scarid_cli.algorithms.regression.rows import Rows, plain
-from scarid_cli.algorithms.statistics.essential import RATIO, Noise, essential, without
 
 WHITE = Noise(rows=5000.0, inflation=1.0, blocks=50)
 

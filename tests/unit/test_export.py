@@ -18,7 +18,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
 from scarid_cli.stages.export import c_header
-from scarid_cli.stages.parameters import Identified
+from scarid_cli.stages.results.parameters import Identified
 
 pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler here")
 TERMS = (

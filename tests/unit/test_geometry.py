@@ -13,12 +13,12 @@ from scarid_cli.algorithms.beyond.distances import distance_columns
 from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.beyond.mounting import Geometry
 from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.inference.diagnostics import Diagnosis
+from scarid_cli.algorithms.inference.sentences import notes_of
 from scarid_cli.algorithms.regression.rows import rows_of
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.planar import MX2
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.diagnostics import Diagnosis
-from scarid_cli.algorithms.statistics.sentences import notes_of
 from scarid_cli.arrays import Array
 
 

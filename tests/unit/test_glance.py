@@ -7,8 +7,8 @@ import pyarrow as pa
 import pytest
 
 from scarid_cli.io.table import Metadata, Table
-from scarid_cli.stages import glance
-from scarid_cli.stages.compact import Compact
+from scarid_cli.stages.records.compact import Compact
+from scarid_cli.stages.remarks import glance
 
 H, LENGTH = 0.01, 4000
 

@@ -17,8 +17,8 @@ from unit.support import adjusted
 
 from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.imperfections import Payload, PlantImperfections
-from scarid_cli.algorithms.plants.loop import LoopLog
 from scarid_cli.algorithms.robots.description import Robot
+from scarid_cli.algorithms.sensors.signals import LoopLog
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

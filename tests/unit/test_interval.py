@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from scipy.stats import norm
 
-from scarid_cli.algorithms.statistics.verdict import GRADES, meets
+from scarid_cli.algorithms.inference.verdict import GRADES, meets
 from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.words import percents_of_joints
 

@@ -12,17 +12,17 @@ from unit.regressions import estimated
 from unit.slow_motions import THETA, H, P, least_squares, regression, smooth
 
 from scarid_cli.algorithms.estimators import irls, ml, rls, tls, wls
+from scarid_cli.algorithms.inference.diagnostics import Diagnosis
 from scarid_cli.algorithms.regression.rows import faded, plain
-from scarid_cli.algorithms.statistics.autocovariance import autocovariance_errors
-from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.diagnostics import Diagnosis
-from scarid_cli.algorithms.statistics.jackknife import (
+from scarid_cli.algorithms.uncertainty.autocovariance import autocovariance_errors
+from scarid_cli.algorithms.uncertainty.blocks import Blocks
+from scarid_cli.algorithms.uncertainty.jackknife import (
     inflation,
     interval_quantiles,
     jackknife,
     quantile,
 )
-from scarid_cli.algorithms.statistics.residuals import residuals
+from scarid_cli.algorithms.uncertainty.residuals import residuals
 from scarid_cli.arrays import Array
 
 

@@ -17,7 +17,7 @@ from scarid_cli.algorithms.changes.known_load import (
     scaled,
     with_load,
 )
-from scarid_cli.algorithms.statistics.joint_products import JointProducts
+from scarid_cli.algorithms.uncertainty.joint_products import JointProducts
 from scarid_cli.arrays import Array
 
 # Of parameters 0 to 4, 0 to 3 are shared and 4 is the friction of joint 0; joint 2 shares none

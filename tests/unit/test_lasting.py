@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.signal import butter, sosfiltfilt
 
 from scarid_cli.algorithms.regression.rows import Rows, plain
-from scarid_cli.algorithms.statistics.lasting import lasting
+from scarid_cli.algorithms.uncertainty.lasting import lasting
 from scarid_cli.arrays import Array
 
 H, CUTOFF, SAMPLES = 0.01, 8.0, 4000

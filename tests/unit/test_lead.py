@@ -9,8 +9,8 @@ from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.tuning.lead import without_lead
 from scarid_cli.algorithms.tuning.lowpassed import Segment
 from scarid_cli.arrays import Array
-from scarid_cli.stages.bandwidth import bandwidth
-from scarid_cli.stages.record import Record
+from scarid_cli.stages.procedure.bandwidth import bandwidth
+from scarid_cli.stages.records.record import Record
 
 AXIS = load("emps")
 FINE = 1e-3  # s, of the simulation

@@ -9,8 +9,8 @@ from scarid_cli.algorithms.beyond.additions import Addition
 from scarid_cli.algorithms.beyond.catalogue import MISMATCHES, SHAPES
 from scarid_cli.algorithms.beyond.mounting import Tilt
 from scarid_cli.algorithms.beyond.torques import Offset, RelativeGain, Spring
+from scarid_cli.algorithms.inference.sentences import left_out_of
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.sentences import left_out_of
 
 ARM = load(str(ROOT / "samples" / "robots" / "ur10e.toml"))
 NAMES = [

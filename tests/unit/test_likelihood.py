@@ -13,8 +13,7 @@ from unit.support import PERIOD as H
 from unit.support import encoder_readings
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
-from scarid_cli.algorithms.processes.matching import over
-from scarid_cli.algorithms.tuning.likelihood import (
+from scarid_cli.algorithms.filters.likelihood import (
     best_model,
     best_smoothing,
     held_out_error,
@@ -22,6 +21,7 @@ from scarid_cli.algorithms.tuning.likelihood import (
     most_likely,
     noise_of,
 )
+from scarid_cli.algorithms.processes.matching import over
 
 SHORT = 120
 

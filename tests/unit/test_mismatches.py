@@ -28,13 +28,13 @@ from scarid_cli.algorithms.beyond.gears import (
     LateTorque,
     Presliding,
 )
+from scarid_cli.algorithms.effects.additions import Shapes
+from scarid_cli.algorithms.inference.sentences import additions_of
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
-from scarid_cli.algorithms.statistics.additions import Shapes
-from scarid_cli.algorithms.statistics.sentences import additions_of
 from scarid_cli.arrays import Array
 from scarid_cli.io.facts import CHECKS
-from scarid_cli.stages.parameters import Identified
-from scarid_cli.stages.prediction import of_parts
+from scarid_cli.stages.results.parameters import Identified
+from scarid_cli.stages.results.prediction import of_parts
 
 INSIDE = slice(200, -200)  # without the ends, where derivatives are one-sided
 THETA = ARM.apriori

@@ -15,8 +15,8 @@ from scarid_cli.algorithms.robots.drives import drives
 from scarid_cli.algorithms.robots.physical import Physical, nearest
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
-from scarid_cli.stages.intervals import Interval
-from scarid_cli.stages.mjcf import mjcf
+from scarid_cli.stages.models.intervals import Interval
+from scarid_cli.stages.models.mjcf import mjcf
 from scarid_cli.stages.urdf import document
 
 mujoco = pytest.importorskip("mujoco")

@@ -7,9 +7,9 @@ import pytest
 from conftest import seeds
 from scipy.stats import binom
 
+from scarid_cli.algorithms.effects.offsets import offsets, with_offsets
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.offsets import offsets, with_offsets
 from scarid_cli.arrays import Array
 
 SCARA, PENDULUM = load("scara2"), load("planar2-gravity")

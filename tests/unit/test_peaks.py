@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from scarid_cli.algorithms.statistics.peaks import BLOCK, HOUR, Peaks, peaks_of
+from scarid_cli.algorithms.uncertainty.peaks import BLOCK, HOUR, Peaks, peaks_of
 from scarid_cli.arrays import Array
 
 H = 0.01

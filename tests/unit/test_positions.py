@@ -20,12 +20,12 @@ from scarid_cli.algorithms.beyond.sensitivities import (
     zero_columns,
 )
 from scarid_cli.algorithms.beyond.torques import Uneven
+from scarid_cli.algorithms.effects.effects import Effect
 from scarid_cli.algorithms.estimators import ls
+from scarid_cli.algorithms.inference.diagnostics import Diagnosis, Diagnostics
+from scarid_cli.algorithms.inference.sentences import notes_of
 from scarid_cli.algorithms.regression.rows import rows_of
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.diagnostics import Diagnosis, Diagnostics
-from scarid_cli.algorithms.statistics.effects import Effect
-from scarid_cli.algorithms.statistics.sentences import notes_of
 from scarid_cli.arrays import Array
 
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from unit.support import cuts
 
-from scarid_cli.algorithms.statistics.prediction import Quality, accumulate, empty
+from scarid_cli.algorithms.inference.prediction import Quality, accumulate, empty
 from scarid_cli.arrays import Array
 
 ROWS = 60

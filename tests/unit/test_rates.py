@@ -10,7 +10,7 @@ from stages.tables import table
 
 from scarid_cli.algorithms.processes.rates import mean_rate, rate_text
 from scarid_cli.arrays import Array
-from scarid_cli.stages.rates import advised_rate
+from scarid_cli.stages.records.rates import advised_rate
 
 ROWS = 3000
 

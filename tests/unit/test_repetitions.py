@@ -9,7 +9,7 @@ from math import nan
 import numpy as np
 import pytest
 
-from scarid_cli.algorithms.statistics.prediction import Quality
+from scarid_cli.algorithms.inference.prediction import Quality
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
 from scarid_cli.reporting.naming import Name
 from scarid_cli.reporting.study.league import League, Place, drawn

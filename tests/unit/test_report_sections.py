@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from reports import SCARA, a_line, element_of, evolution, parameters
 
-from scarid_cli.algorithms.statistics.prediction import Quality
+from scarid_cli.algorithms.inference.prediction import Quality
 from scarid_cli.reporting import figures
 from scarid_cli.reporting.content import sections
 from scarid_cli.reporting.kinds import Metrics, Parameters, Prediction, Trace

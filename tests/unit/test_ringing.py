@@ -11,15 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import butter, sosfiltfilt
 
+from scarid_cli.algorithms.effects.ringing import with_ringing
 from scarid_cli.algorithms.estimators import ls
 from scarid_cli.algorithms.filters.two_sided import two_sided_bandwidth
+from scarid_cli.algorithms.inference.alignment import aligned
 from scarid_cli.algorithms.processes.bandwidth import bandwidth_of
 from scarid_cli.algorithms.regression.low_pass import LowPass
 from scarid_cli.algorithms.regression.rows import Rows, rows_of
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.alignment import aligned
-from scarid_cli.algorithms.statistics.ringing import with_ringing
 from scarid_cli.arrays import Array
 
 AXIS = load("emps")

@@ -18,8 +18,8 @@ from scarid_cli.algorithms.regression.rows import (
     spread,
 )
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.subsample import Subsample
+from scarid_cli.algorithms.uncertainty.blocks import Blocks
+from scarid_cli.algorithms.uncertainty.subsample import Subsample
 
 
 def test_rows_of_slow_joints_are_left_out_joint_by_joint() -> None:

@@ -10,7 +10,8 @@ from stages.tables import SCARA
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.plants.controllers import law
-from scarid_cli.algorithms.plants.loop import ClosedLoop, LoopLog
+from scarid_cli.algorithms.plants.loop import ClosedLoop
+from scarid_cli.algorithms.sensors.signals import LoopLog
 from scarid_cli.arrays import Array
 
 H = 1e-3

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from scarid_cli.algorithms.effects.parallel import smoothed
 from scarid_cli.algorithms.regression.rows import plain
-from scarid_cli.algorithms.statistics.parallel import smoothed
 
 H = 0.01  # s
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from scarid_cli.algorithms.statistics.tails import log_tail_f, log_tail_t
+from scarid_cli.algorithms.uncertainty.tails import log_tail_f, log_tail_t
 
 
 @pytest.mark.parametrize(("k", "n"), [(1, 1), (1, 39), (2, 9), (10, 39), (64, 39), (3, 1000)])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from scarid_cli.algorithms.regression.rows import Rows, plain
-from scarid_cli.algorithms.statistics.blocks import Blocks
-from scarid_cli.algorithms.statistics.trimmed import trimmed
+from scarid_cli.algorithms.uncertainty.blocks import Blocks
+from scarid_cli.algorithms.uncertainty.trimmed import trimmed
 from scarid_cli.arrays import Array
 
 H, TRUTH = 0.01, np.array([2.0, -0.5, 1.0])

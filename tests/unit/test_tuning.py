@@ -12,14 +12,14 @@ from unit.support import PERIOD
 
 from scarid_cli.algorithms.choices.ranges import Range
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.filters.likelihood import best_model
 from scarid_cli.algorithms.processes.delays import reference
 from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.processes.resolution import resolution_of
 from scarid_cli.algorithms.tuning import judges, search
-from scarid_cli.algorithms.tuning.likelihood import best_model
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
-from scarid_cli.stages.record import Record
+from scarid_cli.stages.records.record import Record
 from scarid_cli.stages.tune import chosen, octaves, online, tune
 
 RESOLUTION = 2.0 * np.pi / 2**14

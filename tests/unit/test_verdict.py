@@ -11,16 +11,16 @@ from scarid_cli.algorithms.beyond.model import tilted
 from scarid_cli.algorithms.beyond.positions import OwnDelays
 from scarid_cli.algorithms.beyond.rows import Parallel
 from scarid_cli.algorithms.beyond.torques import Stribeck
+from scarid_cli.algorithms.effects.effects import Effect
+from scarid_cli.algorithms.inference.consequences import Consequences
+from scarid_cli.algorithms.inference.diagnostics import Diagnostics
+from scarid_cli.algorithms.inference.verdict import Evidence, combination, verdict
 from scarid_cli.algorithms.regression.information import weakest
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.reading import load
-from scarid_cli.algorithms.statistics.bursts import Interval
-from scarid_cli.algorithms.statistics.consequences import Consequences
-from scarid_cli.algorithms.statistics.cuts import Cut
-from scarid_cli.algorithms.statistics.diagnostics import Diagnostics
-from scarid_cli.algorithms.statistics.effects import Effect
-from scarid_cli.algorithms.statistics.residuals import JointResidual
-from scarid_cli.algorithms.statistics.verdict import Evidence, combination, verdict
+from scarid_cli.algorithms.uncertainty.bursts import Interval
+from scarid_cli.algorithms.uncertainty.cuts import Cut
+from scarid_cli.algorithms.uncertainty.residuals import JointResidual
 from scarid_cli.arrays import Array
 
 P = 3

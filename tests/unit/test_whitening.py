@@ -10,11 +10,11 @@ import statsmodels.api as sm
 from scipy.integrate import quad
 from unit.regressions import estimated
 
+from scarid_cli.algorithms.effects.effects import Trial
 from scarid_cli.algorithms.estimators import gls, wls
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
-from scarid_cli.algorithms.statistics.effects import Trial
-from scarid_cli.algorithms.statistics.jackknife import jackknife
+from scarid_cli.algorithms.uncertainty.jackknife import jackknife
 from scarid_cli.arrays import Array
 
 H = 0.01  # s

@@ -13,8 +13,8 @@ from unit.support import PERIOD, derivatives, encoder_readings
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 from scarid_cli.algorithms.differentiators import algebraic
+from scarid_cli.algorithms.filters.likelihood import noise_of
 from scarid_cli.algorithms.processes.matching import over
-from scarid_cli.algorithms.tuning.likelihood import noise_of
 
 load = DIFFERENTIATORS.load
 

@@ -92,7 +92,7 @@ class Gears:
 
 
 class Mismatch(Phenomenon):
-    """One of these, which statistics/mismatched.py searches for; SMALL is small for any robot."""
+    """One of these, which effects/mismatched.py searches for; SMALL is small for any robot."""
 
     RANGE = (0.0, np.inf)  # it yields in the direction of the torque, and what is late is not early
     SMALL: ClassVar[float] = 0.0

@@ -1,6 +1,6 @@
 """Entries for the positions, and for signals that are not of one instant.
 
-Their columns stand beside a regressor from differences of the positions (statistics/parallel.py).
+Their columns stand beside a regressor from differences of the positions (effects/parallel.py).
 """
 
 from __future__ import annotations

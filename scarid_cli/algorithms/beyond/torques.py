@@ -44,7 +44,7 @@ class Offset(Shape):
     CHANGE = "offset"
     FRICTION = "offset or asymmetric Coulomb friction"
     ALWAYS = True
-    FITTED = False  # here: statistics/offsets.py looks for it beforehand
+    FITTED = False  # here: effects/offsets.py looks for it beforehand
     COMPARED = True
 
     @staticmethod
@@ -190,7 +190,7 @@ class RelativeGain(Shape):
     """A torque that was logged too large or too small, relative to those of the other joints.
 
     What joints have in common says how their torques fit together. What is found is told by
-    statistics/gains.py.
+    inference/gains.py.
     """
 
     NAME = "gain"

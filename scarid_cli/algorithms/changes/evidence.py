@@ -18,7 +18,7 @@ from scarid_cli.algorithms.beyond.sensitivities import Sensitivities, zero_colum
 from scarid_cli.algorithms.changes.columns import TILTS, Columns
 from scarid_cli.algorithms.regression.normal_equations import inverse, roots, solved
 from scarid_cli.algorithms.regression.rows import Rows, curvature, delay_column
-from scarid_cli.algorithms.statistics.jackknife import block_numbers
+from scarid_cli.algorithms.uncertainty.jackknife import block_numbers
 from scarid_cli.arrays import Array, Numbers
 
 REFITS = 3  # times that the joints are weighted by their residuals

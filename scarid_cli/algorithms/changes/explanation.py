@@ -16,7 +16,7 @@ from scarid_cli.algorithms.changes.likelihood import (
     penalty,
     tested,
 )
-from scarid_cli.algorithms.statistics.tails import log_tail_f
+from scarid_cli.algorithms.uncertainty.tails import log_tail_f
 from scarid_cli.arrays import Array
 
 FALSE_ALARMS = 0.01  # of comparisons in which nothing changed, over all tests together

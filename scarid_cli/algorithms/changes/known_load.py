@@ -2,7 +2,7 @@
 
 The logged torques are y_j = k_j W_j theta, with the parameters theta of the robot and the gain k_j
 of joint j. Joints share parameters, so that one log tells the gains relative to each other
-(statistics/gains.py); the load is known, so that two logs tell the rest: theta becomes theta +
+(inference/gains.py); the load is known, so that two logs tell the rest: theta becomes theta +
 B phi, where phi are the ten standard parameters of the load as a part of the last link (Khalil and
 Dombre 2002, section 9.7; Gautier and Briot 2011). All is estimated together by Gauss-Newton steps,
 from the products of the rows of each joint.
@@ -17,7 +17,7 @@ from math import sqrt
 import numpy as np
 
 from scarid_cli.algorithms.changes.payload import MASS, MOMENTS
-from scarid_cli.algorithms.statistics.joint_products import JointProducts
+from scarid_cli.algorithms.uncertainty.joint_products import JointProducts
 from scarid_cli.arrays import Array, Marks, Numbers
 
 STEPS = 50

@@ -10,7 +10,7 @@ import numpy as np
 from scarid_cli.algorithms.changes.evidence import LogEvidence
 from scarid_cli.algorithms.changes.hypotheses import Hypothesis
 from scarid_cli.algorithms.regression.normal_equations import inverse
-from scarid_cli.algorithms.statistics.tails import log_tail_f
+from scarid_cli.algorithms.uncertainty.tails import log_tail_f
 from scarid_cli.arrays import Array
 
 JOINED = (1, 2, 4)  # blocks

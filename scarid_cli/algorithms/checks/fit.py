@@ -10,8 +10,8 @@ from scarid_cli.algorithms.changes.wiring import Wiring
 from scarid_cli.algorithms.checks.finding import Finding, failed, joints_text, ok, warning
 from scarid_cli.algorithms.checks.model import Samples, Solution, enough, solved
 from scarid_cli.algorithms.checks.motion import Motion
+from scarid_cli.algorithms.inference.verdict import POOR, WEAK, combination
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.verdict import POOR, WEAK, combination
 from scarid_cli.arrays import Array
 from scarid_cli.interval import plus_minus
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from scarid_cli.algorithms.checks.clock import GAP, JITTER
 from scarid_cli.algorithms.checks.log import Log
-from scarid_cli.algorithms.tuning.likelihood import noise_of
+from scarid_cli.algorithms.filters.likelihood import noise_of
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
 from scarid_cli.algorithms.tuning.scatter import HIGHEST, LOWEST
 from scarid_cli.algorithms.tuning.spectrum import bandwidths

@@ -1,6 +1,8 @@
-"""Values that are missing, and torques that stay at their extreme or at another value."""
+"""Values that are missing, torques that stay at a value, and positions of two joints in one."""
 
 from __future__ import annotations
+
+from itertools import combinations
 
 import numpy as np
 
@@ -62,6 +64,22 @@ def _piled(x: Array) -> int:
     below = counts[-max(near, 2) : -1]
     count = int(counts[-1])
     return count if count >= FEWEST and count > PILE * below.mean() else 0
+
+
+def copied(q: Array) -> Finding:
+    """Positions (joints, rows) that are those of an earlier joint in every row, while it moves."""
+    moving = [i for i, x in enumerate(q) if np.nanmax(x) > np.nanmin(x)]
+    pairs = [
+        (i, j) for i, j in combinations(moving, 2) if np.array_equal(q[i], q[j], equal_nan=True)
+    ]
+    first = {j: i for i, j in reversed(pairs)}
+    if not first:
+        return ok("equal positions", "none")
+    texts = [f"q{j + 1} is q{first[j] + 1}" for j in sorted(first)]
+    figure = f"{', '.join(texts)} in all {several(q.shape[1], 'row')}, although it moves"
+    maps = " ".join(f"--map q{j + 1}=X" for j in sorted(first))
+    advice = f"one column was logged twice: name that of the joint: `scarid convert {maps}`"
+    return failed("equal positions", figure, advice)
 
 
 def constant(tau: Array) -> Finding:

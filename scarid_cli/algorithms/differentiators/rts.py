@@ -23,6 +23,7 @@ from typing import Any
 
 from scarid_cli.algorithms.choices.settings import require_not_negative
 from scarid_cli.algorithms.filters.kalman_method import KalmanMethod
+from scarid_cli.algorithms.filters.likelihood import best_model, best_smoothing
 from scarid_cli.algorithms.filters.smoothing import (
     ALL,
     DERIVATIVES,
@@ -33,7 +34,6 @@ from scarid_cli.algorithms.processes.matching import over
 from scarid_cli.algorithms.processes.method import MatchedForm, Matching
 from scarid_cli.algorithms.processes.process import WholeRecord
 from scarid_cli.algorithms.processes.records import MatchedRecord, RecordMethod
-from scarid_cli.algorithms.tuning.likelihood import best_model, best_smoothing
 from scarid_cli.arrays import Array
 
 

@@ -19,10 +19,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from scarid_cli.algorithms.choices.settings import require_not_negative
+from scarid_cli.algorithms.filters.likelihood import noise_of
 from scarid_cli.algorithms.processes.method import Matching
 from scarid_cli.algorithms.processes.process import WholeRecord
 from scarid_cli.algorithms.processes.records import RecordMethod
-from scarid_cli.algorithms.tuning.likelihood import noise_of
 from scarid_cli.arrays import Array
 from scarid_cli.errors import TooShort
 

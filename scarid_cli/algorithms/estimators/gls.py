@@ -19,7 +19,7 @@ from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstim
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, joined
 from scarid_cli.algorithms.regression.whitening import ColouredNoise
-from scarid_cli.algorithms.statistics.jackknife import shifts
+from scarid_cli.algorithms.uncertainty.jackknife import shifts
 from scarid_cli.arrays import Array
 
 WHITENED = "whitened"  # whether the rows were, in the metadata of the parameters

@@ -19,7 +19,7 @@ from scarid_cli.algorithms.plants.following import simulated
 from scarid_cli.algorithms.regression.estimation import Estimation, HoldingEstimator, RobotEstimator
 from scarid_cli.algorithms.regression.information import NotIdentifiableError
 from scarid_cli.algorithms.regression.rows import Rows, joined
-from scarid_cli.algorithms.statistics.jackknife import shifts
+from scarid_cli.algorithms.uncertainty.jackknife import shifts
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 

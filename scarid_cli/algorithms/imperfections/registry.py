@@ -9,7 +9,7 @@ from typing import Any
 
 from scarid_cli.algorithms.imperfections import positions, robot, rows, torques
 from scarid_cli.algorithms.imperfections.declared import Imperfection
-from scarid_cli.algorithms.robots.values import table
+from scarid_cli.algorithms.keys.values import table
 
 # Where they act, as headings of the help and of the documentation.
 PLACES = {

@@ -23,6 +23,7 @@ from scarid_cli.algorithms.processes.process import Process
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.sensors.motion import Encoder
 from scarid_cli.algorithms.sensors.noise import GaussMarkov, NoiseState, Source
+from scarid_cli.algorithms.sensors.signals import LoopLog
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 from scarid_cli.kernels import arm
@@ -48,30 +49,6 @@ class LoopState:
     torque_noise: np.random.Generator
     coloured: NoiseState | None = None
     sensing: Sequence[Any] | None = None
-
-
-@dataclass(frozen=True)
-class LoopLog:
-    """The signals at each tick of the controller: arrays (joints, ticks), in SI units.
-
-    `q` and `tau` are measured: the readings of the encoders, with `q_noise` in them, and the
-    `command` plus `tau_noise`. `tau_true` is the torque that acts, and `friction_true` what of it
-    friction takes. `q_motor_true` and `dq_motor_true` differ from
-    `q_true` and `dq_true` for flexible joints.
-    """
-
-    q: Array
-    tau: Array
-    q_true: Array
-    dq_true: Array
-    ddq_true: Array
-    tau_true: Array
-    friction_true: Array
-    q_motor_true: Array
-    dq_motor_true: Array
-    command: Array
-    q_noise: Array
-    tau_noise: Array
 
 
 class DivergedError(ValueError):

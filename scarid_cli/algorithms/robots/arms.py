@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from scarid_cli.algorithms.imperfections.registry import imperfections_of
-from scarid_cli.algorithms.robots import values
+from scarid_cli.algorithms.keys import values
 from scarid_cli.algorithms.robots.base import with_base_parameters
 from scarid_cli.algorithms.robots.capsules import capsule_of
 from scarid_cli.algorithms.robots.controls import control_of

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from scarid_cli.algorithms.robots import values
+from scarid_cli.algorithms.keys import values
 from scarid_cli.algorithms.robots.files import text_of
 from scarid_cli.arrays import Array
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from scarid_cli.algorithms.robots import values
+from scarid_cli.algorithms.keys import values
 from scarid_cli.algorithms.robots.description import Robot
 
 

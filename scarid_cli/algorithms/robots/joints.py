@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from math import inf
 from typing import Any
 
-from scarid_cli.algorithms.robots import values
+from scarid_cli.algorithms.keys import values
 from scarid_cli.algorithms.robots.logs import AXIS
 
 JOINT_UNITS = {"revolute": ("rad", "N m"), "prismatic": ("m", "N")}

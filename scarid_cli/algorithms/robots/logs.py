@@ -29,7 +29,7 @@ from typing import Any
 
 import numpy as np
 
-from scarid_cli.algorithms.robots import values
+from scarid_cli.algorithms.keys import values
 from scarid_cli.arrays import Array
 
 JOINT, MOTOR, CURRENT = "joint", "motor", "current"

@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from scarid_cli.algorithms.imperfections.registry import imperfections_of
-from scarid_cli.algorithms.robots import values
+from scarid_cli.algorithms.keys import values
+from scarid_cli.algorithms.keys.lines import UnknownKey, line_of
 from scarid_cli.algorithms.robots.controls import control_of
 from scarid_cli.algorithms.robots.description import Parameter, Robot
 from scarid_cli.algorithms.robots.files import require_shallow, text_of
 from scarid_cli.algorithms.robots.identified import with_estimates
 from scarid_cli.algorithms.robots.joints import joint_of
-from scarid_cli.algorithms.robots.lines import UnknownKey, line_of
 from scarid_cli.algorithms.robots.logs import log_of
 from scarid_cli.algorithms.robots.planar import PLANAR_TERMS, PlanarTerm
 from scarid_cli.algorithms.robots.terms import AXIS_TERMS, Term

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 from xml.etree import ElementTree
 
-from scarid_cli.algorithms.robots import values
+from scarid_cli.algorithms.keys import values
 from scarid_cli.algorithms.robots.files import of_file, text_of
 from scarid_cli.algorithms.robots.loops import without_loops
 from scarid_cli.algorithms.robots.sound import require_tree, without_impossible

@@ -8,13 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from scarid_cli.algorithms.plants.loop import LoopLog
 from scarid_cli.algorithms.sensors.clock import Clock, ClockState
 from scarid_cli.algorithms.sensors.faults import Faults, FaultsState
 from scarid_cli.algorithms.sensors.instants import Instants, Path
 from scarid_cli.algorithms.sensors.motion import Encoder, Motion
 from scarid_cli.algorithms.sensors.noise import GaussMarkov, NoiseState, Source
-from scarid_cli.algorithms.sensors.signals import Signals, Ticks
+from scarid_cli.algorithms.sensors.signals import LoopLog, Signals, Ticks
 from scarid_cli.algorithms.sensors.torque import TorqueSensor, rounded
 from scarid_cli.arrays import Array
 

@@ -13,6 +13,30 @@ from scarid_cli.algorithms.sensors.torque import TorqueSensor
 from scarid_cli.arrays import Array
 
 
+@dataclass(frozen=True)
+class LoopLog:
+    """The signals at each tick of the controller: arrays (joints, ticks), in SI units.
+
+    `q` and `tau` are measured: the readings of the encoders, with `q_noise` in them, and the
+    `command` plus `tau_noise`. `tau_true` is the torque that acts, and `friction_true` what of it
+    friction takes. `q_motor_true` and `dq_motor_true` differ from
+    `q_true` and `dq_true` for flexible joints.
+    """
+
+    q: Array
+    tau: Array
+    q_true: Array
+    dq_true: Array
+    ddq_true: Array
+    tau_true: Array
+    friction_true: Array
+    q_motor_true: Array
+    dq_motor_true: Array
+    command: Array
+    q_noise: Array
+    tau_noise: Array
+
+
 class Ticks(NamedTuple):
     """The signals at the ticks of the controller, each (joints, ticks), in SI units.
 

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
+from scarid_cli.algorithms.filters.likelihood import likelihood_of_all
 from scarid_cli.algorithms.processes.matching import over
-from scarid_cli.algorithms.tuning.likelihood import likelihood_of_all
 from scarid_cli.algorithms.tuning.search import Judge
 from scarid_cli.arrays import Array
 

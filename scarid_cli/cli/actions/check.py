@@ -9,13 +9,13 @@ from dataclasses import asdict
 import click
 
 from scarid_cli.algorithms.checks.finding import FAILED, STATUSES, WARNING, Finding, worst
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.terminal import styled, wrapped
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.terminal import styled, wrapped
 from scarid_cli.errors import BAD_DATA, OK, WARNED
 from scarid_cli.printable import printable
 from scarid_cli.stages import check as stage
-from scarid_cli.stages import mending
-from scarid_cli.stages.logs import log_of
+from scarid_cli.stages.conversion import mending
+from scarid_cli.stages.records.logs import log_of
 
 
 def run(job: Job, *, file: str, robot: str | None, strict: bool, fix: bool, as_json: bool) -> int:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from scarid_cli.cli.job import Job
+from scarid_cli.cli.running.job import Job
 from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.stages.compare import DIFFER, SAME, compare
-from scarid_cli.stages.documents import comparison, worst
+from scarid_cli.stages.results.documents import comparison, worst
 
 
 def run(job: Job, *, files: tuple[str, ...], require: str | None, as_json: bool) -> int:

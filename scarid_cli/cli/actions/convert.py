@@ -6,21 +6,21 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from scarid_cli.algorithms.robots.logs import CURRENT
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.pairs import pair, renamings
-from scarid_cli.cli.texts import Columns, columns_of, read_log
+from scarid_cli.cli.declaring.pairs import pair, renamings
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.texts import Columns, columns_of, read_log
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bags import bag_extension
 from scarid_cli.io.notation import Notation
 from scarid_cli.io.schemas import numbered
 from scarid_cli.io.table import Table
-from scarid_cli.stages.adapt import adapted
-from scarid_cli.stages.cells import names_in_cells
-from scarid_cli.stages.lacking import lacking
-from scarid_cli.stages.runs import runs_joined
-from scarid_cli.stages.side import episodes_joined
-from scarid_cli.stages.turns import one_row_for_all
-from scarid_cli.stages.wording import is_current
+from scarid_cli.stages.conversion.adapt import adapted
+from scarid_cli.stages.conversion.cells import names_in_cells
+from scarid_cli.stages.conversion.lacking import lacking
+from scarid_cli.stages.conversion.side import episodes_joined
+from scarid_cli.stages.conversion.turns import one_row_for_all
+from scarid_cli.stages.conversion.wording import is_current
+from scarid_cli.stages.records.runs import runs_joined
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -66,13 +66,13 @@ def run(
         clock = rate or (arm and arm.log and arm.log.rate)
         _tell_lacking(job, table, columns, arm, clock=bool(clock))
     else:
-        from scarid_cli.cli.recordings import Choice, read_recording  # not needed otherwise
+        from scarid_cli.cli.running.recordings import Choice, read_recording  # not needed otherwise
 
         choice = Choice(topic, torque_topic, join, order)
         table = read_recording(job, file, source, extension, choice, arm)
         columns = Columns(pairs, given)
     if unwrap or despike:
-        from scarid_cli.stages.leaps import without_leaps
+        from scarid_cli.stages.conversion.leaps import without_leaps
 
         read = _signals(table, columns, arm)
         table = without_leaps(table, read, unwrap=unwrap, despike=despike, report=job.notes)
@@ -83,7 +83,7 @@ def run(
 
 def _adapted(table: Table, columns: Columns, rate: float | None, robot: Robot | None) -> Table:
     if robot:
-        from scarid_cli.stages.joints import as_described
+        from scarid_cli.stages.conversion.joints import as_described
 
         table = as_described(table, robot, columns.names, columns.units, rate)
     else:

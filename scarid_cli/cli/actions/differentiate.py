@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from scarid_cli.algorithms.choices.settings import names_of
-from scarid_cli.cli.configured import configured
-from scarid_cli.cli.job import Job
+from scarid_cli.cli.running.configured import configured
+from scarid_cli.cli.running.job import Job
 from scarid_cli.errors import UsageFault, bad_data
 from scarid_cli.io.schemas import joints_of, numbered
 from scarid_cli.io.table import Table
 from scarid_cli.stages import differentiate as stage
-from scarid_cli.stages import velocities
-from scarid_cli.stages.suitability import Watch
+from scarid_cli.stages.conversion import velocities
+from scarid_cli.stages.remarks.suitability import Watch
 
 
 def run(

@@ -14,19 +14,19 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.files import text_of
 from scarid_cli.algorithms.robots.physical import Physical
 from scarid_cli.algorithms.robots.reading import path_of
-from scarid_cli.cli.belonging import the_robot
-from scarid_cli.cli.command_line import command_line
-from scarid_cli.cli.job import Job
+from scarid_cli.cli.declaring.belonging import the_robot
+from scarid_cli.cli.running.command_line import command_line
+from scarid_cli.cli.running.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
 from scarid_cli.stages import urdf
-from scarid_cli.stages.described import described, lost
-from scarid_cli.stages.estimates import Estimates, estimates_with_covariance
 from scarid_cli.stages.export import c_header, identifier, matlab_class
-from scarid_cli.stages.intervals import Interval, intervals, listed
-from scarid_cli.stages.mjcf import mjcf
-from scarid_cli.stages.modelled import modelled
-from scarid_cli.stages.parameters import identified
+from scarid_cli.stages.models.described import described, lost
+from scarid_cli.stages.models.intervals import Interval, intervals, listed
+from scarid_cli.stages.models.mjcf import mjcf
+from scarid_cli.stages.models.modelled import modelled
+from scarid_cli.stages.results.estimates import Estimates, estimates_with_covariance
+from scarid_cli.stages.results.parameters import identified
 
 OF_BODIES = ("urdf", "mjcf")
 

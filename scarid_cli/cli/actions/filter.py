@@ -7,7 +7,7 @@ from typing import Any
 
 from scarid_cli.algorithms.filters.butterworth import Butterworth, ZeroPhase
 from scarid_cli.algorithms.processes.process import Process
-from scarid_cli.cli.job import Job
+from scarid_cli.cli.running.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.reader import ROW_MARKS
 from scarid_cli.io.schemas import numbered

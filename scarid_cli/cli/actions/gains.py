@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.loaded import loaded
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.loaded import loaded
 from scarid_cli.errors import UsageFault
 from scarid_cli.interval import HALF
 from scarid_cli.stages import gains as stage
-from scarid_cli.stages.corrected import gains_of
-from scarid_cli.stages.documents import of_gains
+from scarid_cli.stages.records.corrected import gains_of
+from scarid_cli.stages.results.documents import of_gains
 
 
 def run(

@@ -14,38 +14,38 @@ from scarid_cli.algorithms.beyond.catalogue import PHENOMENA
 from scarid_cli.algorithms.checks.finding import WARNING, Finding
 from scarid_cli.algorithms.choices.registry import ESTIMATORS
 from scarid_cli.algorithms.choices.settings import names_of
+from scarid_cli.algorithms.inference.verdict import meets
 from scarid_cli.algorithms.regression.estimation import BaseEstimator
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.statistics.checkpoint import Checkpoint
-from scarid_cli.algorithms.statistics.verdict import meets
+from scarid_cli.algorithms.uncertainty.checkpoint import Checkpoint
 from scarid_cli.arrays import Array
-from scarid_cli.cli.board import Board
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.logs import read_logs
-from scarid_cli.cli.measured import read, searching, tell_of
-from scarid_cli.cli.pairs import require_known, single_settings
-from scarid_cli.cli.terminal import is_terminal
-from scarid_cli.cli.treatment import (
+from scarid_cli.cli.declaring.pairs import require_known, single_settings
+from scarid_cli.cli.running.board import Board
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.logs import read_logs
+from scarid_cli.cli.running.measured import read, searching, tell_of
+from scarid_cli.cli.running.terminal import is_terminal
+from scarid_cli.cli.running.treatment import (
     behind_low_pass,
     for_robot,
     lead,
     report,
     treatment_of,
 )
-from scarid_cli.cli.watching import watcher
+from scarid_cli.cli.running.watching import watcher
 from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.interval import plus_minus
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Document
-from scarid_cli.stages import blind
-from scarid_cli.stages.blind import FOR_MOTION, Choices, Chosen, Prepared
-from scarid_cli.stages.corrected import corrected, correction, gains_of, told_gains
-from scarid_cli.stages.documents import identification
-from scarid_cli.stages.free import Anchor, freed
 from scarid_cli.stages.identify import SoFar
-from scarid_cli.stages.parameters import identified
-from scarid_cli.stages.possible import require_bodies
+from scarid_cli.stages.procedure import blind
+from scarid_cli.stages.procedure.blind import FOR_MOTION, Choices, Chosen, Prepared
+from scarid_cli.stages.procedure.free import Anchor, freed
+from scarid_cli.stages.records.corrected import corrected, correction, gains_of, told_gains
+from scarid_cli.stages.results.documents import identification
+from scarid_cli.stages.results.parameters import identified
+from scarid_cli.stages.results.possible import require_bodies
 
 CLEAR = 3.0  # standard errors, from which on torques lag behind the motion
 
@@ -199,7 +199,7 @@ def _tell_of_gains(job: Job, result: Table, untold: list[int]) -> None:
 
 def _save(place: Document, checkpoint: Checkpoint, fixed: dict[str, Any]) -> None:
     """Write what --from continues from."""
-    from scarid_cli.stages.continuation import saved  # zipfile takes a while to import
+    from scarid_cli.stages.results.continuation import saved  # zipfile takes a while to import
 
     place.write(saved(checkpoint, fixed))
 
@@ -241,7 +241,7 @@ def _restored(
     """The checkpoint to continue from, if one was given."""
     if not resumed:
         return None
-    from scarid_cli.stages.continuation import restored  # zipfile takes a while to import
+    from scarid_cli.stages.results.continuation import restored  # zipfile takes a while to import
 
     return restored(resumed, fixed, solver, arm)
 

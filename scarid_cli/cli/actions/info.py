@@ -6,10 +6,10 @@ import json
 
 import click
 
-from scarid_cli.cli.command_line import was_given
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.options import SELECTION
-from scarid_cli.cli.terminal import wrapped
+from scarid_cli.cli.declaring.options import SELECTION
+from scarid_cli.cli.running.command_line import was_given
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.terminal import wrapped
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bags import bag_extension
 from scarid_cli.printable import printable
@@ -27,7 +27,7 @@ def run(job: Job, *, file: str, as_json: bool) -> None:
             return
         lines = found.lines
     else:
-        from scarid_cli.cli.recordings import topic_lines  # not needed otherwise
+        from scarid_cli.cli.running.recordings import topic_lines  # not needed otherwise
 
         if as_json or any(map(was_given, SELECTION)):
             what = "--json describes" if as_json else "--from-time, --to-time and --rows are for"

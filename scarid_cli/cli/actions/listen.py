@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scarid_cli.cli.job import Job
+from scarid_cli.cli.running.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.growing import Growing
 from scarid_cli.io.listening import Port

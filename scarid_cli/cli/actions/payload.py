@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from scarid_cli.algorithms.changes.carried import Carrying
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.belonging import FALSE_ALARMS, needs
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.loaded import loaded
-from scarid_cli.cli.measured import read, searching
+from scarid_cli.cli.declaring.belonging import FALSE_ALARMS, needs
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.loaded import loaded
+from scarid_cli.cli.running.measured import read, searching
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Output
-from scarid_cli.stages import blind
 from scarid_cli.stages import carried as following
 from scarid_cli.stages import payload as stage
-from scarid_cli.stages.blind import Choices, Passed
-from scarid_cli.stages.corrected import corrected, gains_of
-from scarid_cli.stages.documents import of_payload
-from scarid_cli.stages.estimates import estimates_with_covariance
+from scarid_cli.stages.procedure import blind
+from scarid_cli.stages.procedure.blind import Choices, Passed
+from scarid_cli.stages.records.corrected import corrected, gains_of
+from scarid_cli.stages.results.documents import of_payload
+from scarid_cli.stages.results.estimates import estimates_with_covariance
 
 
 def run(

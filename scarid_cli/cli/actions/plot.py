@@ -9,9 +9,9 @@ from pathlib import Path
 
 import click
 
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.remedies import remedies
-from scarid_cli.cli.terminal import coloured, columns_of
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.remedies import remedies
+from scarid_cli.cli.running.terminal import coloured, columns_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.clock import clocked
 from scarid_cli.io.table import Table

@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from scarid_cli.cli.documents import Documents
-from scarid_cli.cli.job import Job
+from scarid_cli.cli.running.documents import Documents
+from scarid_cli.cli.running.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Table
 from scarid_cli.reporting import naming, results
@@ -34,7 +34,7 @@ def run(
 ) -> None:
     """Print the tables, and write the documents."""
     if fleet:
-        from scarid_cli.cli.fleet import of_fleet
+        from scarid_cli.cli.running.fleet import of_fleet
 
         others = {"--repeated": repeated, "--published": published, "--figures": figures}
         _require_alone(files, others)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from scarid_cli.algorithms.processes.resampling import Clock
-from scarid_cli.cli.job import Job
+from scarid_cli.cli.running.job import Job
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import resample as stage
 

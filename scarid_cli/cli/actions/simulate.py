@@ -6,16 +6,16 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.plants import building
 from scarid_cli.algorithms.plants.controllers import law
 from scarid_cli.algorithms.plants.loop import ClosedLoop
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.sensors import building
-from scarid_cli.cli.configured import configured
-from scarid_cli.cli.imperfections import imperfections as chosen
-from scarid_cli.cli.job import Job, per_joint
+from scarid_cli.cli.declaring.imperfections import imperfections as chosen
+from scarid_cli.cli.running.configured import configured
+from scarid_cli.cli.running.job import Job, per_joint
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import simulate as stage
-from scarid_cli.stages.realtime import PART, Lateness, in_parts, paced
+from scarid_cli.stages.records.realtime import PART, Lateness, in_parts, paced
 
 LIMITED = 0.01  # of the time: a start from rest, or a push, is shorter
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pyarrow as pa
 
-from scarid_cli.cli.job import Job
+from scarid_cli.cli.running.job import Job
 from scarid_cli.io.table import Table
 from scarid_cli.io.writer import Output
 

@@ -17,10 +17,10 @@ from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.algorithms.trajectories.trajectory import Trajectory
 from scarid_cli.algorithms.trajectories.via import through
 from scarid_cli.arrays import Array
-from scarid_cli.cli.designing import Asked, Found, asked, optimised
-from scarid_cli.cli.job import Job, per_joint
-from scarid_cli.cli.pairs import require_known, single_settings
-from scarid_cli.cli.treatment import slow_of, with_slow
+from scarid_cli.cli.declaring.pairs import require_known, single_settings
+from scarid_cli.cli.running.designing import Asked, Found, asked, optimised
+from scarid_cli.cli.running.job import Job, per_joint
+from scarid_cli.cli.running.treatment import slow_of, with_slow
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.table import Metadata
 from scarid_cli.stages import trajgen as stage

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.command_line import command_line
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.progress import steps
-from scarid_cli.cli.settings import document
+from scarid_cli.cli.running.command_line import command_line
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.progress import steps
+from scarid_cli.cli.running.settings import document
 from scarid_cli.io.reader import require
 from scarid_cli.io.schemas import joints_of, numbered, of_joints
 from scarid_cli.io.table import Table
-from scarid_cli.stages import bandwidth, record
 from scarid_cli.stages import tune as stage
-from scarid_cli.stages.glance import in_seconds, of_rate
+from scarid_cli.stages.procedure import bandwidth
+from scarid_cli.stages.records import record
+from scarid_cli.stages.remarks.glance import in_seconds, of_rate
 
 FOR_ROBOT, FOR_POSITIONS = ("rts", "kalman"), ("kalman",)
 

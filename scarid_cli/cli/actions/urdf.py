@@ -6,13 +6,13 @@ from typing import Any
 
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.files import text_of
-from scarid_cli.cli.belonging import the_robot
-from scarid_cli.cli.command_line import command_line
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.treatment import for_motion, for_robot, treatment_of
+from scarid_cli.cli.declaring.belonging import the_robot
+from scarid_cli.cli.running.command_line import command_line
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.treatment import for_motion, for_robot, treatment_of
 from scarid_cli.errors import UsageFault
 from scarid_cli.stages import urdf as stage
-from scarid_cli.stages.estimates import estimates_with_covariance
+from scarid_cli.stages.results.estimates import estimates_with_covariance
 
 
 def run(

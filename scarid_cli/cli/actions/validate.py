@@ -12,11 +12,11 @@ import pyarrow as pa
 from scarid_cli.algorithms.checks.finding import FAILED, TORQUES
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.cli.belonging import FALSE_ALARMS, needs
-from scarid_cli.cli.job import Job
-from scarid_cli.cli.logs import read_logs
-from scarid_cli.cli.measured import read, searching, tell_of
-from scarid_cli.cli.treatment import (
+from scarid_cli.cli.declaring.belonging import FALSE_ALARMS, needs
+from scarid_cli.cli.running.job import Job
+from scarid_cli.cli.running.logs import read_logs
+from scarid_cli.cli.running.measured import read, searching, tell_of
+from scarid_cli.cli.running.treatment import (
     behind_low_pass,
     for_robot,
     lead,
@@ -26,17 +26,17 @@ from scarid_cli.cli.treatment import (
 from scarid_cli.errors import OK, REQUIRED, UsageFault
 from scarid_cli.io.stated import stated_robot
 from scarid_cli.io.table import Table
-from scarid_cli.stages import blind
 from scarid_cli.stages import validate as stage
-from scarid_cli.stages.blind import Choices, Passed
-from scarid_cli.stages.changes import Known, known
-from scarid_cli.stages.corrected import corrected, gains_of, told_gains
-from scarid_cli.stages.documents import validation
-from scarid_cli.stages.estimates import errors_of
-from scarid_cli.stages.parameters import Identified, apriori, identified
-from scarid_cli.stages.pooling import Entry, pooled_identifications
-from scarid_cli.stages.reach import Reach
+from scarid_cli.stages.procedure import blind
+from scarid_cli.stages.procedure.blind import Choices, Passed
+from scarid_cli.stages.records.corrected import corrected, gains_of, told_gains
+from scarid_cli.stages.remarks.reach import Reach
 from scarid_cli.stages.residual import Residuals, band_of
+from scarid_cli.stages.results.changes import Known, known
+from scarid_cli.stages.results.documents import validation
+from scarid_cli.stages.results.estimates import errors_of
+from scarid_cli.stages.results.parameters import Identified, apriori, identified
+from scarid_cli.stages.results.pooling import Entry, pooled_identifications
 from scarid_cli.stages.rollout import Rollouts
 from scarid_cli.stages.validate import Beside
 

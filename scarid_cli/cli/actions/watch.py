@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from scarid_cli.cli.actions import identify
-from scarid_cli.cli.board import Board
-from scarid_cli.cli.job import Job
+from scarid_cli.cli.running.board import Board
+from scarid_cli.cli.running.job import Job
 
 # What `identify` has beside, as if it were not given.
 REST: dict[str, Any] = {

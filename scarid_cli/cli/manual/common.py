@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 import click
 
-from scarid_cli.cli.options import ROBOT, InputFile, OutputFile
+from scarid_cli.cli.declaring.options import ROBOT, InputFile, OutputFile
 
 Entries = list[tuple[str, str]]  # a term, and what it means
 Condition = Callable[[click.Command], bool]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from scarid_cli.algorithms.statistics.verdict import DOUBT, GOOD
+from scarid_cli.algorithms.inference.verdict import DOUBT, GOOD
 from scarid_cli.reporting.estimates import constants, fit
 from scarid_cli.reporting.evolution import evolution
 from scarid_cli.reporting.kinds import Parameters, Trace

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from scarid_cli.algorithms.changes.wording import CHANGED, UNEXPLAINED
-from scarid_cli.algorithms.statistics.verdict import DOUBT, DOUBTFUL, GOOD, GRADES, ROUGH
+from scarid_cli.algorithms.inference.verdict import DOUBT, DOUBTFUL, GOOD, GRADES, ROUGH
 from scarid_cli.reporting.said import FINE, Said, worst
 from scarid_cli.reporting.study import league
 from scarid_cli.reporting.study.league import League, Place, percents

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, inf, isfinite, log
 
-from scarid_cli.algorithms.statistics.verdict import GRADES
+from scarid_cli.algorithms.inference.verdict import GRADES
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
 from scarid_cli.reporting.naming import COMMON
 from scarid_cli.reporting.said import Said, named, same_table

@@ -8,7 +8,7 @@ from math import inf, isfinite
 
 import numpy as np
 
-from scarid_cli.algorithms.statistics.verdict import DOUBT, GOOD, GRADES
+from scarid_cli.algorithms.inference.verdict import DOUBT, GOOD, GRADES
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
 from scarid_cli.reporting.study.league import League, Place, percents
 from scarid_cli.reporting.study.opening import BELIEF, EXPERIMENTS, ROWS, Opening, counted, others

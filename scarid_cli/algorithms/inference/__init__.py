@@ -1,0 +1,1 @@
+"""From the rows of a log to its outcome (outcome.py): estimates, errors, reasons, verdict."""

@@ -1,0 +1,1 @@
+"""Keys and values of TOML files, checked with a message that names the place."""

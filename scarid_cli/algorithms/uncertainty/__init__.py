@@ -1,0 +1,1 @@
+"""Errors of estimates, from their rows alone."""

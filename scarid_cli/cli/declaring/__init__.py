@@ -1,0 +1,1 @@
+"""What the declarations of commands share; nothing heavy is imported."""

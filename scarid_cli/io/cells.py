@@ -1,0 +1,17 @@
+"""A number as CSV has it, and rows of texts as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Sequence
+
+NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
+
+
+def csv_text(rows: Sequence[Sequence[str]]) -> bytes:
+    """Rows of texts as CSV."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue().encode()

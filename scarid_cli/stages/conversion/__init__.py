@@ -1,0 +1,1 @@
+"""What `convert` makes of logs as people have them: names, units, clocks, cells."""

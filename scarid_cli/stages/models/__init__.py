@@ -1,0 +1,1 @@
+"""Identified robots in the forms that other programs take."""

@@ -1,0 +1,1 @@
+"""The blind procedure: from logs to parameters and a verdict, with nothing set."""

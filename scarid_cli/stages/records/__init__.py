@@ -1,0 +1,1 @@
+"""Logs in memory and as they stream: rows, segments, times, and the rates of sensors."""

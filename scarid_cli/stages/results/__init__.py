@@ -1,0 +1,1 @@
+"""The table of parameters: written, read, pooled, compared, predicted from."""
