@@ -6,6 +6,7 @@ import contextlib
 import os
 import shlex
 import shutil
+import socket
 import subprocess
 from collections.abc import Iterator
 from itertools import groupby
@@ -214,6 +215,13 @@ def of_others() -> None:
     write_mcap(Path("recording.mcap"), {"/joint_states": STATE}, messages)
 
 
+def free_port() -> int:
+    """A port of this machine that no program listens at: examples run beside each other."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return int(free.getsockname()[1])
+
+
 @pytest.mark.parametrize("line", ALL)
 def test_an_example_in_the_help_runs(
     line: str, folder: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
@@ -228,7 +236,7 @@ def test_an_example_in_the_help_runs(
                 copied(name, others)
         arm = "arm-urdf.parquet" if "arm.urdf" in line else "arm-toml.parquet"
         shutil.copy(arm, "parameters.parquet")
-        for command, status in run(line):
+        for command, status in run(line.replace("--port 5000", f"--port {free_port()}")):
             assert status in (0, *NONE_LEFT.get(command, ())), capfd.readouterr().err
 
 
