@@ -1,7 +1,7 @@
 """The torque of one joint in another unit: whether one log tells it, and what is then estimated.
 
-`python benchmarks/gains.py [--seeds 20]`: logs of 20 s of random motions, the torque of joint 2
-multiplied by a factor. `named`: the verdict names the gain, within twice its half interval;
+`python benchmarks/gains.py [--seeds 20] [--joint 2]`: logs of 20 s of random motions, the torque
+of a joint multiplied by a factor. `named`: the verdict names the gain, within twice its half interval;
 `wrong`: called good, and an inertia or first moment is further than three stated errors from the
 truth.
 """
@@ -13,6 +13,7 @@ import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -35,7 +36,7 @@ def shell(line: str, folder: Path) -> str:
     return done.stderr
 
 
-def case(robot: str, seed: int, factor: float) -> tuple[str, bool, bool]:
+def case(robot: str, joint: int, seed: int, factor: float) -> tuple[str, bool, bool]:
     """The grade, whether the gain was named rightly, and whether good estimates are wrong."""
     joints = len(load(robot).joints)
     with TemporaryDirectory() as name:
@@ -44,7 +45,7 @@ def case(robot: str, seed: int, factor: float) -> tuple[str, bool, bool]:
             f"scarid trajgen -q --robot {robot} --seed {seed} {ROBOTS[robot]} --duration 20 |"
             f" scarid simulate -q --robot {robot} --seed {seed} --format csv |"
             f" cut -d, -f-{2 * joints + 1} |"
-            f" awk -F, -v OFS=, 'NR > 1 {{ ${joints + 3} *= {factor} }} 1' > log.csv;"
+            f" awk -F, -v OFS=, 'NR > 1 {{ ${joints + 1 + joint} *= {factor} }} 1' > log.csv;"
             f" scarid identify --robot {robot} log.csv -o p.parquet",
             folder,
         )
@@ -53,7 +54,7 @@ def case(robot: str, seed: int, factor: float) -> tuple[str, bool, bool]:
     found = TOLD.search(told)
     named = False
     if found:
-        true = factor if found[1] == "2" else 1.0 / factor
+        true = factor if found[1] == str(joint) else 1.0 / factor
         named = abs(float(found[2]) - true) <= 2.0 * float(found[3])
     truth = {p.name: p.apriori for p in load(robot).parameters if p.unit in ("kg m2", "kg m")}
     away = [abs(rows[k]["estimate"] - x) / rows[k]["robust_error"] for k, x in truth.items()]
@@ -64,12 +65,16 @@ def case(robot: str, seed: int, factor: float) -> tuple[str, bool, bool]:
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--seeds", type=int, default=20)
-    seeds = range(1, parser.parse_args().seeds + 1)
+    parser.add_argument("--joint", type=int, default=2)
+    parser.add_argument("--robots", default=",".join(ROBOTS))
+    given = parser.parse_args()
+    seeds = range(1, given.seeds + 1)
     print(f"{'robot':<16} {'factor':>7} {'good':>5} {'named':>6} {'wrong':>6}  of {len(seeds)}")
     with ThreadPoolExecutor(2) as pool:
-        for robot in ROBOTS:
+        for robot in given.robots.split(","):
             for factor in FACTORS:
-                done = list(pool.map(lambda seed: case(robot, seed, factor), seeds))  # noqa: B023
+                one = partial(case, robot, given.joint, factor=factor)
+                done = list(pool.map(one, seeds))
                 good = sum(grade == "good" for grade, _, _ in done)
                 named, wrong = (sum(x[k] for x in done) for k in (1, 2))
                 print(

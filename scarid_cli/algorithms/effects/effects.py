@@ -142,6 +142,17 @@ def of_low_pass(moved: Array) -> Effect:
     return Effect(LowPass.NAME, moved, none, moved, amounts=none, noise=none, blocks=2)
 
 
+def of_the_other_joint(moved: Array) -> Effect:
+    """The effect (parameters) of the gain of the other one of two joints in place of that fitted.
+
+    One of two torques that do not fit together is wrong, and nobody knows which.
+    """
+    none = np.zeros_like(moved)
+    return Effect(
+        RelativeGain.NAME, moved, none, moved, amounts=none, noise=none, blocks=2, suspected=True
+    )
+
+
 def level_among(effects: Sequence[Effect]) -> float:
     """The level of significance of one of so many, of which any is by chance more often."""
     return CERTAIN / max(1, len(effects))

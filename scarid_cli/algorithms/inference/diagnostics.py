@@ -16,7 +16,7 @@ from scarid_cli.algorithms.beyond.additions import Addition
 from scarid_cli.algorithms.beyond.catalogue import POSITIONS, TORQUES
 from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.beyond.torques import Curvature
-from scarid_cli.algorithms.effects.effects import Effect, Trial, of_low_pass
+from scarid_cli.algorithms.effects.effects import Effect, Trial, of_low_pass, of_the_other_joint
 from scarid_cli.algorithms.effects.explanations import Explanation, explanations
 from scarid_cli.algorithms.effects.mismatched import mismatches
 from scarid_cli.algorithms.inference.consequences import (
@@ -134,7 +134,7 @@ class Diagnosis:
     alternatives that are `suspected` even where they are not significant, for all that is possible
     of those that are `shared`, because other joints have them, and for any curve of the friction of
     the joints (from 0) of `curves`. Gains and mismatches that are `fitted`, of joints (from 0),
-    are in W.
+    are in W. All parameters are `rescaled` if the torque of the other one of two joints is wrong.
     """
 
     rows: Rows
@@ -149,6 +149,7 @@ class Diagnosis:
     shared: Set[str] = frozenset()
     curves: Collection[int] = ()
     fitted: Set[tuple[str, int]] = frozenset()
+    rescaled: float = 1.0
 
     @cached_property
     def errors(self) -> Array:
@@ -164,8 +165,12 @@ class Diagnosis:
     def effects(self) -> tuple[Effect, ...]:
         """How far the alternatives to the model move the estimates."""
         trial, estimates = self._trial, self.found.fit.estimates
-        found = tuple(relative(x, trial.reference, estimates) for x in trial.effects())
-        return found if self.doubt is None else (*found, of_low_pass(self.doubt))
+        found = [relative(x, trial.reference, estimates) for x in trial.effects()]
+        if self.doubt is not None:
+            found.append(of_low_pass(self.doubt))
+        if self.rescaled != 1.0:
+            found.append(of_the_other_joint((self.rescaled - 1.0) * estimates[: self.own]))
+        return tuple(found)
 
     @property
     def diagnostics(self) -> Diagnostics:

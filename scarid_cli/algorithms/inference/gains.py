@@ -90,13 +90,20 @@ def relative(effect: Effect, first: int, estimates: Array) -> Effect:
     """The effect of gains that were not fitted, relative to the joints that agree.
 
     If joint `first` (from 0), beside which gains are, is apart, its own parameters are as much too
-    large as its torque, and all others with them. Other effects remain.
+    large as its torque, and all others with them. Of two joints nobody knows which one is apart:
+    the larger move counts of each parameter. Other effects remain.
     """
-    less = _apart(effect, first) if effect.name == RelativeGain.NAME and effect.counts else None
+    if effect.name != RelativeGain.NAME or not effect.counts:
+        return effect
+    own = estimates[: len(effect.moved)]
+    if len(others := _known(effect)) == 1:
+        moved = (own + effect.moved) * others[0].factor - own
+        larger = np.abs(moved) > np.abs(effect.moved)
+        return replace(effect, moved=np.where(larger, moved, effect.moved))
+    less = _apart(effect, first)
     if less is None:
         return effect
     (factor,) = (x.factor for x in less if x.joint == first)
-    own = estimates[: len(effect.moved)]
     return replace(effect, moved=(own + effect.moved) / factor - own)
 
 

@@ -12,7 +12,7 @@ from scarid_cli.algorithms.beyond.catalogue import TORQUES
 from scarid_cli.algorithms.beyond.gears import Presliding
 from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.beyond.mounting import Tilt
-from scarid_cli.algorithms.beyond.signals import reference
+from scarid_cli.algorithms.beyond.signals import compared, reference
 from scarid_cli.algorithms.beyond.torques import (
     DECAYED,
     Cable,
@@ -105,7 +105,15 @@ class Problem:
             shared=self._shared,
             curves={x.joint for x in self.additions if x.name in DECAYED},
             fitted={(x.name, x.joint) for x in self.additions if x.mismatch or x.entry.RELATIVE},
+            rescaled=self._rescaled,
         )
+
+    @property
+    def _rescaled(self) -> float:
+        """How large the parameters are if the gain that was fitted is that of the other of two."""
+        found = [1.0 + x.size for x in self.additions if x.name == RelativeGain.NAME]
+        others = compared(self.rows, self.found.fit.estimates[: self.own])
+        return found[0] if len(found) == 1 == np.count_nonzero(others) else 1.0
 
     @property
     def _shared(self) -> set[str]:
