@@ -1,9 +1,9 @@
 """The torque of one joint in another unit: whether one log tells it, and what is then estimated.
 
 `python benchmarks/gains.py [--seeds 20] [--joint 2]`: logs of 20 s of random motions, the torque
-of a joint multiplied by a factor. `named`: the verdict names the gain, within twice its half interval;
-`wrong`: called good, and an inertia or first moment is further than three stated errors from the
-truth.
+of a joint multiplied by a factor. `named`: the verdict names the gain, within twice its half
+interval; `wrong`: called good, and an inertia or first moment is further than three stated errors
+from the truth.
 """
 
 from __future__ import annotations
