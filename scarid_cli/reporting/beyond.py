@@ -16,11 +16,15 @@ A model of a robot leaves things out, and a log is not always what it says. This
 fitted with the parameters where it explains all that is left; otherwise their intervals allow for
 it.
 
-- *Size in* is the unit of what is fitted, of a joint that turns.
+- *Size in* is the unit of what is fitted, of a joint that turns. In an equation s is the size, dq
+  the velocity, tau the torque of a joint, and tau_t what of it the gears transmit.
 - *Term* is the term of a robot description that has it, if there is one ([robots.md](robots.md)).
 - *simulate --with* is the imperfection that causes it ([simulator.md](simulator.md)).
 - *validate* is what `scarid validate` calls it where it differs between two logs
   ([validation.md](validation.md)).
+
+Gains are told with their intervals, as torques that do not fit together
+([how](errors.md#the-gain-of-one-joint)).
 
 The page is generated from the catalogue `scarid_cli/algorithms/beyond/` by `make docs`. How often
 each of them is named in simulated logs: `python benchmarks/named.py`.

@@ -70,6 +70,18 @@ def test_a_check_that_fails_makes_the_verdict_doubtful(
     assert verdict(scarid("identify", "--robot", "scara2", log)).startswith(told)
 
 
+def test_a_position_that_was_logged_twice_is_told(
+    samples: Path, tmp_path: Path, scarid: Run
+) -> None:
+    rows = [line.split(",") for line in (samples / "scara2.csv").read_text("utf-8").splitlines()]
+    one, two = (rows[0].index(name) for name in ("q1", "q2"))
+    log = tmp_path / "log.csv"
+    copied = [[*row[:two], row[one], *row[two + 1 :]] for row in rows[1:]]
+    log.write_text("\n".join(",".join(row) for row in [rows[0], *copied]) + "\n")
+    said = verdict(scarid("identify", "--robot", "scara2", log))
+    assert said.startswith("doubtful: equal positions: q2 is q1 in all 501 rows")
+
+
 @pytest.mark.parametrize(
     ("factors", "told"),
     [

@@ -97,8 +97,9 @@ class Mismatch(Phenomenon):
     RANGE = (0.0, np.inf)  # it yields in the direction of the torque, and what is late is not early
     SMALL: ClassVar[float] = 0.0
     PLAYS: ClassVar[bool] = False  # whether it follows a signal at a distance
-    DIGITS: ClassVar[int] = 3  # of what is told of its size
     JUMPS: ClassVar[bool] = False  # whether it passes the low-pass of the rows
+    SCALE: ClassVar[float] = 1.0  # what is told per unit of the size
+    DIGITS: ClassVar[int] = 3  # of what is told
 
     @classmethod
     def secant(cls, of: Gears, joint: int, size: float = np.nan) -> Array:
@@ -124,17 +125,17 @@ class Mismatch(Phenomenon):
         """`117 +- 4 N m/rad at joint 1 and 98 +- 3 N m/rad at joint 2`."""
         return listed([f"{_told(cls, x, fitted)} at joint {x.joint + 1}" for x in fitted.own])
 
-    @staticmethod
-    def told(size: float, error: float) -> tuple[float, float]:
+    @classmethod
+    def told(cls, size: float, error: float) -> tuple[float, float]:
         """What is told of the size and its error, in the UNIT."""
-        return size, error
+        return cls.SCALE * size, cls.SCALE * error
 
 
 class LatePosition(Mismatch):
     """A position that is older than the other signals: tau(q_j(t + s))."""
 
     NAME = "late position"
-    UNIT = "ms"
+    UNIT, SCALE = "ms", 1e3
     LACKS = "the position of {joints} is older than the other signals"
     IMPERFECTIONS = ("position-delay",)
     SMALL = 1e-4
@@ -153,26 +154,18 @@ class LatePosition(Mismatch):
         column[:, joint] += delayed(of.rows, joint, rest, s)
         return column
 
-    @staticmethod
-    def told(size: float, error: float) -> tuple[float, float]:
-        return 1e3 * size, 1e3 * error
-
 
 class LateTorque(Mismatch):
     """A torque that is older than the other signals: tau_j(t - s)."""
 
     NAME = "late torque"
-    UNIT = "ms"
+    UNIT, SCALE = "ms", 1e3
     LACKS = "the torque of {joints} is older than the other signals"
     IMPERFECTIONS = ("torque-delay",)
 
     @staticmethod
     def column(of: Gears, joint: int, s: float) -> Array:
         return of.own(joint, -delayed(of.rows, joint, of.predicted(joint), -s))
-
-    @staticmethod
-    def told(size: float, error: float) -> tuple[float, float]:
-        return 1e3 * size, 1e3 * error
 
 
 class ElasticGear(Mismatch):
@@ -217,11 +210,10 @@ class ElasticJoint(Mismatch):
 
 
 class Backlash(Mismatch):
-    """A gap in the gear, 2 s wide, behind the encoder: tau_links(q_j - s sign(tau_t))."""
+    """A gap in the gear, twice s wide, behind the encoder: tau_links(q_j - s sign(tau_t))."""
 
     NAME = "backlash"
-    UNIT = "{position}"
-    DIGITS = 2
+    UNIT, SCALE, DIGITS = "{position}", 2.0, 2  # the whole distance
     LACKS = "there is a gap in the gear of {joints} (backlash), with the encoder on the motor"
     WIDER = ("backlash",)
     SMALL = 1e-4
@@ -231,10 +223,6 @@ class Backlash(Mismatch):
     def column(of: Gears, joint: int, s: float) -> Array:
         side = of.passed(np.sign(of.links[:, joint]))
         return np.asarray((of.behind(joint, s * side) - of.links) / s)
-
-    @staticmethod
-    def told(size: float, error: float) -> tuple[float, float]:
-        return 2.0 * size, 2.0 * error  # the whole distance
 
 
 class Hysteresis(Mismatch):
@@ -255,14 +243,13 @@ class Hysteresis(Mismatch):
 
 
 class Presliding(Mismatch):
-    """Friction that builds up over a distance 2 s behind a reversal.
+    """Friction that builds up over a distance of twice s behind a reversal.
 
     It is Coulomb friction times (q_j - play of q_j by s) / s in place of sign(dq_j).
     """
 
     NAME = "presliding"
-    UNIT = "{position}"
-    DIGITS = 2
+    UNIT, SCALE, DIGITS = "{position}", 2.0, 2  # the whole distance
     LACKS = "friction of {joints} builds up over a distance behind a reversal (presliding)"
     WIDER = ("presliding",)
     SMALL = 1e-2
@@ -273,10 +260,6 @@ class Presliding(Mismatch):
         q, dq = of.rows.motion[:2, joint]
         share = (q - played(of.rows, q, s)) / s - np.sign(dq)
         return of.own(joint, of.passed(of.coulomb(joint) * share / s))
-
-    @staticmethod
-    def told(size: float, error: float) -> tuple[float, float]:
-        return 2.0 * size, 2.0 * error  # the whole distance
 
 
 def _told(kind: type[Mismatch], one: Addition, fitted: Fitted) -> str:

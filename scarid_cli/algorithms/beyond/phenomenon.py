@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
@@ -168,12 +168,9 @@ class Composite(OfTorques):
 
     @classmethod
     def columns(cls, x: Signals) -> Array | None:
-        return np.concatenate([diagonal(part.shape(x)) for part in cls.PARTS], axis=2)
+        return side_by_side(x, cls.PARTS)
 
 
-def at_joints(values: Iterable[tuple[int, float]], units: Sequence[str]) -> str:
-    """Values of joints (from 0), with the units of these: `0.1 N m at joint 1, 2 N at joint 2`."""
-    own: dict[int, list[str]] = {}
-    for j, value in values:
-        own.setdefault(j, []).append(f"{value:.3g}")
-    return ", ".join(f"{listed(texts)} {units[j]} at joint {j + 1}" for j, texts in own.items())
+def side_by_side(x: Signals, shapes: Sequence[type[Shape]]) -> Array:
+    """The columns (samples, joints, k) of these shapes, each of all joints."""
+    return np.concatenate([diagonal(shape.shape(x)) for shape in shapes], axis=2)

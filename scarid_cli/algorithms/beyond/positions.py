@@ -6,6 +6,7 @@ Their columns stand beside a regressor from differences of the positions (effect
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -47,6 +48,12 @@ class Differences:
         """Positions, velocities and accelerations (3, joints, samples)."""
         return self.rows.motion[:3]
 
+    @cached_property
+    def carried(self) -> tuple[Array, Array]:
+        """The first two derivatives of what passes through the gears, each (samples, joints)."""
+        speed = np.gradient(self.transmitted, self.rows.h, axis=0)
+        return speed, np.gradient(speed, self.rows.h, axis=0)
+
 
 class OfPositions(Phenomenon):
     """An entry with columns of its own beside such a regressor."""
@@ -71,10 +78,8 @@ class OwnDelays(OfPositions):
 
     @staticmethod
     def columns(x: Differences) -> Array:
-        h = x.rows.h
-        first = np.gradient(x.whole - x.still, h, axis=0)
-        speed = np.gradient(x.transmitted, h, axis=0)
-        columns = [diagonal(first), diagonal(np.gradient(speed, h, axis=0))]
+        first = np.gradient(x.whole - x.still, x.rows.h, axis=0)
+        columns = [diagonal(first), diagonal(x.carried[1])]
         if not x.delayed:
             columns.append(diagonal(delay_column(x.rows, x.still)))
         return np.concatenate(columns, axis=2)
@@ -154,9 +159,7 @@ class Elasticity(OfPositions):
 
     @staticmethod
     def columns(x: Differences) -> Array:
-        speed = np.gradient(x.transmitted, x.rows.h, axis=0)
-        curvature = np.gradient(speed, x.rows.h, axis=0)
-        torque = np.stack((x.transmitted.T, speed.T, curvature.T))
+        torque = np.stack([part.T for part in (x.transmitted, *x.carried)])
         return elastic_columns(x.sensitivities, torque)
 
 

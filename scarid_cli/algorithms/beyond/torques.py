@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -15,7 +15,7 @@ from scarid_cli.algorithms.beyond.phenomenon import (
     Found,
     Part,
     Shape,
-    at_joints,
+    side_by_side,
 )
 from scarid_cli.algorithms.beyond.signals import Signals, diagonal
 from scarid_cli.algorithms.robots.description import Robot
@@ -80,8 +80,8 @@ class Decayed(Shape):
     SPEED: ClassVar[float]
 
     @classmethod
-    def columns(cls, x: Signals) -> Array | None:
-        return diagonal(x.friction(cls.SPEED))
+    def shape(cls, x: Signals) -> Array:
+        return x.friction(cls.SPEED)
 
 
 class SlowFriction(Decayed):
@@ -95,10 +95,6 @@ class SlowFriction(Decayed):
     SPARSE = True
     SPEED = 0.1
 
-    @staticmethod
-    def shape(x: Signals) -> Array:
-        return x.friction(SlowFriction.SPEED)
-
 
 class Stribeck(Decayed):
     """Friction of slow motion, as of a film of grease that builds up (Stribeck's curve)."""
@@ -111,10 +107,6 @@ class Stribeck(Decayed):
     ALWAYS = True
     SPEED = 0.3
 
-    @staticmethod
-    def shape(x: Signals) -> Array:
-        return x.friction(Stribeck.SPEED)
-
 
 class Curvature(Decayed):
     """Friction that is not a constant and a part in proportion to the speed."""
@@ -125,10 +117,6 @@ class Curvature(Decayed):
     IMPERFECTIONS = ("stribeck",)
     FRICTION = "curve over the speed"
     SPEED = 1.0
-
-    @staticmethod
-    def shape(x: Signals) -> Array:
-        return x.friction(Curvature.SPEED)
 
     @classmethod
     def added(cls, fitted: Fitted) -> str:
@@ -155,7 +143,7 @@ class Spring(Shape):
 
     @classmethod
     def columns(cls, x: Signals) -> Array | None:
-        return np.concatenate((diagonal(Offset.shape(x)), diagonal(x.q)), axis=2)
+        return side_by_side(x, (Offset, Spring))
 
 
 class Saturation(Shape):
@@ -194,6 +182,7 @@ class RelativeGain(Shape):
     """
 
     NAME = "gain"
+    UNIT = "of this torque"
     IMPERFECTIONS = ("torque-constant-error",)
     CHANGE = "motor constant"
     RELATIVE = COMPARED = True
@@ -246,9 +235,7 @@ class Cable(Composite):
 
     @classmethod
     def columns(cls, x: Signals) -> Array | None:
-        spring = Spring.columns(x)
-        assert spring is not None
-        return np.concatenate((spring, diagonal(Cube.shape(x))), axis=2)
+        return side_by_side(x, (Offset, *cls.PARTS))
 
     @classmethod
     def sizes(cls, fitted: Fitted) -> str:
@@ -296,7 +283,7 @@ class RippleCosine(RippleSine):
 
 
 class Ripple(Wave):
-    """A torque that ripples with the position, whose periods ripple.py searches for."""
+    """A torque that ripples with the position; its periods are searched for."""
 
     NAME = "ripple"
     LACKS = (
@@ -312,10 +299,8 @@ class Ripple(Wave):
     def columns(cls, x: Signals) -> Array | None:
         if not len(x.ripples):
             return None
-        each = (replace(x, ripples=own[None]) for own in x.ripples)
-        return np.concatenate(
-            [diagonal(part.shape(one)) for one in each for part in cls.PARTS], axis=2
-        )
+        each = [side_by_side(replace(x, ripples=own[None]), cls.PARTS) for own in x.ripples]
+        return np.concatenate(each, axis=2)
 
     @classmethod
     def facts(cls, found: Found) -> dict[str, str]:
@@ -371,3 +356,11 @@ def ripples(added: Sequence[Addition]) -> dict[RippleAt, float]:
 def periods(at: Sequence[RippleAt] | Mapping[RippleAt, float], robot: Robot) -> str:
     """`10 periods per rad at joint 1, 8 and 16 periods per rad at joint 2`."""
     return at_joints(list(at), [f"periods per {joint.unit}" for joint in robot.joints])
+
+
+def at_joints(values: Iterable[tuple[int, float]], units: Sequence[str]) -> str:
+    """Values of joints (from 0), with the units of these: `0.1 N m at joint 1, 2 N at joint 2`."""
+    own: dict[int, list[str]] = {}
+    for j, value in values:
+        own.setdefault(j, []).append(f"{value:.3g}")
+    return ", ".join(f"{listed(texts)} {units[j]} at joint {j + 1}" for j, texts in own.items())

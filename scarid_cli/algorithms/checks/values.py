@@ -18,6 +18,7 @@ BIN = 0.01  # of the range: the levels below the extreme that it is compared wit
 FEWEST = 10  # values at the extreme
 MANY = 0.05  # of the rows: the torque of so many is not known
 INTERVAL = 0.2  # s, over which a moving joint goes further than a resting one with its noise
+SEEN = 1000  # rows of a log in which equal positions are looked for first
 MOST = 0.5  # of the rows in which a joint moves: more with one torque are not measured
 
 
@@ -68,9 +69,11 @@ def _piled(x: Array) -> int:
 
 def copied(q: Array) -> Finding:
     """Positions (joints, rows) that are those of an earlier joint in every row, while it moves."""
-    moving = [i for i, x in enumerate(q) if np.nanmax(x) > np.nanmin(x)]
+    few = q[:, :: max(1, q.shape[1] // SEEN)]  # of a long log, hardly two joints agree in these
     pairs = [
-        (i, j) for i, j in combinations(moving, 2) if np.array_equal(q[i], q[j], equal_nan=True)
+        (i, j)
+        for i, j in combinations(range(len(q)), 2)
+        if _equal(few[i], few[j]) and _equal(q[i], q[j]) and np.nanmax(q[i]) > np.nanmin(q[i])
     ]
     first = {j: i for i, j in reversed(pairs)}
     if not first:
@@ -80,6 +83,10 @@ def copied(q: Array) -> Finding:
     maps = " ".join(f"--map q{j + 1}=X" for j in sorted(first))
     advice = f"one column was logged twice: name that of the joint: `scarid convert {maps}`"
     return failed("equal positions", figure, advice)
+
+
+def _equal(x: Array, y: Array) -> bool:
+    return np.array_equal(x, y, equal_nan=True)
 
 
 def constant(tau: Array) -> Finding:

@@ -19,7 +19,7 @@ from scarid_cli.algorithms.beyond.gears import Gears
 from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.beyond.mounting import Tilt
 from scarid_cli.algorithms.beyond.ripple import Ripples
-from scarid_cli.algorithms.beyond.rows import LowPass, Parallel, Reversals
+from scarid_cli.algorithms.beyond.rows import Parallel, Reversals
 from scarid_cli.algorithms.beyond.signals import Signals, compared, diagonal, reference
 from scarid_cli.algorithms.beyond.torques import Curvature, Offset, RelativeGain, Ripple
 from scarid_cli.algorithms.effects.parallel import smoothed
@@ -136,21 +136,10 @@ class Effect:
         return np.asarray(share**0.5 * self.moved, dtype=np.float64)
 
 
-def of_low_pass(moved: Array) -> Effect:
-    """The effect (parameters) of a low-pass for a delay, or the reverse, whose size is known."""
+def of_known_size(name: str, moved: Array) -> Effect:
+    """The effect (parameters) of something whose size is known, so that it always counts."""
     none = np.zeros_like(moved)
-    return Effect(LowPass.NAME, moved, none, moved, amounts=none, noise=none, blocks=2)
-
-
-def of_the_other_joint(moved: Array) -> Effect:
-    """The effect (parameters) of the gain of the other one of two joints in place of that fitted.
-
-    One of two torques that do not fit together is wrong, and nobody knows which.
-    """
-    none = np.zeros_like(moved)
-    return Effect(
-        RelativeGain.NAME, moved, none, moved, amounts=none, noise=none, blocks=2, suspected=True
-    )
+    return Effect(name, moved, none, moved, amounts=none, noise=none, blocks=2, suspected=True)
 
 
 def level_among(effects: Sequence[Effect]) -> float:

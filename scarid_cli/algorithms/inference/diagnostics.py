@@ -15,8 +15,9 @@ import numpy as np
 from scarid_cli.algorithms.beyond.additions import Addition
 from scarid_cli.algorithms.beyond.catalogue import POSITIONS, TORQUES
 from scarid_cli.algorithms.beyond.model import Model
-from scarid_cli.algorithms.beyond.torques import Curvature
-from scarid_cli.algorithms.effects.effects import Effect, Trial, of_low_pass, of_the_other_joint
+from scarid_cli.algorithms.beyond.rows import LowPass
+from scarid_cli.algorithms.beyond.torques import Curvature, RelativeGain
+from scarid_cli.algorithms.effects.effects import Effect, Trial, of_known_size
 from scarid_cli.algorithms.effects.explanations import Explanation, explanations
 from scarid_cli.algorithms.effects.mismatched import mismatches
 from scarid_cli.algorithms.inference.consequences import (
@@ -167,9 +168,10 @@ class Diagnosis:
         trial, estimates = self._trial, self.found.fit.estimates
         found = [relative(x, trial.reference, estimates) for x in trial.effects()]
         if self.doubt is not None:
-            found.append(of_low_pass(self.doubt))
-        if self.rescaled != 1.0:
-            found.append(of_the_other_joint((self.rescaled - 1.0) * estimates[: self.own]))
+            found.append(of_known_size(LowPass.NAME, self.doubt))
+        if self.rescaled != 1.0:  # one of two torques is wrong, and nobody knows which
+            moved = (self.rescaled - 1.0) * estimates[: self.own]
+            found.append(of_known_size(RelativeGain.NAME, moved))
         return tuple(found)
 
     @property

@@ -112,8 +112,10 @@ class Problem:
     def _rescaled(self) -> float:
         """How large the parameters are if the gain that was fitted is that of the other of two."""
         found = [1.0 + x.size for x in self.additions if x.name == RelativeGain.NAME]
+        if len(found) != 1:  # asked first: to find the joints that share parameters takes all rows
+            return 1.0
         others = compared(self.rows, self.found.fit.estimates[: self.own])
-        return found[0] if len(found) == 1 == np.count_nonzero(others) else 1.0
+        return found[0] if np.count_nonzero(others) == 1 else 1.0
 
     @property
     def _shared(self) -> set[str]:

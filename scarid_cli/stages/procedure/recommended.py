@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 Step = Callable[[], object]
 Progress = Callable[[], AbstractContextManager[Step]]
 
-SPOILING = ("wraps", "glitches", "clock")  # checks without which no derivative is one
+# Checks without which no derivative is one, or not that of its joint.
+SPOILING = ("wraps", "glitches", "clock", "equal positions")
 
 
 @dataclass(frozen=True)
