@@ -87,4 +87,5 @@ def test_every_entry_that_is_named_has_a_log_of_its_own() -> None:
 def test_what_the_log_has_is_named(condition: str) -> None:
     robot = "scara2" if condition in HORIZONTAL else "planar2-gravity"
     found = named.named((robot, condition, named.SEED))
-    assert {*found} & {*named.LACKING[condition]}
+    says = f"{condition}, {robot}: the verdict names {[kind.NAME for kind in found]}"
+    assert {*found} & {*named.LACKING[condition]}, says
