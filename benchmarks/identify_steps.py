@@ -29,7 +29,7 @@ STEPS = {  # of which the first that is on the stack counts: module and function
     "checks": "glance.of_measurement",
     "reading": "compact.of",
     "smoothing, regressor": "identify._after_all_rows",
-    "lead": "alignment.lead",
+    "lead of the torques": "alignment.lead",
     "fits, whitening": "estimation.of_rows",
     "torques beyond the model": "effects.beyond",
     "slow noise": "autocovariance.autocovariance_errors",

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import isfinite, nan
 
 from scarid_cli.algorithms.inference.verdict import DOUBT
+from scarid_cli.interval import plus_minus
 from scarid_cli.reporting.kinds import Comparison, Metrics, Parameters, Result
 from scarid_cli.reporting.parts import Bars, Section, number
 from scarid_cli.reporting.said import ALARMING, FINE, Said
@@ -23,6 +24,11 @@ PLAIN = "Each estimate with its relative standard deviation in % (eq. 34)."
 ROBUST = (
     "Each estimate with its relative standard deviation in % (eq. 34), and its relative standard "
     'error robust to autocorrelated residuals ("robust %").'
+)
+
+VAGUE = 100.0  # %: a percentage of an estimate that may be zero says nothing
+NEAR_ZERO = (
+    f" Above {VAGUE:g} % stands half the 95 % interval instead (+-), in the parameter's unit."
 )
 
 
@@ -64,15 +70,20 @@ def estimates(group: Sequence[Parameters], colours: dict[str, int]) -> Section:
     """Estimates of the same parameters side by side, with their uncertainty."""
     first, robust = group[0], any(r.robust for r in group)
     percents = ("%", "robust %") if robust else ("%",)
+    vague = any(x > VAGUE for r in group for x in (*r.deviations, *_robust(r)))
     keys = _keys(first)
     columns = [
-        cells(r, values)
+        values
         for r in group
-        for values in (r.estimates, r.deviations, *([_robust(r)] if robust else []))
+        for values in (
+            cells(r, r.estimates),
+            _relative(r, r.deviations),
+            *([_relative(r, _robust(r))] if robust else []),
+        )
     ]
     return Section(
         title=titled("Parameters", first.name.experiment),
-        note=robots_of(group) + (ROBUST if robust else PLAIN),
+        note=robots_of(group) + (ROBUST if robust else PLAIN) + (NEAR_ZERO if vague else ""),
         headers=(
             *("parameter", "unit", "a priori")[: len(keys)],
             *(header for name in shown(group) for header in (name, *percents)),
@@ -95,6 +106,15 @@ def _keys(result: Parameters) -> list[tuple[str, ...]]:
 
 def _robust(result: Parameters) -> tuple[float, ...]:
     return result.robust or (nan,) * len(result.names)
+
+
+def _relative(result: Parameters, percents: Sequence[float]) -> list[str]:
+    """Percentages of the estimates; half the 95 % interval where the estimate may be zero."""
+    texts = zip(cells(result, percents), percents, result.estimates, strict=True)
+    return [
+        plus_minus(abs(estimate) * percent / 100.0) if percent > VAGUE else text
+        for text, percent, estimate in texts
+    ]
 
 
 def _bars(group: Sequence[Parameters], colours: dict[str, int]) -> tuple[Bars, ...]:

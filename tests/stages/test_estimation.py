@@ -215,7 +215,7 @@ def test_rows_of_a_long_record_are_thinned_before_the_delay_is_fitted(
     monkeypatch.setattr(subsample, "MOST_HELD", 100_000)
     thinned = estimated()
     assert "thinned" not in whole.meta.extra
-    assert thinned.meta.extra["thinned"] == 4
+    assert thinned.meta.extra["thinned"] == 5
     assert whole.meta.extra["samples"] == thinned.meta.extra["samples"]
     apart = column(whole, "estimate") - column(thinned, "estimate")
     assert np.all(np.abs(apart) < 0.1 * column(whole, "robust_error"))

@@ -33,6 +33,15 @@ def test_parameters_stand_beside_each_other_with_the_a_priori_values_of_their_ro
     assert [row[0] for row in section.rows] == SCARA.names
 
 
+def test_what_may_be_zero_has_its_interval_instead_of_a_percentage() -> None:
+    """3673 % of .0001 kg m2 is a standard deviation of .003673 kg m2, of which 1.96 are shown."""
+    names, percents = ("ZZ1", "ZZ2"), (3.0, 3673.0)
+    one = Parameters(Name("a", ""), None, names, ("kg m2",) * 2, (1.0, -1e-4), percents, {})
+    (section,) = sections([one])
+    assert [row[3] for row in section.rows] == ["3.000", "+- 0.0072"]
+    assert "half the 95 % interval" in section.note
+
+
 def test_other_parameters_go_into_another_section() -> None:
     other = Parameters(Name("c", ""), None, ("M",), ("kg",), (95.0,), (float("nan"),), {})
     found = sections([parameters("a"), other, parameters("b")])

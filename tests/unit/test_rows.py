@@ -85,7 +85,7 @@ def test_a_subsample_is_the_same_however_rows_arrive_and_stays_small(
     assert subsample.total == subsample.counted == rows.samples
     assert not subsample.complete
     assert 1_250 <= kept.samples <= 5_000
-    assert subsample.thin == {1: 1, 5: 4}[thinnest]
+    assert subsample.thin == thinnest
     assert kept.h == subsample.thin * rows.h
     np.testing.assert_array_equal(kept.W[:, 0, 0], kept.at * subsample.thin)
     np.testing.assert_array_equal(kept.at, empty.add(rows).rows().at)
@@ -96,8 +96,18 @@ def test_a_subsample_is_thinned_before_segments_are_dropped() -> None:
     W = np.arange(18_000.0).reshape(-1, 1, 1)
     subsample = Subsample(samples=5_000, thinnest=5).add(plain(W, W[:, :, 0]))
     kept = subsample.rows()
-    assert (subsample.thin, subsample.stride) == (4, 1)
-    np.testing.assert_array_equal(kept.at, np.arange(18_000 // 4))
+    assert (subsample.thin, subsample.stride) == (5, 1)
+    np.testing.assert_array_equal(kept.at, np.arange(18_000 // 5))
+
+
+@pytest.mark.parametrize("thinnest", range(1, 200))
+def test_a_long_record_keeps_less_than_a_quarter_more_than_its_bandwidth_needs(
+    thinnest: int,
+) -> None:
+    W = np.arange(2_000.0).reshape(-1, 1, 1)
+    empty = Subsample(samples=8, numbers=1, thinnest=thinnest, covers=10**9)
+    found = empty.add(plain(W, W[:, :, 0]))
+    assert found.thin <= thinnest < 1.25 * found.thin
 
 
 @pytest.mark.parametrize("sizes", SIZES)
@@ -107,8 +117,7 @@ def test_a_subsample_may_cover_the_whole_record(sizes: tuple[int, ...], thinnest
     empty = Subsample(samples=5_000, thinnest=thinnest, covers=10**9)
     kept = fed(empty, plain(W, W[:, :, 0]), sizes)
     assert isinstance(kept, Subsample)
-    thin = {1: 1, 5: 4}[thinnest]
-    np.testing.assert_array_equal(kept.rows().W[:, 0, 0], np.arange(0.0, 60_000.0, thin))
+    np.testing.assert_array_equal(kept.rows().W[:, 0, 0], np.arange(0.0, 60_000.0, thinnest))
     np.testing.assert_array_equal(kept.packed().rows().W, kept.rows().W)
 
 

@@ -15,6 +15,7 @@ MOST_HELD = 4_000_000  # numbers, before a record that is held is thinned
 MOST_COVERED = 20_000_000  # numbers, before only some segments are kept
 FEWEST_SAMPLES = 4096
 MOST_SEGMENTS = 8
+FIRST = 8  # below which the first thinning is: at least half of this, if the thinnest is
 GATHERED = 512  # samples of a part, above which it stays as it is
 
 
@@ -58,8 +59,8 @@ class Subsample:
                 parts += _thinned([rows.part(slice(start, stop))], thin)
                 _gather(parts, segment)
             while len({int(part.at[0]) // segment for part in parts}) > MOST_SEGMENTS:
-                if 2 * thin <= self.thinnest:
-                    thin, segment = 2 * thin, 2 * segment
+                if thin < (coarser := _coarser(thin, self.thinnest)):
+                    thin, segment = coarser, segment * coarser // thin
                     parts = _thinned(parts, thin)
                 elif self.covers and not self._is_too_large(parts):
                     break
@@ -108,6 +109,19 @@ class Subsample:
         """The rows of the subsample, with `at` and `h` those of the thinned record."""
         kept = joined(self.parts)
         return replace(kept, at=kept.at // self.thin, h=kept.h * self.thin)
+
+
+def _coarser(thin: int, thinnest: int) -> int:
+    """The next thinning: a multiple of this one, of which the last comes near the thinnest.
+
+    Doublings from 1 would leave up to twice as many samples as are needed; the first step is such
+    that those after it, each of which doubles, end less than a quarter below the thinnest.
+    """
+    first = thinnest
+    while first >= FIRST:
+        first //= 2
+    coarser = first if thin == 1 else 2 * thin
+    return coarser if coarser <= thinnest else thin
 
 
 def _gather(parts: list[Rows], segment: int) -> None:
