@@ -180,7 +180,7 @@ def told(piece: Piece, before: Load, after: Load) -> str:
     what = HEAVIER if change > 0.0 else LIGHTER
     return (
         f"{what} {abs(change):.3g} {plus_minus(error)} kg at {piece.start:.4g} s "
-        f"(found at {piece.found:.4g} s)"
+        f"(suspected at {piece.found:.4g} s)"
     )
 
 
