@@ -178,9 +178,10 @@ def told(piece: Piece, before: Load, after: Load) -> str:
     change = float(after.values[0] - before.values[0])
     error = float(np.hypot(before.errors[0], after.errors[0]))
     what = HEAVIER if change > 0.0 else LIGHTER
+    not_at = "" if piece.misplaced is None else f", not at {piece.misplaced:.4g} s as told before"
     return (
         f"{what} {abs(change):.3g} {plus_minus(error)} kg at {piece.start:.4g} s "
-        f"(suspected at {piece.found:.4g} s)"
+        f"(suspected at {piece.found:.4g} s){not_at}"
     )
 
 

@@ -7,7 +7,7 @@ from conftest import seeds
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scarid_cli.algorithms.changes.carried import BLOCK, SIZES, Carrying, Sums
+from scarid_cli.algorithms.changes.carried import BLOCK, SIZES, Carrying, Piece, Sums
 
 ROWS = 50  # of a block
 HEAVY = np.array([0.01, 0.0, 0.0, 0.01, 0.0, 0.01, 0.1, -0.05, 0.2, 2.0])
@@ -51,6 +51,22 @@ def test_a_contact_that_is_over_is_no_payload() -> None:
     none = np.zeros(10)
     loads = [none] * 80 + [HEAVY] * 1 + [none] * 40
     assert len(followed(loads, 5).pieces) == 1
+
+
+def test_a_change_that_was_placed_too_early_is_placed_anew() -> None:
+    """What was told of blocks without the payload is taken back where the next change is found."""
+    rng, none = np.random.default_rng(3), np.zeros(10)
+    found = followed([none] * 80, 3)
+    start, blocks = found.last.total, [block(rng, none) for _ in range(6)]
+    own = [sum(blocks[:k], start=found.none) for k in range(len(blocks) + 1)]
+    found.pieces.append(Piece(20.0, 21.5, 21.0, 6, own))
+    found.noises = found.noises.anew()
+    for k, load in enumerate([HEAVY] * 20):
+        found.add(21.5 + k * BLOCK, 21.5 + (k + 1) * BLOCK, block(rng, load))
+    first, second = found.pieces
+    assert (second.start, second.misplaced) == (21.5, 20.0)
+    assert (first.start, first.end, first.blocks) == (0.0, 21.5, 80 + 1 + 6)
+    np.testing.assert_allclose(first.total.gram, start.gram + own[-1].gram)
 
 
 def test_memory_does_not_grow() -> None:

@@ -102,7 +102,8 @@ class Sums:
 class Piece:
     """So many `blocks` from `start` to `end` [s] with one payload, which was `found` at that time.
 
-    `sums` has their sums up to each of the last blocks, from zero on if there are few.
+    `sums` has their sums up to each of the last blocks, from zero on if there are few. If this
+    change was told before, it was `misplaced` at that time [s].
     """
 
     start: float
@@ -110,6 +111,7 @@ class Piece:
     found: float
     blocks: int
     sums: list[Sums]
+    misplaced: float | None = None
 
     @property
     def total(self) -> Sums:
@@ -270,9 +272,26 @@ class Carrying:
         new = [sums - start for sums in piece.sums[-later:]]
         end, at = piece.end, piece.end - later * BLOCK
         piece.end, piece.blocks, piece.sums = at, piece.blocks - later, piece.sums[:-later]
-        self.pieces.append(Piece(at, end, suspected, later - 1, new))
+        misplaced = self._undone()
+        self.pieces.append(Piece(at, end, suspected, later - 1, new, misplaced))
         self.noises = self.noises.anew()
         return True
+
+    def _undone(self) -> float | None:
+        """Where the last change was placed [s], if without the blocks that are now cut it is none.
+
+        It was this one, placed too early; its piece is then that before it.
+        """
+        if len(self.pieces) < 2:
+            return None
+        before, last = self.pieces[-2:]
+        known = self.noises.among(last.blocks) > 0.0
+        if not known or self._apart(before.total, last.total, last.blocks) > self.threshold:
+            return None
+        self.pieces.pop()
+        before.sums += [before.total + sums for sums in last.sums[1:]]
+        before.blocks, before.end = before.blocks + 1 + last.blocks, last.end
+        return last.start
 
 
 def _left(before: Sums, block: Sums) -> float:
