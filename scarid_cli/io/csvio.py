@@ -30,6 +30,7 @@ CUT = b"# scarid: the table ends here because the stage that wrote it failed\n"
 
 BOM = "\N{ZERO WIDTH NO-BREAK SPACE}"  # at the start of a text of Windows
 
+KEY = re.compile(rb"[A-Za-z_]\w*:")  # alone in a line
 JSON = (b'{"', b"[{", b"[[")  # how a file of JSON begins
 
 # How programs write a missing number; in a table with a column of text they are texts.
@@ -78,10 +79,12 @@ def _not_a_table(name: str, start: bytes) -> BadData:
     return BadData(f"{name}: {next(known, 'neither CSV nor Parquet nor Arrow; is it a table?')}")
 
 
-def _refuse_json(header: bytes, name: str) -> None:
-    if header.startswith(JSON) or header.strip() in (b"{", b"["):
+def _refuse_documents(header: bytes, name: str) -> None:
+    """Refuse JSON, and the YAML of printed messages, whose first line is a key."""
+    json = header.startswith(JSON) or header.strip() in (b"{", b"[")
+    if json or KEY.fullmatch(header.strip()):
         convert = f"scarid convert {shlex.quote(name)} -o log.parquet"
-        raise BadData(f"{name}: JSON; convert it first: `{convert}`")
+        raise BadData(f"{name}: {'JSON' if json else 'YAML'}; convert it first: `{convert}`")
 
 
 def _table(source: ByteSource) -> Table:
@@ -98,7 +101,7 @@ def _table(source: ByteSource) -> Table:
             expected="a CSV header",
             remedy="is the file empty, or did the previous command fail?",
         )
-    _refuse_json(first[:header_end], source.name)
+    _refuse_documents(first[:header_end], source.name)
     names, repeated = _numbered(_header(first, header_end, source.name))
     header = first[:header_end].rstrip(b"\r\n").rpartition(b"\n")[2].removeprefix(BOM.encode())
     lines = _without_headers(chain([first[header_end:]], lines), header)

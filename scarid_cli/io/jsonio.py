@@ -32,15 +32,18 @@ def is_json(source: ByteSource) -> bool:
 
 def read_json(source: ByteSource) -> Table:
     """A table from JSON."""
-    rows = enumerate(_rows(source), start=1)
+    return table_of_rows(_rows(source), source.name)
+
+
+def table_of_rows(objects: Iterable[Any], name: str) -> Table:
+    """A table with a row for each object, and the columns of the first one."""
+    rows = enumerate(objects, start=1)
     first = next(rows, None)
     if first is None:
-        raise BadData(f"{source.name}: no rows; is the file empty?")
+        raise BadData(f"{name}: no rows; is the file empty?")
     columns = dict(_flat(first[1]))
-    schema = pa.schema([(name, _type(value)) for name, value in columns.items()])
-    return Table(
-        source.name, schema, Metadata(), _batches(chain([first], rows), schema, source.name)
-    )
+    schema = pa.schema([(column, _type(value)) for column, value in columns.items()])
+    return Table(name, schema, Metadata(), _batches(chain([first], rows), schema, name))
 
 
 def _batches(
@@ -110,7 +113,7 @@ def _flat(value: Any, name: str = "", depth: int = 0) -> Iterator[tuple[str, Any
 
 
 def _rows(source: ByteSource) -> Iterator[Any]:
-    lines = _lines(source)
+    lines = lines_of(source)
     first = next(lines, b"")
     try:
         row = json.loads(first)
@@ -225,7 +228,7 @@ def _few_long(value: Any) -> bool:
     return inner and all(isinstance(x, list) and len(x) > NESTED for x in value)
 
 
-def _lines(source: ByteSource) -> Iterator[bytes]:
+def lines_of(source: ByteSource) -> Iterator[bytes]:
     """The lines that are not empty."""
     held = b""
     while data := source.read_some():

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pytest
+from conftest import Shell
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -135,3 +137,25 @@ def test_names_that_change_are_refused_with_their_row() -> None:
     table, _ = names_in_cells(table_of({"name": names}, [1]))
     with pytest.raises(BadData, match="row 3, column name: found '\\[b, a\\]'"):
         list(table.batches)
+
+
+@pytest.mark.parametrize("options", ["", "--map 't=time,q*=angle*_deg,tau*=load* [mN m]'"])
+def test_joints_in_turn_are_in_the_order_of_the_robot(
+    options: str, shell: Shell, tmp_path: Path
+) -> None:
+    """With units in the names of the columns, and whether these are mapped or recognised."""
+    rows = [
+        f"{0.01 * k:g},{name},{180.0 * (k + place)},{1000.0 * place}"
+        for k in range(9)
+        for name, place in (("elbow", 2), ("base", 1))
+    ]
+    names = "time,joint,angle_deg," + ("load [mN m]" if options else "torque [mN m]")
+    (tmp_path / "log.csv").write_text("\n".join([names, *rows]) + "\n")
+    done = shell(f"scarid convert --joints base,elbow {options} log.csv")
+    assert done.status == 0, done.err
+    header, first, *_ = done.out.splitlines()
+    found = dict(zip(header.split(","), map(float, first.split(",")), strict=True))
+    assert found == pytest.approx(
+        {"t": 0.0, "q1": np.pi, "q2": 2.0 * np.pi, "tau1": 1.0, "tau2": 2.0}
+    )
+    assert "put in the order base, elbow: the log has elbow, base" in done.err

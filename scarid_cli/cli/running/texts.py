@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from scarid_cli.cli.running.job import Job
 from scarid_cli.io.bytesource import ByteSource, unpacked
+from scarid_cli.io.echoed_yaml import is_echoed, read_echoed
 from scarid_cli.io.foreign import ARCHIVES, TranslatedCsv, read_archive
 from scarid_cli.io.jsonio import is_json, read_json
 from scarid_cli.io.notation import Notation, notation_of
@@ -65,6 +66,8 @@ def _read(
         return flattened(job.read_source(source))
     if is_json(source):
         return read_json(source)
+    if is_echoed(source):
+        return read_echoed(source, job.notes.append)
     notation = notation_of(source, given, by_name=bool(named))
     if notation.units:
         notation = _with_units(notation)
@@ -99,8 +102,10 @@ def columns_of(
 
     The names of joints in `cells` tell the order of arrays.
     """
-    names = expanded(pairs, table.columns, table.name)
     order = joints or (robot.body.joint_names if robot and robot.body else ())
+    arrays = expanded({n: o for n, o in pairs.items() if "*" in n}, table.columns, table.name)
+    singles = expanded({n: o for n, o in pairs.items() if "*" not in n}, table.columns, table.name)
+    names = {**_by_cells(job, arrays, cells, order), **singles}
     found = recognised(table.columns, wanted, order, table.name)
     described = {**robot.log.columns} if robot and robot.log else {}
     taken = {*names.values(), *described.values()}
@@ -154,12 +159,12 @@ def _by_cells(
     """The columns of arrays in the order of the joints, whose names stand in the cells."""
     if not cells or not columns:
         return columns
-    if not order:
-        job.notes.append(f"joints as the log names them: {', '.join(cells)} (another: --joints)")
-        return columns
-    found = in_their_order(columns, cells, order)
-    if found != columns:
-        job.notes.append(f"put in the order {', '.join(order)}: the log has {', '.join(cells)}")
+    found = in_their_order(columns, cells, order) if order else columns
+    note = f"joints as the log names them: {', '.join(cells)} (another: --joints)"
+    if order:
+        note = f"put in the order {', '.join(order)}: the log has {', '.join(cells)}"
+    if (found != columns or not order) and note not in job.notes:
+        job.notes.append(note)
     return found
 
 

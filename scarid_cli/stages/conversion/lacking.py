@@ -22,6 +22,7 @@ SHOWN = 8  # names of columns in a message
 TICKS = {"micros", "millis", "tick", "ticks"}  # words of a clock whose unit they do not say
 RATE = ": give --rate HZ, if the rate is constant"
 NUMBER = re.compile(r"\d+")
+FORCES = {"force", "forces", "kraft"}
 LETTER = re.compile(r"[A-Za-z]{1,2}[^A-Za-z]*")
 
 
@@ -78,7 +79,8 @@ def _mappings(left: Sequence[str], *, t: bool = False, q: bool = False, tau: boo
 def _torques(left: Sequence[str]) -> list[tuple[str, str]]:
     """Which columns become torques, or currents."""
     currents = _pair("current", left, QUANTITIES[CURRENT] | AMPERES)
-    return _pair("tau", left, QUANTITIES[TORQUE]) or currents
+    torques = _pair("tau", left, QUANTITIES[TORQUE] - FORCES)  # beside which a force is another
+    return torques or _pair("tau", left, FORCES) or currents
 
 
 def _perhaps_alike(new: str, left: Sequence[str], count: int) -> str:
@@ -86,8 +88,18 @@ def _perhaps_alike(new: str, left: Sequence[str], count: int) -> str:
 
     Of letters alone, as u1 or A1: a longer name says that they are something else.
     """
-    found = _numbered([name for name in left if LETTER.fullmatch(name)], count)
+    short = [name for name in left if LETTER.fullmatch(name)]
+    if new == "tau":  # beside its derivative, as tq beside tqd: a target position, and no torque
+        short = [name for name in short if not _derived(name) & {*left}]
+    found = _numbered(short, count)
     return f": perhaps {_mapping(f'{new}*', found)}" if found else ""
+
+
+def _derived(name: str) -> set[str]:
+    """How the derivative of a column is called: `tqd_0` of `tq_0`, or `dq1` of `q1`."""
+    letters = re.match("[A-Za-z]+", name)
+    stem = letters[0] if letters else ""
+    return {f"{stem}d{name[len(stem) :]}", f"d{name}"}
 
 
 def _alike(new: str, left: Sequence[str], found: list[tuple[str, str]]) -> list[tuple[str, str]]:

@@ -216,6 +216,15 @@ def unit_in_name(column: str) -> tuple[str, str] | None:
     return None
 
 
+def element(column: str, k: int) -> str:
+    """The name of the k-th element of an array; a unit in the name of the array stays behind it."""
+    for form in (BRACKETS, SUFFIX):
+        match = form.fullmatch(column)
+        if match and known_unit(match["unit"]):
+            return f"{match['name']}[{k}]{column[match.end('name') :]}"
+    return f"{column}[{k}]"
+
+
 def units_in_names(names: Sequence[str], renamed: dict[str, str]) -> dict[str, tuple[str, str]]:
     """The columns with a unit in their name: from the old name to ours, and the unit.
 

@@ -12,6 +12,7 @@ import pyarrow as pa
 from scarid_cli.arrays import Array, Numbers
 from scarid_cli.errors import bad_data
 from scarid_cli.io.table import Table, concatenated, doubles, number
+from scarid_cli.stages.conversion.recorders import element
 from scarid_cli.stages.conversion.wording import CLOCK, POSITION, QUANTITIES, words_of
 
 JOINT = {"actuator", "axis", "id", "joint", "jointname", "motor", "name", "servo"}
@@ -119,7 +120,7 @@ class _Turns:
             if field.name in arrays:
                 unit = field.metadata and field.metadata.get(b"unit", b"").decode()
                 count = len(self.joints)
-                fields += [number(f"{field.name}[{k}]", unit or "") for k in range(count)]
+                fields += [number(element(field.name, k), unit or "") for k in range(count)]
             elif field.name != self.key:
                 fields.append(field)
         return pa.schema(fields)
