@@ -298,9 +298,8 @@ LINK = """<link name="l{k}"><inertial><origin xyz="{com}"/><mass value="{mass}"/
 """
 
 
-@pytest.mark.parametrize("size", [0.05, 0.1, 1.0])
-def test_the_bodies_of_a_small_arm_are_possible_however_small(size: float, tmp_path: Path) -> None:
-    """Lengths times `size`, masses times its cube: a gripper of some grams is a body as well."""
+def of_size(size: float, folder: Path) -> Robot:
+    """An arm of lengths times `size`, and masses times its cube."""
     inertia = [size**5 * x for x in (0.02, 0.024, 0.006)]
     links = "".join(
         LINK.format(
@@ -310,11 +309,28 @@ def test_the_bodies_of_a_small_arm_are_possible_however_small(size: float, tmp_p
         )
         for k in (1, 2, 3)
     )  # fmt: skip
-    path = tmp_path / "small.urdf"
+    path = folder / "arm.urdf"
     path.write_text(SMALL.format(links=links))
-    robot = load(str(path))
-    covariance = np.diag((1e-4 * np.maximum(np.abs(robot.apriori), size**5 * 1e-3)) ** 2)
-    found = nearest(robot, robot.apriori, covariance)
+    return load(str(path))
+
+
+def exact(robot: Robot, size: float) -> Array:
+    return np.diag((1e-4 * np.maximum(np.abs(robot.apriori), size**5 * 1e-3)) ** 2)
+
+
+@pytest.mark.parametrize("size", [0.05, 0.1, 1.0])
+def test_the_bodies_of_a_small_arm_are_possible_however_small(size: float, tmp_path: Path) -> None:
+    """A gripper of some grams is a body as well."""
+    robot = of_size(size, tmp_path)
+    found = nearest(robot, robot.apriori, exact(robot, size))
     assert found.distance < 0.1
     masses = np.reshape(robot.body.standard, (3, 10))[:, 9]
     np.testing.assert_allclose(found.bodies[:, 9], masses, rtol=0.1)
+
+
+@pytest.mark.parametrize("size", [1.0, 3.0, 10.0])
+def test_a_heavy_arm_is_not_pulled_to_its_description(size: float, tmp_path: Path) -> None:
+    """Bodies that are a tenth heavier than described are possible, at five tons a link as well."""
+    robot = of_size(size, tmp_path)
+    found = nearest(robot, 1.1 * robot.apriori, exact(robot, size))
+    assert found.distance < 0.5

@@ -37,9 +37,9 @@ SMALLER = 0.5  # or this part of what a flat link has as described
 ACCURACY = 1e-6  # of such an eigenvalue that the solver finds
 LIGHT = 0.01  # kg: the scale of lighter links; that of links without a mass is 1 kg
 POINT = 1e-3  # of the mass: the least scale of an inertia, a radius of 3 mm
-PRICE = 1e-4  # squared errors per square of the distance from the URDF's bodies, in kg or in the
-# mass of those that are lighter: decides what the base parameters leave open, and keeps masses
-# finite where the nearest ones would be infinite
+PRICE = 1e-4  # squared errors per square of the distance from the URDF's bodies, in their masses:
+# decides what the base parameters leave open, and keeps masses finite where the nearest ones would
+# be infinite
 SOLVER_ROUNDING = 1e-12  # kg m2: smaller values are left over by the solver
 # Of an estimate, and of the largest one: smaller errors are beyond the solver's accuracy.
 RESOLUTIONS = (1e-6, 0.0), (1e-6, 1e-6), (1e-5, 1e-5)
@@ -127,7 +127,7 @@ class Arm:
     """The unknowns of the semidefinite program, and what is linear or quadratic in them.
 
     `base` = of_bodies @ bodies + of_axes @ beside; `beyond` is the difference of the bodies from
-    those of the URDF, in kg or in the masses of lighter ones, and `beside`.
+    those of the URDF, in their masses, and `beside`, in SI units over the mass of the arm [kg].
     """
 
     cvxpy: Any
@@ -155,7 +155,7 @@ class Arm:
         positive = [i for i, name in enumerate(axes) if POSITIVE.fullmatch(name)]
         bounds = [beside[positive] >= 0.0] if positive else []
         apart = [
-            cvxpy.vec(J - pseudo_inertia(x), order="F") / min(s[3, 3], 1.0)
+            cvxpy.vec(J - pseudo_inertia(x), order="F") / s[3, 3]
             for J, s, x in zip(pseudo, scales, own, strict=True)
         ]
         return cls(
@@ -172,7 +172,7 @@ class Arm:
                     for K, s, x in zip(scaled, scales, own, strict=True)
                 ),
             ],
-            [*apart, beside],
+            [*apart, beside / max(own[:, 9].sum(), 1.0)],  # which grow with the weight
         )
 
     @property
