@@ -75,7 +75,7 @@ def gains(bare: Table, loaded: Table, robot: Robot, load: Load) -> Told:
     if not told.known.any():
         raise BadData(
             "gains: the motion does not tell any of them; use a motion that turns the joints "
-            "against gravity, with and without the load"
+            "against gravity, with and without the load, or state its centre as well (--centre)"
         )
     return told
 

@@ -32,9 +32,25 @@ def payload(bare: Estimates, loaded: Estimates, link: str | None) -> tuple[Paylo
     frame, name = frame_of(robot, link, "a payload needs")
     covariance = bare.covariance + loaded.covariance
     found = algorithm.standard(algorithm.directions(robot), loaded.full - bare.full, covariance)
-    if not found.phi[algorithm.MASS]:
+    if not np.any(found.phi):
         raise BadData("payload: both identifications are the same; give a log with the payload")
+    if not np.isfinite(found.covariance[algorithm.MASS, algorithm.MASS]):
+        raise BadData(_without_mass(found))
     return algorithm.in_frame(found, frame), name
+
+
+def _without_mass(found: algorithm.Standard) -> str:
+    """What is known of a payload whose mass is not: as of a wrist whose axes meet in one point."""
+    parts = [
+        f"{name} {found.phi[k]:.4g} {plus_minus(error)} kg m"
+        for name, k in zip(NAMES[1:4], algorithm.MOMENTS, strict=True)
+        if np.isfinite(error := float(np.sqrt(found.covariance[k, k])))
+    ]
+    known = f"; its mass times its centre, about the last axis, is {', '.join(parts)}"
+    return (
+        "payload: the motion does not tell its mass; use a motion that turns the last links "
+        f"against gravity, if the axes do not meet in one point{known if parts else ''}"
+    )
 
 
 def frame_of(robot: Robot, link: str | None, who: str) -> tuple[Frame, str]:
@@ -65,11 +81,6 @@ def table(found: Payload, of: Table, link: str) -> Table:
 
 def told(found: Payload, link: str) -> Iterator[str]:
     """What hangs there, what the motion does not tell, and whether a body can be like this."""
-    if not np.isfinite(found.errors[0]):
-        raise BadData(
-            "payload: the motion does not tell its mass; use a motion that turns the last links "
-            "against gravity"
-        )
     parts = [
         f"{name} {value:.4g} {plus_minus(error)} {unit}"
         for name, value, error, unit in zip(

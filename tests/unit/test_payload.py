@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pinocchio
@@ -19,8 +21,9 @@ from scarid_cli.algorithms.changes.payload import Payload, Standard, directions,
 from scarid_cli.algorithms.robots.physical import inertia_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.rigid import PINOCCHIO, Frame
+from scarid_cli.errors import BadData
 from scarid_cli.io.table import Metadata, Table
-from scarid_cli.stages.payload import table
+from scarid_cli.stages.payload import payload, table
 
 
 @pytest.fixture(scope="module")
@@ -76,6 +79,32 @@ def test_the_difference_of_base_parameters_tells_all_ten(arm: Path) -> None:
     np.testing.assert_allclose(
         np.linalg.inv(found.factor.T @ found.factor), wanted, rtol=1e-6, atol=1e-15
     )
+
+
+def test_of_a_wrist_whose_axes_meet_the_moments_are_told(tmp_path: Path) -> None:
+    """In one point, against which no mass has a lever; its moments are known as they are."""
+    links = "".join(
+        f'<link name="l{k}"><inertial><origin xyz="0.01 0.02 0.03"/><mass value="1"/><inertia '
+        f'ixx="0.01" iyy="0.012" izz="0.015" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+        f'<joint name="j{k}" type="revolute"><parent link="{f"l{k - 1}" if k > 1 else "base"}"/>'
+        f'<child link="l{k}"/><origin rpy="{turn} 0 0"/><axis xyz="0 0 1"/>'
+        f'<limit lower="-3" upper="3" effort="9" velocity="3"/></joint>'
+        for k, turn in ((1, 0.4), (2, 1.5708), (3, -1.5708))
+    )
+    path = tmp_path / "wrist.urdf"
+    path.write_text(f'<robot name="wrist"><link name="base"/>{links}</robot>')
+    robot = load(str(path))
+    phi = np.array([1e-3, 0, 0, 1e-3, 0, 1e-3, 0.0075, 0.005, 0.0125, 0.25])
+    known = 1e-10 * np.eye(len(robot.parameters))
+    bare = SimpleNamespace(robot=robot, full=robot.apriori, covariance=known)
+    loaded = SimpleNamespace(
+        robot=robot, full=robot.apriori + directions(robot) @ phi, covariance=known
+    )
+    told = r"x 0\.0075 .* kg m, y 0\.005 .* kg m, z 0\.0125 .* kg m"
+    with pytest.raises(BadData, match=told):
+        payload(cast("Any", bare), cast("Any", loaded), None)
+    with pytest.raises(BadData, match="both identifications are the same"):
+        payload(cast("Any", bare), cast("Any", bare), None)
 
 
 MADE = (

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from scarid_cli.algorithms.checks import gearing, mounting, scale, velocities, wiring
 from scarid_cli.algorithms.checks.finding import FAILED, OK, TORQUES, Finding
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.model import Samples, enough
+from scarid_cli.algorithms.inference.verdict import CAUSE
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
 
@@ -83,7 +86,8 @@ def _described(samples: Samples, robot: Robot) -> list[Finding]:
 def _scale(samples: Samples, robot: Robot) -> list[Finding]:
     """Torques in another unit, or all of them reversed.
 
-    That all friction is negative then is a reason of the verdict by itself.
+    That all friction is negative then is a reason of the verdict by itself. Torques of some joints
+    that are too large or small may be those of other joints, for which only `check` searches.
     """
     size = scale.scale_of(robot, samples)
     if size.reversed:
@@ -91,4 +95,6 @@ def _scale(samples: Samples, robot: Robot) -> list[Finding]:
         told = signed.fit.brakes or all(sign > 0 for sign in signed.case.signs[1])
         return [] if told else [wiring.signs(signed, robot)]
     found = scale.finding(robot, size)
+    if len(size.low or size.high) < len(robot.joints):
+        found = replace(found, advice=f"{found.advice}; {CAUSE}")
     return [found] if found.status != OK else []
