@@ -334,3 +334,14 @@ def test_a_heavy_arm_is_not_pulled_to_its_description(size: float, tmp_path: Pat
     robot = of_size(size, tmp_path)
     found = nearest(robot, 1.1 * robot.apriori, exact(robot, size))
     assert found.distance < 0.5
+
+
+def test_what_turns_with_two_joints_has_no_negative_inertia_or_friction() -> None:
+    """The motor of a coupling; without the bound a simulator refuses its armature."""
+    robot = load(str(Path(__file__).parents[2] / "samples/arm.toml"))
+    at = [i for i, p in enumerate(robot.parameters) if p.name in ("fvm2", "fsm2")]
+    theta, errors = robot.apriori.copy(), np.full(len(robot.parameters), 0.01)
+    theta[at] = -0.03
+    found, moved = uncorrelated(robot, theta, errors)
+    assert min(found.axes[name] for name in ("Iam2", "fvm2", "fsm2")) > -1e-6
+    np.testing.assert_allclose(moved[at], 3.0, atol=0.01)

@@ -47,7 +47,7 @@ YIELD = 1.0  # squared errors: by one standard deviation the zeros of dropped pa
 # the estimates, beyond what dropping them did
 NEGLIGIBLE = 1e-4  # errors: a dropped parameter that is smaller is zero
 CONFIDENCE = 0.95
-POSITIVE = re.compile(r"(Ia|fv|fs)\d+[+-]?")  # motor inertias and friction cannot be negative
+POSITIVE = re.compile(r"(Ia|fv|fs)m?\d+[+-]?")  # motor inertias and friction cannot be negative
 POWERS = {"kg m2": 2, "kg m": 1}  # of LENGTH in the units of inertial parameters
 
 
