@@ -15,7 +15,7 @@ from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.jsonio import lines_of, table_of_rows
 from scarid_cli.io.table import Table
 
-FIRST = re.compile(rb"(?:---\s*\n)?\s*[A-Za-z_]\w*:[ \t]*\r?\n[ \t]*(?:- \S|\w+:)")
+FIRST = re.compile(rb"(?:---\s*\n)?[A-Za-z_]\w*:[ \t]*\r?\n[ \t]*(?:- \S|\w+:)")
 PAIR = re.compile(r"(?P<indent> *)(?P<key>[A-Za-z_]\w*):(?:\s+(?P<value>.*))?")
 ITEM = re.compile(r" *- (?P<value>.*)")
 END = "---"
@@ -62,7 +62,7 @@ class _Message:
     def __init__(self, name: str) -> None:
         self.name = name
         self.values: dict[str, Any] = {}
-        self._open: list[tuple[int, dict[str, Any]]] = [(-1, self.values)]
+        self._open: list[tuple[int, dict[str, Any]]] = [(0, self.values)]
         self._key = ""
 
     def add(self, line: str, number: int) -> None:
@@ -85,13 +85,11 @@ class _Message:
 
     def _place(self, indent: int) -> None:
         """Open the object of the last key if the line is within it, or close those that end."""
-        if indent > self._open[-1][0] + 1 and self._key and self._open[-1][0] >= 0:
+        if indent > self._open[-1][0]:
             inner: dict[str, Any] = {}
             self._open[-1][1][self._key] = inner
             self._open.append((indent, inner))
-        elif self._open[-1][0] < 0:
-            self._open[-1] = (indent, self.values)
-        while len(self._open) > 1 and indent < self._open[-1][0]:
+        while indent < self._open[-1][0]:
             self._open.pop()
 
     def _set(self, key: str, value: str, number: int) -> None:

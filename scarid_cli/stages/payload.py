@@ -46,10 +46,11 @@ def _without_mass(found: algorithm.Standard) -> str:
         for name, k in zip(NAMES[1:4], algorithm.MOMENTS, strict=True)
         if np.isfinite(error := float(np.sqrt(found.covariance[k, k])))
     ]
-    known = f"; its mass times its centre, about the last axis, is {', '.join(parts)}"
+    known = f"; mass times centre, in the frame of the last axis: {', '.join(parts)}"
     return (
         "payload: the motion does not tell its mass; use a motion that turns the last links "
-        f"against gravity, if the axes do not meet in one point{known if parts else ''}"
+        "against gravity (no motion tells it where all axes meet in one point)"
+        f"{known if parts else ''}"
     )
 
 

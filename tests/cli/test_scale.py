@@ -37,3 +37,15 @@ def test_masses_that_are_a_little_off_make_nothing_doubtful(
 ) -> None:
     told = scaled(shell, robot, factor)
     assert "scarid identify: good: " in told, told
+
+
+def test_torques_of_one_joint_out_of_scale_point_to_what_else_it_may_be(shell: Shell) -> None:
+    """They may be those of another joint, for which `check` searches, and `identify` does not."""
+    robot = str(ROOT / "samples" / "arm.toml")
+    scaled(shell, robot, 1.0)
+    log = "awk -F, -v OFS=, 'NR > 1 { $5 *= 10 } 1' log.csv"
+    done = shell(f"{log} | scarid identify --robot {robot} -o p.parquet")
+    assert "scale: the torque of joint 2 is " in done.err
+    assert done.err.count("`scarid check LOG` looks for the cause") == 1
+    checked = shell(f"{log} | scarid check --robot {robot}")
+    assert "looks for the cause" not in checked.out + checked.err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -17,12 +18,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from unit.arms import seven_axes
 
+from scarid_cli.algorithms.changes.carried import Piece, Sums
 from scarid_cli.algorithms.changes.payload import Payload, Standard, directions, in_frame, standard
 from scarid_cli.algorithms.robots.physical import inertia_of
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.rigid import PINOCCHIO, Frame
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Metadata, Table
+from scarid_cli.stages.carried import Load, told
 from scarid_cli.stages.payload import payload, table
 
 
@@ -105,6 +108,16 @@ def test_of_a_wrist_whose_axes_meet_the_moments_are_told(tmp_path: Path) -> None
         payload(cast("Any", bare), cast("Any", loaded), None)
     with pytest.raises(BadData, match="both identifications are the same"):
         payload(cast("Any", bare), cast("Any", bare), None)
+
+
+def test_a_change_that_is_taken_back_says_so() -> None:
+    none = Sums.none(np.ones(10), 1)
+    first = Piece(37.27, 60.0, 39.27, 90, [none])
+    loads = [Load(np.array([mass, 0.0, 0.0, 0.0]), np.full(4, 0.01)) for mass in (0.0, 0.5)]
+    plain = "picked up 0.5 +- 0.028 kg at 37.27 s (suspected at 39.27 s)"
+    assert told(first, *loads) == plain
+    again = replace(first, misplaced=32.02)
+    assert told(again, *loads) == f"{plain}, not at 32.02 s as told before"
 
 
 MADE = (

@@ -208,21 +208,24 @@ def known_unit(text: str) -> str | None:
 
 def unit_in_name(column: str) -> tuple[str, str] | None:
     """From a name such as `q1 [deg]` or `time_ms` the name without the unit, and the unit."""
-    for form in (BRACKETS, SUFFIX):
-        match = form.fullmatch(column)
-        unit = known_unit(match["unit"]) if match else None
-        if match and unit:
-            return "t" if match["name"].lower() in TIMES else match["name"], unit
-    return None
+    match = _with_unit(column)
+    unit = known_unit(match["unit"]) if match else None
+    if not match or not unit:
+        return None
+    return "t" if match["name"].lower() in TIMES else match["name"], unit
 
 
 def element(column: str, k: int) -> str:
     """The name of the k-th element of an array; a unit in the name of the array stays behind it."""
-    for form in (BRACKETS, SUFFIX):
-        match = form.fullmatch(column)
-        if match and known_unit(match["unit"]):
-            return f"{match['name']}[{k}]{column[match.end('name') :]}"
-    return f"{column}[{k}]"
+    match = _with_unit(column)
+    end = match.end("name") if match else len(column)
+    return f"{column[:end]}[{k}]{column[end:]}"
+
+
+def _with_unit(column: str) -> re.Match[str] | None:
+    """The name and the unit in a name that states one."""
+    found = (form.fullmatch(column) for form in (BRACKETS, SUFFIX))
+    return next((match for match in found if match and known_unit(match["unit"])), None)
 
 
 def units_in_names(names: Sequence[str], renamed: dict[str, str]) -> dict[str, tuple[str, str]]:
