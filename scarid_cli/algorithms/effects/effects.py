@@ -235,8 +235,13 @@ class Trial:
         The columns of what is fitted are 0, and where something is, only those are there that may
         widen intervals. A low-pass that is not known exactly looks like a joint that yields.
         """
+        return self.products(self.rows.scales, self.secants)
+
+    @cached_property
+    def secants(self) -> dict[str, Array]:
+        """The columns (samples, joints, joints) of mismatches."""
         if self.model is None or not self.rows.order:
-            return self.products(self.rows.scales, {})
+            return {}
         joints = range(self.rows.y.shape[1])
         of = Gears(self.rows, self.model, self.estimates[: self.own])
         none = np.zeros_like(self.rows.y)
@@ -244,9 +249,7 @@ class Trial:
             name: [none if (name, j) in self.fitted else kind.secant(of, j) for j in joints]
             for name, kind in (MISMATCHES if self.bare else WIDESPREAD).items()
         }
-        return self.products(
-            self.rows.scales, {x: np.stack(each, axis=2) for x, each in columns.items()}
-        )
+        return {x: np.stack(each, axis=2) for x, each in columns.items()}
 
     def memories(self, plain: Solved) -> list[Effect]:
         """The effects of gaps, hysteresis and presliding, of the joints that are not fitted."""

@@ -7,7 +7,7 @@ the whole estimation, whose columns are those of the sizes found.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,8 +15,11 @@ from scarid_cli.algorithms.beyond.catalogue import MISMATCHES
 from scarid_cli.algorithms.beyond.gears import LatePosition, LateTorque
 from scarid_cli.algorithms.effects.effects import CERTAIN, Effect, Trial
 from scarid_cli.algorithms.effects.explanations import RARE, Explanation, Torques
+from scarid_cli.algorithms.regression.low_pass import LowPass
+from scarid_cli.algorithms.regression.rows import runs
 from scarid_cli.algorithms.uncertainty.jackknife import quantile
 from scarid_cli.algorithms.uncertainty.products import Products, jackknifed
+from scarid_cli.algorithms.uncertainty.reversals import away_from_reversals
 from scarid_cli.arrays import Array
 
 
@@ -40,6 +43,13 @@ def mismatches(trial: Trial, effects: Sequence[Effect]) -> tuple[Explanation, ..
     sets += further.chosen()
     found = {frozenset(pool[k] for k in own): own for own in sets if own}
     found = {x: own for x, own in found.items() if not _common(x, joints)}
+    if any(_steady(x) for x in found) and LowPass.behind(trial.rows):
+        slower = [_Further(products, pool, least) for products in _slower(trial)]
+        found = {
+            x: own
+            for x, own in found.items()
+            if not _steady(x) or any(further.clear(own) for further in slower)
+        }
     order = sorted(found, key=lambda x: further.left(found[x]))
     clearness = max((float(further.ratios(own).max()) for own in found.values()), default=0.0)
     cycles = trial.ripples.cycles
@@ -50,6 +60,37 @@ def _common(torques: Torques, joints: int) -> bool:
     """Whether all joints are late, which is the delay of the torques that is fitted anyway."""
     names = [name for name, _ in torques]
     return any(names.count(late) == joints for late in (LatePosition.NAME, LateTorque.NAME))
+
+
+def _steady(torques: Torques) -> bool:
+    """Whether they show at all times: what jumps has its place near reversals."""
+    return not any(MISMATCHES[name].JUMPS for name, _ in torques)
+
+
+def _slower(trial: Trial) -> list[Products]:
+    """The products behind a further low-pass of half the bandwidth, a period of it from reversals.
+
+    Near the bandwidth, noise of the positions and friction of joints that stick look like the
+    second derivative of a torque. Behind half of it, what noise is taken for is 100 times less.
+    They are whitened and not: a noise that was found without this low-pass may undo it.
+    """
+    rows, low_pass = trial.rows, LowPass.behind(trial.rows)
+    assert low_pass
+    assert rows.bandwidth
+    half = replace(low_pass, cutoff=0.5 * low_pass.cutoff)
+
+    def passed(x: Array) -> Array:
+        found = np.empty_like(x)
+        for run in runs(rows.at):
+            for j in range(x.shape[1]):
+                found[run, j] = half.over(x[run, j])
+        return found
+
+    columns = {name: passed(x) for name, x in trial.secants.items()}
+    slow = replace(trial, rows=replace(rows, W=passed(rows.W), y=passed(rows.y)))
+    plain = replace(slow, noise=None, places=np.arange(rows.samples))
+    scales = away_from_reversals(rows, 2.0 / rows.bandwidth)
+    return [x.products(scales, columns)[0] for x in ([slow, plain] if trial.noise else [plain])]
 
 
 @dataclass(frozen=True)
@@ -69,6 +110,10 @@ class _Further:
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = found.whole[own] / jackknifed(found.deviations[:, own])
         return np.asarray(np.nan_to_num(ratios))
+
+    def clear(self, columns: list[int]) -> bool:
+        """Whether all of them are above 0 by more than the least errors."""
+        return bool(np.all(self.ratios(columns) > self.least))
 
     def kept(self, columns: list[int]) -> list[int]:
         """Those of the columns that are left when the one that is least clear goes, as need be."""

@@ -31,10 +31,10 @@ class LowPass:
         return cls(cutoff * rows.h, rows.order) if cutoff * rows.h < 0.5 else None
 
     def over(self, x: Array) -> Array:
-        """x (samples of a run) behind the filter, as if its first and last value went on."""
-        edge = int(PERIODS / self.cutoff) + 1
+        """x (samples of a run, ...) behind the filter, as if its first and last value went on."""
+        edge, rest = int(PERIODS / self.cutoff) + 1, x.ndim - 1
         length = 1 << (len(x) + 2 * edge - 1).bit_length()
-        padded = np.pad(x, (edge, length - len(x) - edge), mode="edge")
+        padded = np.pad(x, [(edge, length - len(x) - edge), *[(0, 0)] * rest], mode="edge")
         gain = two_sided_gain(np.asarray(np.fft.rfftfreq(length)) / self.cutoff, self.order)
-        passed = np.fft.irfft(gain * np.fft.rfft(padded), length)
-        return np.asarray(passed[edge : edge + len(x)])
+        spectrum = gain.reshape(-1, *[1] * rest) * np.fft.rfft(padded, axis=0)
+        return np.asarray(np.fft.irfft(spectrum, length, axis=0)[edge : edge + len(x)])
