@@ -159,3 +159,18 @@ def test_joints_in_turn_are_in_the_order_of_the_robot(
         {"t": 0.0, "q1": np.pi, "q2": 2.0 * np.pi, "tau1": 1.0, "tau2": 2.0}
     )
     assert "put in the order base, elbow: the log has elbow, base" in done.err
+
+
+def test_joints_that_the_robot_does_not_name_keep_their_places_and_are_told(
+    shell: Shell, tmp_path: Path
+) -> None:
+    rows = [
+        f'{{"time": {0.01 * k:g}, "name": ["a", "b"], "position": [{k}, 1], "effort": [1, {k}]}}'
+        for k in range(9)
+    ]
+    (tmp_path / "log.jsonl").write_text("\n".join(rows) + "\n")
+    done = shell("scarid convert --joints base,b log.jsonl")
+    assert done.status == 0, done.err
+    assert (
+        "joints as the log names them: a, b (another order: --joints); as none is base" in done.err
+    )

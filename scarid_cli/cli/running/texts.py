@@ -19,6 +19,7 @@ from scarid_cli.stages.conversion.recorders import expanded, known_unit, recogni
 from scarid_cli.stages.conversion.seconds import clock_columns, with_one_clock
 from scarid_cli.stages.conversion.side import as_role, flattened, side_by_side, texts_flattened
 from scarid_cli.stages.conversion.wording import Unclear, in_short, in_words
+from scarid_cli.words import listed
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.robots.description import Robot
@@ -160,10 +161,13 @@ def _by_cells(
     if not cells or not columns:
         return columns
     found = in_their_order(columns, cells, order) if order else columns
-    note = f"joints as the log names them: {', '.join(cells)} (another: --joints)"
-    if order:
+    note = f"joints as the log names them: {', '.join(cells)} (another order: --joints)"
+    unknown = [joint for joint in order if joint not in cells]
+    if unknown:
+        note += f"; as none is {listed(unknown)} of the robot, only their places count"
+    elif order:
         note = f"put in the order {', '.join(order)}: the log has {', '.join(cells)}"
-    if (found != columns or not order) and note not in job.notes:
+    if (found != columns or unknown or not order) and note not in job.notes:
         job.notes.append(note)
     return found
 
