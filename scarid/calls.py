@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import inspect
-import io
 import keyword
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,19 +12,25 @@ from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
+import pyarrow as pa
+from pyarrow import compute as pc
 
 from scarid import tables
 from scarid.results import RequirementError, Text, result
 from scarid_cli.cli import COMMANDS as ALL
 from scarid_cli.cli import scarid as group
+from scarid_cli.cli.declaring.options import InputFile
 from scarid_cli.cli.running import chain
-from scarid_cli.errors import UsageFault
-from scarid_cli.io.table import Table
+from scarid_cli.errors import BAD_DATA, ScaridError, UsageFault
+from scarid_cli.io.table import Metadata, Table
 
 # What only a shell needs.
 LEFT_OUT = ("listen", "watch", "tee", "methods", "robot", "help", "completion", "plot")
 READ = "read"  # the name of `convert`, which reads any log
 COMMANDS = (READ, *(name for name in ALL if name not in LEFT_OUT))
+# What a log is like is what `check` tells: no error, but with `strict`.
+TOLD = {"check": BAD_DATA}
 # What the function itself decides.
 OWN = ("format", "output", "help", "as_json", "quiet", "verbose", "debug")
 
@@ -98,43 +103,71 @@ def run(command: click.Command, inputs: Sequence[Any], options: Mapping[str, Any
     """
     with tempfile.TemporaryDirectory(prefix="scarid-") as folder:
         given = Given(command, Path(folder))
-        source, words = given.inputs(inputs)
+        source, words = given.inputs(inputs, options)
         words = [*given.options(options), *words]
         messages: list[str] = []
         tables_out: list[Table] = []
 
         def taken(table: Table) -> None:
-            held = list(table.batches)
-            tables_out.append(replace(table, batches=iter(held)))
+            held = [_with_names(folder, batch) for batch in table.batches]
+            meta = Metadata.from_json(_without(folder, table.meta.to_json().decode()).encode())
+            tables_out.append(replace(table, batches=iter(held), meta=meta))
 
         has_table = writes_table(command)
+        printed: list[str] = []
         place = chain.Place(
             lambda line: messages.append(click.unstyle(line).replace("\n", " ")),
             source,
             taken if has_table else None,
+            shown=printed.append,
         )
-        printed = io.StringIO()
-        with _plain_errors(), contextlib.redirect_stdout(printed):
+        with _plain_errors(folder):
             status = chain.called(group, [command.name or "", *words], place)
+        said = [_without(folder, line) for line in messages]
         if has_table and tables_out:
-            found: Any = result(tables_out[0], messages)
+            found: Any = result(tables_out[0], said)
         else:
-            found = Text(given.text(printed.getvalue()), messages)
-    if status:
-        text = messages[-1] if messages else f"exit status {status}"
-        raise RequirementError(text, status, found)
+            found = Text(_without(folder, given.text("".join(printed))), said)
+    told = TOLD.get(command.name or "") == status and not options.get("strict")
+    if status and not told:
+        raise RequirementError(said[-1] if said else _worst(found), status, found)
     return found
 
 
+def _with_names(folder: str, batch: pa.RecordBatch) -> pa.RecordBatch:
+    """The same for the texts of a table."""
+    columns = [
+        pc.replace_substring(column, f"{folder}/", "")
+        if pa.types.is_string(column.type)
+        else column
+        for column in batch.columns
+    ]
+    return pa.RecordBatch.from_arrays(columns, schema=batch.schema)
+
+
+def _worst(found: Text) -> str:
+    """What a document of `check` says is worst."""
+    data = found.data
+    findings = [x for x in data["checks"] if x["status"] == data["status"]]
+    return "; ".join(f"{x['name']}: {x['figure']}" for x in findings)
+
+
+def _without(folder: str, text: str) -> str:
+    """The text with the names of tables in memory, and not the paths at which they stood."""
+    return text.replace(f"{folder}/", "")
+
+
 @contextlib.contextmanager
-def _plain_errors() -> Iterator[None]:
+def _plain_errors(folder: str) -> Iterator[None]:
     """Raise the error of a command as itself, and one of its words as UsageFault."""
     try:
         yield
     except chain.StageFailed as failure:
+        if isinstance(failure.error, ScaridError):
+            failure.error.args = tuple(_without(folder, str(x)) for x in failure.error.args)
         raise failure.error from None
     except click.UsageError as error:
-        raise UsageFault(error.format_message().rstrip(".")) from None
+        raise UsageFault(_without(folder, error.format_message().rstrip("."))) from None
 
 
 class Given:
@@ -148,7 +181,7 @@ class Given:
         self._folder = folder
         self._document: Path | None = None
 
-    def inputs(self, given: Sequence[Any]) -> tuple[Any, list[str]]:
+    def inputs(self, given: Sequence[Any], options: Mapping[str, Any]) -> tuple[Any, list[str]]:
         """The table in place of standard input, and the words for all inputs."""
         flat = [x for one in given for x in (one if isinstance(one, list | tuple) else [one])]
         argument = next((p for p in self._command.params if isinstance(p, click.Argument)), None)
@@ -161,7 +194,7 @@ class Given:
 
             return Handed(tables.table_of(flat[0])), ["--", "-"]
         if not flat:
-            if argument.name in ("file", "files"):
+            if argument.name in ("file", "files") and not options.get("fleet"):
                 raise UsageFault(f"{self._command.name}: give a table or the path of one")
             return None, []
         return None, ["--", *(self._file(x, f"table{i}") for i, x in enumerate(flat, 1))]
@@ -199,22 +232,28 @@ class Given:
         word = max(option.opts, key=len)
         if value is None:
             return []
+        if option.is_flag != isinstance(value, bool | np.bool_):
+            wanted = "True or False" if option.is_flag else "a value"
+            raise UsageFault(f"{self._command.name}: {name} is {value!r}; give {wanted}")
         if option.is_flag:
-            off = option.secondary_opts
-            return [word] if value else off[:1]
-        if isinstance(value, Mapping) and not tables.is_columns(value):
+            return [word] if value else option.secondary_opts[:1]
+        if isinstance(option.type, InputFile):
+            several = value if isinstance(value, list | tuple) else [value]
+            files = [self._file(x, f"{name}{i or ''}") for i, x in enumerate(several)]
+            return [w for file in files for w in (word, file)]
+        if isinstance(value, Mapping):
             pairs = [f"{key}={_plain(x)}" for key, x in value.items()]
             return [w for pair in pairs for w in (word, pair)]
+        if option.nargs > 1:
+            return [word, *(str(value).split() if isinstance(value, str) else map(_plain, value))]
         if option.multiple and isinstance(value, list | tuple):
             return [w for x in value for w in (word, _plain(x))]
-        if tables.is_table(value):
-            return [word, self._file(value, name)]
-        return [word, _plain(value)]
+        return [word, tables.path_of(_plain(value))]
 
     def _file(self, value: Any, name: str) -> str:
         """The path of a table, which is written to the folder if it is in memory."""
         if tables.is_path(value):
-            return str(value)
+            return tables.path_of(value)
         path = self._folder / f"{name}.parquet"
         tables.write(value, path)
         return str(path)

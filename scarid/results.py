@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
-from scarid_cli.errors import REQUIRED, ScaridError
+from scarid_cli.errors import REQUIRED, ScaridError, UsageFault
 from scarid_cli.io.table import Metadata, Table
 
 if TYPE_CHECKING:
@@ -44,6 +44,17 @@ class Log:
 
     def __len__(self) -> int:
         return int(self._table.num_rows)
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of the columns, as those of a frame."""
+        return iter(self.columns)
+
+    def __contains__(self, column: object) -> bool:
+        return column in self.columns
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """The table, for whatever reads Arrow: `pa.table(log)`, `polars.DataFrame(log)`."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
 
     @property
     def columns(self) -> list[str]:
@@ -128,7 +139,7 @@ class Judged(Log):
 
     def __getitem__(self, column: str) -> Any:
         """The values of a column, or the estimate of a parameter."""
-        if column not in self.columns and "parameter" in self.columns:
+        if column not in self.columns and {"parameter", "estimate"} <= set(self.columns):
             names = self._table.column("parameter").to_pylist()
             if column in names:
                 return self._table.column("estimate")[names.index(column)].as_py()
@@ -136,9 +147,42 @@ class Judged(Log):
 
     @property
     def estimates(self) -> dict[str, float]:
-        """The estimates by name."""
+        """The estimates by name, of parameters."""
+        if "estimate" not in self.columns:
+            raise KeyError(f"no estimates in a table of {self.meta.kind}; see its columns")
         names = self._table.column("parameter").to_pylist()
         return dict(zip(names, self._table.column("estimate").to_pylist(), strict=True))
+
+    @property
+    def covariance(self) -> np.ndarray[Any, Any]:
+        """The covariance of the estimates, in their order, by the noise of this log alone."""
+        import numpy as np
+
+        found = self.meta.extra.get("covariance")
+        if found is None:
+            raise KeyError(f"no covariance in this table of {self.meta.kind}")
+        return np.array(found, dtype=np.float64)
+
+    def torques(self, q: Any, dq: Any, ddq: Any) -> np.ndarray[Any, Any]:
+        """The torques [N m or N] that the identified robot needs for a motion.
+
+        q [rad or m], dq and ddq are (joints), or (samples, joints), as is the result. It has what
+        the parameters say, as `export` has it, and not what was fitted beside them.
+        """
+        import numpy as np
+
+        from scarid_cli.algorithms.robots.reading import load
+        from scarid_cli.stages.results.parameters import identified
+
+        found = identified(self._whole(), load(self.meta.robot or ""))
+        motion = [np.atleast_2d(np.asarray(x, dtype=np.float64)) for x in (q, dq, ddq)]
+        shape = (len(motion[0]), len(found.robot.joints))
+        if any(x.shape != shape for x in motion):
+            shapes = ", ".join(str(x.shape) for x in motion)
+            raise UsageFault(f"q, dq and ddq are {shapes}; give (samples, {shape[1]}) for each")
+        W = found.robot.regressor(*(np.ascontiguousarray(x.T) for x in motion))
+        tau = found.robot.torques(W, found.theta).T
+        return np.ascontiguousarray(tau[0] if np.ndim(q) == 1 else tau)
 
     def __repr__(self) -> str:
         said = f"\n{self.verdict}: {'; '.join(self.reasons)}" if self.verdict else ""
@@ -202,6 +246,10 @@ class Text(str):
         """Its lines."""
         return iter(self.splitlines())
 
+    def save(self, path: str | Path) -> None:
+        """Write it to a file."""
+        Path(path).write_text(self, encoding="utf-8")
+
 
 class RequirementError(ScaridError):
     """The log, or the result, is not as it should be, as `require` says; see `result`."""
@@ -211,6 +259,10 @@ class RequirementError(ScaridError):
     def __init__(self, message: str, status: int, found: Any) -> None:
         super().__init__(message)
         self.status, self.result = status, found
+
+    def __reduce__(self) -> tuple[type[RequirementError], tuple[str, int, Any]]:
+        """As a process pool hands it on."""
+        return type(self), (str(self), self.status, self.result)
 
 
 def result(table: Table, messages: Sequence[str]) -> Log:

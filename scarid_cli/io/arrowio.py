@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 import pyarrow as pa
@@ -190,7 +191,22 @@ def of_arrow(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) ->
         raise BadData(
             f"{name}: the name of a column is not UTF-8; rename it where the table is made"
         ) from None
-    return Table(name, plain, meta, (cast(batch, plain, name) for batch in _sound(name, batches)))
+    sound = _sound(name, batches)
+    if "t" in schema.names and pa.types.is_int64(schema.field("t").type):
+        first = next(sound, None)
+        sound = chain([first] if first else [], sound)
+        if first and _beyond_doubles(first.column(schema.get_field_index("t"))):
+            plain = plain.set(schema.get_field_index("t"), pa.field("t", pa.int64()))
+    return Table(name, plain, meta, (cast(batch, plain, name) for batch in sound))
+
+
+def _beyond_doubles(times: pa.Array) -> bool:
+    """Whether whole numbers are nanoseconds since 1970, of which a double is not exact."""
+    try:
+        times.cast(pa.float64())
+    except pa.ArrowInvalid:
+        return True
+    return False
 
 
 def _sound(name: str, batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:

@@ -186,7 +186,9 @@ def _cast(column: pa.Array, field: pa.Field, name: str) -> pa.Array:
             name,
             f"a value of type {column.type} that does not fit ({str(error).partition(chr(10))[0]})",
             expected=str(field.type),
-            remedy="convert the column where the table is made",
+            remedy="let `scarid convert` make it seconds since the start"
+            if field.name == "t"
+            else "convert the column where the table is made",
             column=field.name,
         ) from None
 

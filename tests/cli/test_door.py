@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import pickle
+import sys
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -187,3 +190,111 @@ def test_the_notebook_runs() -> None:
     assert names["checked"]["status"] == "ok"
     assert names["change"].verdict == "changed"
     assert any("joint 1" in reason for reason in names["change"].reasons)
+
+
+def test_threads_have_results_and_texts_of_their_own(log: scarid.Log) -> None:
+    """Nothing of them is printed, and what others print is left alone."""
+    alone = scarid.check(log)
+    before = sys.stdout
+    with ThreadPoolExecutor(3) as pool:
+        texts = list(pool.map(lambda _: scarid.check(log), range(6)))
+        found = list(pool.map(lambda _: scarid.identify(log).to_arrow(), range(3)))
+    assert texts == [alone] * 6
+    assert sys.stdout is before
+    assert found[0].equals(found[1])
+    assert found[0].equals(found[2])
+
+
+def test_an_error_goes_from_process_to_process(log: scarid.Log) -> None:
+    error = pickle.loads(pickle.dumps(scarid.RequirementError("not good", 3, log)))
+    assert (str(error), error.status) == ("not good", 3)
+    assert error.result.to_arrow().equals(log.to_arrow())
+
+
+def test_check_tells_of_a_bad_log_and_raises_if_strict(log: scarid.Log) -> None:
+    bad = {**{name: log[name] for name in log.columns}, "tau1": -log["tau1"]}
+    assert scarid.check(bad, robot="scara2").data["status"] == "failed"
+    with pytest.raises(scarid.RequirementError, match="joint 1"):
+        scarid.check(bad, robot="scara2", strict=True)
+
+
+def test_what_is_masked_is_missing(log: scarid.Log) -> None:
+    columns = {name: log[name] for name in log.columns}
+    columns["tau1"] = np.ma.masked_greater(columns["tau1"], np.quantile(columns["tau1"], 0.9))
+    with pytest.raises(scarid.BadData, match="tau1: found no value"):
+        scarid.identify(columns, robot="scara2")
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_columns_of_two_dimensions_are_numbered(log: scarid.Log, axis: int) -> None:
+    """Joints by rows, or rows by joints; a single number is no column."""
+    own = {x: np.stack([log[f"{x}1"], log[f"{x}2"]], axis) for x in ("q", "tau")}
+    found = scarid.filter({"t": log["t"], **own, "dt": 0.005}, cutoff=20)
+    plain = {name: log[name] for name in ("t", "q1", "q2", "tau1", "tau2")}
+    np.testing.assert_array_equal(found["q2"], scarid.filter(plain, cutoff=20)["q2"])
+
+
+@pytest.mark.parametrize("kind", ["named", "dates", "durations", "column", "nanoseconds"])
+def test_a_frame_has_its_time_in_the_index_or_as_durations(log: scarid.Log, kind: str) -> None:
+    pandas = pytest.importorskip("pandas")
+    frame = log.to_pandas()[["t", "q1", "q2", "tau1", "tau2"]]
+    t = frame["t"]
+    if kind == "named":
+        frame = frame.set_index("t")
+    elif kind in ("dates", "durations"):
+        make = pandas.to_datetime if kind == "dates" else pandas.to_timedelta
+        frame = frame.drop(columns="t").set_axis(make(t.to_numpy(), unit="s"))
+    elif kind == "column":
+        frame["t"] = pandas.to_timedelta(t, unit="s")
+    else:
+        frame["t"] = (1e9 * t).round().astype("int64") + 1_700_000_000_000_000_000
+    np.testing.assert_allclose(scarid.read(frame)["t"], log["t"], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda x: scarid.identify(x, all_rows="no"), "all_rows is 'no'; give True or False"),
+        (lambda x: scarid.identify(x, trace=True), "trace is True; give a value"),
+        (lambda _: scarid.identify({"t": [1, 2], "q1": [1]}), "dict: cannot become a table"),
+        (lambda _: scarid.identify({"t": [1, 2], "q1": [[1], [1, 2]]}), "cannot become a table"),
+        (lambda _: scarid.identify({"t": [1], "q": np.ones((1, 2, 3))}), "q has 3 dimensions"),
+    ],
+)
+def test_values_that_cannot_be_are_told(
+    log: scarid.Log, call: Callable[[Any], Any], words: str
+) -> None:
+    with pytest.raises(scarid.UsageFault, match=words):
+        call(log)
+
+
+def test_options_take_several_tables_settings_and_numbers(log: scarid.Log) -> None:
+    found, other = scarid.identify(log), scarid.identify(log, estimator="wls")
+    assert scarid.validate(log, parameters=[found, other]).verdict == "unchanged"
+    assert len(scarid.trajgen(segment=(1, 2))) > 2
+    noisy = {"torque-noise": [0.1, 0.2], "friction-drift": 0.1}
+    assert len(scarid.simulate(scarid.trajgen(duration=3), with_=noisy)) > 100
+
+
+def test_no_result_has_the_path_of_a_table_in_memory(log: scarid.Log) -> None:
+    found = scarid.identify(log)
+    robot = ROOT / "samples" / "robots" / "ur10e.toml"
+    assert "scarid-" not in scarid.compare(found, found)["table"][0]
+    with pytest.raises(scarid.ScaridError) as raised:
+        scarid.export(robot, parameters=found, to="c")
+    assert "scarid-" not in str(raised.value)
+
+
+def test_parameters_have_torques_and_a_covariance() -> None:
+    """Those of a single axis are a line of its parameters."""
+    log = scarid.simulate(scarid.trajgen(robot="emps", seed=1, duration=10), seed=1)
+    found = scarid.identify(log)
+    m, fv, fs, offset = (found.estimates[x] for x in ("M", "Fv", "Fc", "offset"))
+    motion = np.array([[0.1], [0.0]]), np.array([[0.2], [-0.3]]), np.array([[1.5], [2.0]])
+    expected = m * motion[2] + fv * motion[1] + fs * np.sign(motion[1]) + offset
+    np.testing.assert_allclose(found.torques(*motion), expected, rtol=1e-12)
+    np.testing.assert_array_equal(found.torques(*(x[1] for x in motion)), expected[1])
+    assert found.covariance.shape == (4, 4)
+    assert np.all(np.linalg.eigvalsh(found.covariance) > 0.0)
+    with pytest.raises(scarid.UsageFault, match="give .samples, 1"):
+        found.torques([1.0, 2.0], [0.0, 0.0], [0.0, 0.0])

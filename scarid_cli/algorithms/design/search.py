@@ -7,6 +7,7 @@ import signal
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from math import ceil
@@ -14,6 +15,7 @@ from multiprocessing import get_context
 
 from scarid_cli.algorithms.design.problem import Problem, Wanted
 from scarid_cli.algorithms.trajectories.curve import Curve
+from scarid_cli.errors import UsageFault
 
 REFINED_SHARE = 10  # one of so many starts is refined
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -39,7 +41,7 @@ def search(
     It depends on the wish, the seed and the number of starts alone.
     """
     began = time.monotonic()
-    with _one_thread_each(), _workers(wanted) as pool:
+    with _one_thread_each(), _started_well(), _workers(wanted) as pool:
         found = _started(pool, seed, starts, began + budget, progress)
         best = sorted(found, key=_value)[: ceil(len(found) / REFINED_SHARE)]
         refined = list(pool.map(_refine, [curve for _, curve in best]))
@@ -97,6 +99,18 @@ def _workers(wanted: Wanted) -> Iterator[ProcessPoolExecutor]:
         yield pool
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _started_well() -> Iterator[None]:
+    """Say what to do where the processes ended at once, as those of a script without a guard do."""
+    try:
+        yield
+    except BrokenProcessPool:
+        raise UsageFault(
+            "the processes of the search ended; a script of Python begins them only under "
+            '`if __name__ == "__main__":`'
+        ) from None
 
 
 @contextmanager

@@ -6,8 +6,6 @@ import json
 from collections import Counter
 from dataclasses import asdict
 
-import click
-
 from scarid_cli.algorithms.checks.finding import FAILED, STATUSES, WARNING, Finding, worst
 from scarid_cli.cli.running.job import Job
 from scarid_cli.cli.running.terminal import styled, wrapped
@@ -28,7 +26,7 @@ def run(job: Job, *, file: str, robot: str | None, strict: bool, fix: bool, as_j
         _print_fix(job, pipe, left)
     elif as_json:
         checks = [asdict(finding) for finding in findings]
-        click.echo(
+        job.show(
             json.dumps(
                 {
                     "robot": arm.name,
@@ -39,9 +37,9 @@ def run(job: Job, *, file: str, robot: str | None, strict: bool, fix: bool, as_j
             )
         )
     else:
-        _print(findings)
+        _print(job, findings)
         if pipe:
-            click.echo(f"mend: {pipe}")
+            job.show(f"mend: {pipe}")
     status = worst(left if fix else findings)
     return {FAILED: BAD_DATA, WARNING: WARNED if strict else OK}.get(status, OK)
 
@@ -49,21 +47,21 @@ def run(job: Job, *, file: str, robot: str | None, strict: bool, fix: bool, as_j
 def _print_fix(job: Job, pipe: str, left: list[Finding]) -> None:
     """The pipe, and on standard error what it leaves."""
     if pipe:
-        click.echo(pipe)
+        job.show(pipe)
     for finding in left:
         job.say(f"not mended: {finding.text}")
     if not pipe and not left:
         job.say("nothing to mend")
 
 
-def _print(findings: list[Finding]) -> None:
+def _print(job: Job, findings: list[Finding]) -> None:
     """A line for each finding, its advice below it, and the count."""
     width = max(len(finding.name) for finding in findings)
     for finding in findings:
         start = f"{styled(f'{finding.status:<7}', finding.status)}  {finding.name:<{width}}  "
-        click.echo(wrapped(start, printable(finding.figure), 11 + width))
+        job.show(wrapped(start, printable(finding.figure), 11 + width))
         if finding.advice:
             advice = printable(f"-> {finding.advice}")
-            click.echo(wrapped(" " * (11 + width), advice, 14 + width))
+            job.show(wrapped(" " * (11 + width), advice, 14 + width))
     counts = Counter(finding.status for finding in findings)
-    click.echo(", ".join(f"{counts[status]} {status}" for status in STATUSES))
+    job.show(", ".join(f"{counts[status]} {status}" for status in STATUSES))

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 
-import click
-
 from scarid_cli.cli.declaring.options import SELECTION
 from scarid_cli.cli.running.command_line import was_given
 from scarid_cli.cli.running.job import Job
@@ -23,7 +21,7 @@ def run(job: Job, *, file: str, as_json: bool) -> None:
     if extension is None:
         found = described(job.within(job.read_source(source)))
         if as_json:
-            click.echo(json.dumps(found.document))
+            job.show(json.dumps(found.document))
             return
         lines = found.lines
     else:
@@ -34,4 +32,4 @@ def run(job: Job, *, file: str, as_json: bool) -> None:
             raise UsageFault(f"{file}: {what} tables, not recordings; leave it out")
         lines = topic_lines(file, source, extension)
     for line in lines:
-        click.echo(wrapped("", printable(line), 0, hanging=10))
+        job.show(wrapped("", printable(line), 0, hanging=10))

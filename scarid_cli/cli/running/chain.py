@@ -43,13 +43,14 @@ class StageFailed(Exception):
 class Place:
     """What a stage has for neighbours: `source` before it, if any, and the one `following`.
 
-    `read` are the files that the stages before it read.
+    `read` are the files that the stages before it read, and `shown` takes what it would print.
     """
 
     say: Callable[[str], None]
     source: ByteSource | None = None
     following: Callable[[Table], None] | None = None
     read: tuple[str, ...] = ()
+    shown: Callable[[str], object] | None = None
 
 
 def split(words: Sequence[str]) -> list[list[str]]:

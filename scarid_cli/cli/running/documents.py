@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -26,6 +25,7 @@ class Documents:
     page: Document | None
     markdown: Document | None
     text: Document | None
+    show: Callable[[str, str], object]
 
     @classmethod
     def opened(
@@ -34,7 +34,7 @@ class Documents:
         """At the paths of --html, --markdown and --output; UsageFault if the first two are one."""
         if html and html == markdown:
             raise UsageFault(f"--html and --markdown both go to {html}; give two files")
-        return cls(job.side_text(html), job.side_text(markdown), job.side_text(place))
+        return cls(job.side_text(html), job.side_text(markdown), job.side_text(place), job.show)
 
     def write(self, title: str, sections: Sequence[Section]) -> None:
         """Write Markdown and text; the latter to standard output, unless another one goes there."""
@@ -43,5 +43,4 @@ class Documents:
         if self.text:
             self.text.write(text.terminal(sections, plain=True))
         elif "-" not in (document.path for document in (self.page, self.markdown) if document):
-            sys.stdout.write(text.terminal(sections))
-            sys.stdout.flush()
+            self.show(text.terminal(sections), "")

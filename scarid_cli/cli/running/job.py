@@ -319,7 +319,14 @@ class Job:
             self.out.take(replace(table, batches=iter(batches)))
         self._tell_of_reading()
         text = json.dumps(document(replace(table, batches=iter(batches))), allow_nan=False)
-        click.echo(text)
+        self.show(text)
+
+    def show(self, text: str, end: str = "\n") -> None:
+        """Print on standard output, or hand the text to who called the command."""
+        if self.place.shown:
+            self.place.shown(f"{text}{end}")
+        else:
+            click.echo(f"{text}{end}", nl=False)
 
     def write(self, table: Table, output: Output | None = None) -> None:
         """Send a table to an output, by default the command's, and report omitted segments."""
