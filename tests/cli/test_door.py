@@ -296,5 +296,5 @@ def test_parameters_have_torques_and_a_covariance() -> None:
     np.testing.assert_array_equal(found.torques(*(x[1] for x in motion)), expected[1])
     assert found.covariance.shape == (4, 4)
     assert np.all(np.linalg.eigvalsh(found.covariance) > 0.0)
-    with pytest.raises(scarid.UsageFault, match="give .samples, 1"):
+    with pytest.raises(scarid.UsageFault, match=r"give \(samples, 1\)"):
         found.torques([1.0, 2.0], [0.0, 0.0], [0.0, 0.0])
