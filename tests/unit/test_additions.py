@@ -135,7 +135,7 @@ def test_noise_is_seldom_explained() -> None:
     most = len(found) // 25
     assert sum(bool(one.explanations) for one in found) <= most
     ripples = [effect for one in found for effect in one.effects if effect.name == Ripple.NAME]
-    assert len(ripples) == len(found)
+    assert len(ripples) >= len(found) - most  # one that does not show away from reversals is none
     assert sum(effect.significant() for effect in ripples) <= most  # of hundreds that are tried
 
 

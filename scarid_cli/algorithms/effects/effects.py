@@ -217,6 +217,11 @@ class Trial:
     @cached_property
     def beyond(self) -> tuple[Products, dict[str, list[int]]]:
         """The products with what torques may have beyond the model, and the places of those."""
+        return self.products(self.rows.scales, self._further)
+
+    @cached_property
+    def _further(self) -> dict[str, Array]:
+        """The columns of what torques may have beyond the model."""
         signals = replace(
             Signals.of(self.rows, self.model, self.estimates),
             ripples=self.ripples.cycles,
@@ -225,8 +230,17 @@ class Trial:
         leans = any(name == Tilt.NAME for name, _ in self.fitted)
         kinds = (kind for name, kind in TORQUES.items() if not (leans and name == Tilt.NAME))
         found = {kind.NAME: kind.columns(signals) for kind in kinds}
-        further = {name: columns for name, columns in found.items() if columns is not None}
-        return self.products(self.rows.scales, further)
+        return {name: columns for name, columns in found.items() if columns is not None}
+
+    @cached_property
+    def _away(self) -> Array:
+        """The scales of rows away from reversals."""
+        return away_from_reversals(self.rows)
+
+    @cached_property
+    def _beyond_away(self) -> tuple[Products, dict[str, list[int]]]:
+        """The same products of those rows."""
+        return self.products(self._away, self._further)
 
     @cached_property
     def mismatches(self) -> tuple[Products, dict[str, list[int]]]:
@@ -297,14 +311,34 @@ class Trial:
         """The effects of all alternatives that the rows determine."""
         if self.plain is None:
             return ()
-        away = away_from_reversals(self.rows)
-        solved = self.products(away, {})[0].solved([])
+        solved = self.products(self._away, {})[0].solved([])
         same = [(self.rows.scales, self.plain)]
-        found = self.beside(*self.beyond, self.plain, self.plain)
+        found = self.among_torques(self.plain)
         if solved:
             found.append(self.effect(Reversals.NAME, self.plain, self.plain, solved))
-            same.insert(0, (away, solved))
+            same.insert(0, (self._away, solved))
         return (*found, *self.memories(self.plain), *self.signals(self.plain, same))
+
+    def among_torques(self, without: Solved, given: Sequence[int] = ()) -> list[Effect]:
+        """The effects of what torques may have beyond the model, and the columns that are given.
+
+        `without` is the fit of these. A ripple must show away from reversals, too: what a low-pass
+        leaves of friction there comes back at the same positions where a motion is periodic.
+        """
+        found = self.beside(*self.beyond, without, without, given)
+        return [x for x in found if x.name != Ripple.NAME or self._ripples_away(x, given)]
+
+    def _ripples_away(self, effect: Effect, given: Sequence[int]) -> bool:
+        """Whether a ripple, if it is significant, is so away from reversals as well."""
+        if not effect.significant():
+            return True
+        products, places = self._beyond_away
+        kept = products.independent([*given])
+        without = products.solved(kept)
+        if without is None:
+            return True
+        own = {Ripple.NAME: places[Ripple.NAME]}
+        return any(x.significant() for x in self.beside(products, own, without, without, kept))
 
     def errors_with_curves(self, joints: Collection[int]) -> Array:
         """The errors (own) if the friction of these joints (from 0) is any curve of the speed.

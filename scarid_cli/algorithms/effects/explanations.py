@@ -84,7 +84,7 @@ def _beside(trial: Trial, torques: Torques) -> list[Effect] | None:
     columns = [k for name, j in sorted(torques) for k in places[name][j::joints]]
     given = products.independent(columns)
     wider = products.solved(given)
-    return trial.beside(products, places, wider, wider, given) if wider else None
+    return trial.among_torques(wider, given) if wider else None
 
 
 def _leaning(trial: Trial) -> list[int]:

@@ -26,7 +26,8 @@ class Rows:
     acceleration and torque that the rows were computed from, and `reference` (2, joints, samples)
     the reference position and velocity, if the log has them. `bandwidth` [Hz] is that of the soft
     sensor behind them, None if it is not known, and `order` that of the Butterworth filter which
-    this is, run forwards and backwards, None if it is another.
+    this is, run forwards and backwards, None if it is another. `noise` (joints, or none if it is
+    not known) is the standard deviation of that of the velocities [rad/s or m/s].
     """
 
     W: Array
@@ -38,6 +39,7 @@ class Rows:
     reference: Array | None = None
     bandwidth: float | None = None
     order: int | None = None
+    noise: tuple[float, ...] = ()
 
     @property
     def samples(self) -> int:
@@ -55,6 +57,7 @@ class Rows:
             None if self.reference is None else self.reference[:, :, chosen],
             self.bandwidth,
             self.order,
+            self.noise,
         )
 
 
@@ -149,6 +152,7 @@ def joined(parts: Sequence[Rows]) -> Rows:
         np.concatenate(references, axis=2) if len(references) == len(parts) else None,
         parts[0].bandwidth,
         parts[0].order,
+        parts[0].noise,
     )
 
 

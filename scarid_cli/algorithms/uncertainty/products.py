@@ -103,6 +103,13 @@ class Products:
                 rest -= np.outer(rest[:, i], rest[i]) / rest[i, i]
         return kept
 
+    def left_of(self, column: int) -> float:
+        """The square of what W leaves of a further column; 0 if W is not determined."""
+        if self.eliminated is None or not self.scale[column]:
+            return 0.0
+        i = column - self.parameters
+        return float(self.eliminated.rest[0][i, i] / self.scale[column] ** 2)
+
     def solved(self, further: list[int]) -> Solved | None:
         """The fit of W and of these independent columns; None if they are not determined."""
         if self.eliminated is None:

@@ -89,6 +89,7 @@ def _parts(
     signals = FOLLOWED if estimator and estimator.FOLLOWS else MEASURED
     known = set(of_joints(len(robot.joints), *REFERENCE)) <= set(table.columns)
     bandwidth, order = _low_pass(table, treatment)
+    noise = tuple(table.meta.extra.get("velocity_noise") or ())
     start, end = treatment.skip
     for first, kept in _after(start, settled_runs(_without_last(end, table.batches))):
         at = seen + first + gaps.before(kept) + np.arange(kept.num_rows)
@@ -99,7 +100,7 @@ def _parts(
         rows = bare(motion, at, table.period, reference)
         rows = rows if treatment.align and not treatment.decimate else regressed(rows, robot)
         rows = rows if slow is None else without_slow(rows, slow)
-        yield kept, replace(rows, bandwidth=bandwidth, order=order)
+        yield kept, replace(rows, bandwidth=bandwidth, order=order, noise=noise)
 
 
 def _low_pass(table: Table, treatment: Treatment) -> tuple[float | None, int | None]:

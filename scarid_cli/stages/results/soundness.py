@@ -79,6 +79,7 @@ def _rows(rows: Rows, joints: int, parameters: int) -> None:
     _hold(rows.h > 0.0 and int(rows.at[-1]) < MOST)
     _hold(rows.bandwidth is None or rows.bandwidth > 0.0)
     _hold(rows.order is None or rows.order > 0)
+    _hold(len(rows.noise) in (0, joints) and all(0.0 <= x < LARGEST for x in rows.noise))
 
 
 def _blocks(blocks: Blocks, joints: int, parameters: int) -> None:
