@@ -66,8 +66,7 @@ def test_a_rigid_axis_is_not_elastic(
 ) -> None:
     """Its encoder shakes the accelerations, and friction what is near a reversal.
 
-    Before rows were asked behind half the bandwidth, 11 of 12 and 9 of 10 such logs were said to be
-    elastic.
+    Before that was asked, 11 of 12 logs of either kind were said to be elastic.
     """
     robot, path, logs = tmp_path / "axis.urdf", tmp_path / "log.csv", seeds(3, 12)
     robot.write_text(URDF.format(mass=MASS))

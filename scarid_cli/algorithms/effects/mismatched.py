@@ -22,7 +22,7 @@ from scarid_cli.algorithms.uncertainty.products import Products, jackknifed
 from scarid_cli.algorithms.uncertainty.reversals import away_from_reversals
 from scarid_cli.arrays import Array
 
-# The part of a column that may be noise of the positions: it is .7 where steps of 20 urad
+# The part of a column that may be noise of the positions: it is .7 where steps of 20 um
 # were taken for an elastic joint, and .1 where one is (docs/design/verdict.md).
 NOISE = 0.3
 
