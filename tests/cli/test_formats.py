@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from conftest import ROOT, Result, long
+from conftest import ALL, ROOT, Result, long
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -50,7 +50,7 @@ IN_A_SHELL = [
     pytest.param(
         "scarid differentiate LOG | scarid identify -q --all-rows --estimator ls", marks=long
     ),
-    CHAINS[-3],
+    pytest.param(CHAINS[-3], marks=long),
     CHAINS[-1],
 ]
 
@@ -91,9 +91,11 @@ def printed(chain: str, log: Path | str, source: IO[bytes]) -> bytes:
 def test_every_format_and_way_in_gives_the_same_bytes(
     chain: str, logs: list[Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    other = 2 + CHAINS.index(chain) % (len(logs) - 2)  # by turns, as a log in any format is read
+    own = logs if ALL else [logs[0], logs[other]]
     chain = chain.replace("$SAMPLES", str(SAMPLE.parent))
     with Path(os.devnull).open("rb") as nothing, logs[1].open("rb") as file:
-        found = [printed(chain, log, nothing) for log in logs]
+        found = [printed(chain, log, nothing) for log in own]
         found.append(printed(chain, "", file))
         with subprocess.Popen(["cat", logs[1]], stdout=subprocess.PIPE) as cat:
             assert cat.stdout

@@ -13,13 +13,13 @@ from memory import SCARID, measured, peak, stages
 def test_memory_does_not_grow_with_the_log(name: str, tmp_path: Path) -> None:
     words = stages(tmp_path)[name]
     short, _ = peak(words, 50_000)
-    long, _ = peak(words, len(seeds(400_000, 1_000_000)))
+    long, _ = peak(words, len(seeds(250_000, 1_000_000)))
     assert long < 1.1 * short
 
 
 def test_memory_of_stages_in_one_process_does_not_grow_with_the_log() -> None:
     chain = ["filter", "then", "differentiate", "then", "identify", "-q"]
-    assert peak(chain, len(seeds(300_000, 500_000)))[0] < 1.1 * peak(chain, 50_000)[0]
+    assert peak(chain, len(seeds(200_000, 500_000)))[0] < 1.1 * peak(chain, 50_000)[0]
 
 
 def test_memory_of_the_simulator_does_not_grow_with_a_standstill() -> None:

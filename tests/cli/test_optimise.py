@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from conftest import Result, refused
+from conftest import Result, long, refused
 
 from scarid_cli.algorithms.design.aims import AIMS
 from scarid_cli.algorithms.robots.reading import load
@@ -86,7 +86,7 @@ def test_torques_limit_the_motion_where_they_are_small(
     assert "torque of joint 1" in result.err
 
 
-@pytest.mark.parametrize("excitation", ["spline", "fourier"])
+@pytest.mark.parametrize("excitation", ["spline", pytest.param("fourier", marks=long)])
 def test_the_same_seed_and_number_of_starts_give_the_same_bytes(
     excitation: str, scarid: Run, tmp_path: Path
 ) -> None:

@@ -22,7 +22,7 @@ def scaled(shell: Shell, robot: str, factor: float) -> str:
     return done.err
 
 
-@pytest.mark.parametrize("factor", [0.03, 0.1, 0.3, 3.0, 10.0, 30.0])
+@pytest.mark.parametrize("factor", [0.03, 0.3, 3.0, 30.0])
 @pytest.mark.parametrize("robot", MADE, ids=["planar2-gravity", "arm"])
 def test_torques_in_another_unit_are_never_good(robot: str, factor: float, shell: Shell) -> None:
     told = scaled(shell, robot, factor)

@@ -87,7 +87,7 @@ STAGES: dict[str, Stage] = {
 
 @pytest.mark.parametrize("name", STAGES)
 @given(sizes=SIZES)
-@settings(max_examples=len(seeds(4, 8)), deadline=None)
+@settings(max_examples=len(seeds(2, 8)), deadline=None)
 def test_a_stage_gives_the_same_bits_however_its_rows_arrive(name: str, sizes: list[int]) -> None:
     assert collected(STAGES[name](table(source_of(name), sizes))).equals(at_once(name))
 
@@ -114,7 +114,7 @@ def at_once(name: str) -> pa.Table:
 
 
 @given(sizes=SIZES)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=len(seeds(4, 8)), deadline=None)
 def test_a_trace_has_the_same_bits_however_its_rows_arrive(sizes: list[int]) -> None:
     def trace(cuts: list[int]) -> Kept:
         kept = Kept()

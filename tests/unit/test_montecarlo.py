@@ -13,7 +13,7 @@ from verdicts import CONDITIONS, motion
 
 from scarid_cli.algorithms.choices.registry import DIFFERENTIATORS
 
-RUNS = [500 + seed for seed in seeds(12, 30)]
+RUNS = [500 + seed for seed in seeds(8, 30)]
 
 
 def test_the_stated_intervals_contain_the_truth_and_those_of_white_residuals_do_not() -> None:

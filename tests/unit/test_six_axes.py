@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import tilts
 from conditions import CONDITIONS, UNSEEN, log
-from conftest import seeds
+from conftest import long, seeds
 from gauntlet import blind_of
 
 pinocchio = pytest.importorskip("pinocchio")
@@ -52,7 +52,7 @@ def test_gravity_keeps_its_size() -> None:
 
 
 @pytest.mark.parametrize("seed", seeds(1, 4))
-@pytest.mark.parametrize("degrees", [2.0, 8.0])
+@pytest.mark.parametrize("degrees", [pytest.param(2.0, marks=long), 8.0])
 def test_the_estimates_are_those_of_the_upright_robot(degrees: float, seed: int) -> None:
     found = tilts.case(degrees, seed, 15.0)
     assert found.named

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import long
 from unit.support import PERIOD
 
 from scarid_cli.algorithms.choices.ranges import Range
@@ -66,7 +67,11 @@ def test_a_range_in_samples_gives_whole_numbers(step: int) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["p2smd", "2smd", "levant", "high-gain", "savgol-end", "filtering", "tracking"]
+    "name",
+    [
+        *("p2smd", "2smd", "high-gain", "savgol-end"),
+        *(pytest.param(name, marks=long) for name in ("levant", "filtering", "tracking")),
+    ],
 )
 def test_a_smoother_judges_nearly_as_well_as_the_truth(name: str) -> None:
     """The settings it chooses are at most 15 % worse than those that the truth would choose."""
