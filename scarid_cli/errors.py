@@ -1,5 +1,12 @@
 """The failures that a command reports, each with its documented exit status."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 OK = 0
 BUG = 1
 WARNED = 1  # of `check --strict`
@@ -33,6 +40,17 @@ class BadData(ScaridError):
 
 class TooShort(BadData):
     """A record, or a segment of it, has fewer rows than the method needs."""
+
+
+class ForeignLog(BadData):
+    """A log, of the kind that `what` says, which `scarid convert` reads, with these `words`."""
+
+    def __init__(self, name: str, what: str = "", words: Sequence[str] = ()) -> None:
+        import shlex  # only now: every command imports this module
+
+        self.name, self.what = name, what
+        convert = " ".join(["scarid convert", *words, shlex.quote(name), "-o log.parquet"])
+        super().__init__(f"{name}: {f'{what}; ' if what else ''}convert it first: `{convert}`")
 
 
 class OutputFailure(ScaridError):

@@ -13,7 +13,7 @@ from itertools import chain
 import pyarrow as pa
 import pyarrow.csv as pacsv
 
-from scarid_cli.errors import BadData, bad_data, cut_short
+from scarid_cli.errors import BadData, ForeignLog, bad_data, cut_short
 from scarid_cli.io.bytesource import ByteSource, require_moderate_row
 from scarid_cli.io.carried import Carried, facts_of
 from scarid_cli.io.cells import NUMERIC, csv_text
@@ -73,8 +73,7 @@ def _not_a_table(name: str, start: bytes) -> BadData:
     from scarid_cli.io.foreign import ARCHIVES
 
     if name.lower().endswith((*ARCHIVES, *BEGINNINGS.values())):
-        convert = f"scarid convert {shlex.quote(name)} -o log.parquet"
-        return BadData(f"{name}: convert it first: `{convert}`")
+        return ForeignLog(name)
     known = (text for mark, text in OTHERS.items() if start.startswith(mark))
     return BadData(f"{name}: {next(known, 'neither CSV nor Parquet nor Arrow; is it a table?')}")
 
@@ -83,8 +82,7 @@ def _refuse_documents(header: bytes, name: str) -> None:
     """Refuse JSON, and the YAML of printed messages, whose first line is a key."""
     json = header.startswith(JSON) or header.strip() in (b"{", b"[")
     if json or KEY.fullmatch(header.strip()):
-        convert = f"scarid convert {shlex.quote(name)} -o log.parquet"
-        raise BadData(f"{name}: {'JSON' if json else 'YAML'}; convert it first: `{convert}`")
+        raise ForeignLog(name, "JSON" if json else "YAML")
 
 
 def _table(source: ByteSource) -> Table:

@@ -20,8 +20,10 @@ from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
 from scarid_cli.stages.payload import frame_of
+from scarid_cli.stages.results.parameters import GAINS
 from scarid_cli.stages.results.products import products_of
 
+CHANGED, CERTAINLY = 0.02, 6.0  # of a gain, and standard errors, by which it changed between logs
 LEVEL = 0.05  # probability of calling any of the joints wrong if none is
 
 
@@ -68,6 +70,7 @@ def load_in(
 
 def gains(bare: Table, loaded: Table, robot: Robot, load: Load) -> Told:
     """The gains, from the tables of parameters of the bare robot and of the loaded one."""
+    _require_same_gains(bare, loaded)
     shared = Model(robot, list(range(len(robot.names)))).transmits
     one, other = products_of(bare, robot), products_of(loaded, robot)
     found = with_load(one, other, directions(robot), shared, load)
@@ -78,6 +81,22 @@ def gains(bare: Table, loaded: Table, robot: Robot, load: Load) -> Told:
             "against gravity, with and without the load, or state its centre as well (--centre)"
         )
     return told
+
+
+def _require_same_gains(bare: Table, loaded: Table) -> None:
+    """Refuse logs between which a gain changed: what they say together is of neither."""
+    one, other = (table.meta.extra.get(GAINS) or {} for table in (bare, loaded))
+    if one.keys() != other.keys():  # relative to another joint
+        return
+    for joint, (factor, error) in one.items():
+        ratio = other[joint][0] / factor
+        known = float(np.hypot(error / factor, other[joint][1] / other[joint][0]))
+        if abs(np.log(ratio)) > max(CHANGED, CERTAINLY * known):
+            raise BadData(
+                f"gains: with the load, the torque of joint {joint} is {ratio:.3g} times what it "
+                "was without it, beside those of others: a gain changed between the logs; "
+                "take both with the same drives, units and settings"
+            )
 
 
 def _constants(robot: Robot) -> Array:

@@ -84,7 +84,8 @@ def test_a_file_that_only_convert_reads_names_it(name: str, shell: Shell, tmp_pa
     (tmp_path / name).write_bytes(b"\0" * 200)
     result = shell(f"scarid identify --robot scara2 '{name}'")
     quoted = name if name != "a log.MCAP" else f"'{name}'"
-    refused(result, 65, f"{name}: convert it first: `scarid convert {quoted} -o log.parquet`")
+    advice = f"{name}: convert it first: `scarid convert --robot scara2 {quoted} -o log.parquet`"
+    refused(result, 65, advice)
 
 
 @pytest.mark.parametrize("text", ['{"t": 0.0, "q1": 1.0}\n', '[\n  {"t": 0.0}\n]\n'])

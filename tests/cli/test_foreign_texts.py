@@ -264,6 +264,7 @@ LACKING = {
         "--map t=time --map 'q*=rob1_*' --map 'tau*=torque_rob1_*'",
     "Time,A1,A2,MomentA1,MomentA2": "--map t=Time --map 'q*=A*' --map 'tau*=MomentA*'",
     "time,q1,q2,u1,u2": "no torques: perhaps --map 'tau*=u*'",
+    "time,qpos1,qpos2,ctrl1,ctrl2": "no torques: perhaps --map 'tau*=ctrl*'",
     "time,q1,q2,temp1,temp2": "no torques\n",
     "a,b,c,d,e": "as in --map q1=a",
 }  # fmt: skip

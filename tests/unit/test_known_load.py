@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import Result
 from scipy.optimize import least_squares
 
 from scarid_cli.algorithms.changes.known_load import (
@@ -182,3 +184,18 @@ def test_errors_grow_with_the_inflation_by_autocorrelated_noise() -> None:
     four = replace(one, products=replace(one.products, inflation=4.0))
     narrow, wide = (alone(x, 1e3, {1, 2}) for x in (one, four))
     assert wide.errors[0] == pytest.approx(2.0 * narrow.errors[0], rel=1e-6)
+
+
+def test_a_gain_that_changed_between_the_logs_is_refused(shell: Callable[..., Result]) -> None:
+    """Of neither log is it what both say together."""
+    made = shell(
+        "export SCARID_ROBOT=$SAMPLES/arm.toml;"
+        " scarid trajgen -q --seed 3 --duration 8 -o motion.parquet;"
+        " scarid simulate -q --seed 1 motion.parquet | scarid identify -q -o bare.parquet;"
+        " scarid simulate -q --seed 2 --with torque-constant-error=0.2,0"
+        " --with payload=0.5,0.05,0,0,0,0,0,0,0,0,0 motion.parquet -o loaded.parquet"
+    )
+    assert made.status == 0, made.err
+    done = shell("scarid gains -q --parameters bare.parquet --mass 0.5 loaded.parquet")
+    assert done.status == 65
+    assert "a gain changed between the logs" in done.err

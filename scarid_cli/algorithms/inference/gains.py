@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import ceil, log10
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ from scarid_cli.algorithms.beyond.catalogue import TORQUES
 from scarid_cli.algorithms.beyond.torques import RelativeGain
 from scarid_cli.algorithms.effects.effects import CERTAIN, Effect
 from scarid_cli.arrays import Array
-from scarid_cli.interval import plus_minus
+from scarid_cli.interval import HALF, plus_minus
 
 if TYPE_CHECKING:
     from scarid_cli.algorithms.inference.diagnostics import Diagnostics
@@ -153,10 +154,17 @@ def widening(diagnostics: Diagnostics, own: int) -> tuple[Array, Array] | None:
     return np.sqrt(np.maximum(rest, 0.0)), effect.direction(diagnostics.scatter[:own])
 
 
+def _as_known(gain: Gain) -> str:
+    """The factor with three digits, or as many as its interval has: 1.0004 beside +- 0.0003."""
+    half = HALF * gain.error
+    digits = 3 if half > 0.005 else 1 + min(ceil(-log10(max(half, 1e-6))), 6)
+    return f"{gain.factor:.{digits}g}"
+
+
 def told(gains: Sequence[Gain]) -> str:
     """`the torque of joint 2 is 1.37 +- 0.03 times what those of the other joints need: ...`."""
     texts = [
-        f"that of joint {gain.joint + 1} is {gain.factor:.3g} {plus_minus(gain.error, 1)} times"
+        f"that of joint {gain.joint + 1} is {_as_known(gain)} {plus_minus(gain.error, 1)} times"
         for gain in gains
     ]
     return f"the torques do not fit together: {', '.join(texts)} what the others need ({CAUSES})"

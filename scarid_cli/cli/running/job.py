@@ -17,12 +17,12 @@ from scarid_cli import __version__
 from scarid_cli.algorithms.choices.settings import LONGEST
 from scarid_cli.cli.declaring.selecting import selection_of
 from scarid_cli.cli.running.chain import Place
-from scarid_cli.cli.running.command_line import command_line, inputs
+from scarid_cli.cli.running.command_line import command_line, given_words, inputs
 from scarid_cli.cli.running.remarks import Remarks
 from scarid_cli.cli.running.remedies import remedies, require_our_names
 from scarid_cli.cli.running.robots import another, misfit, require_as_many, require_torques
 from scarid_cli.cli.running.terminal import is_terminal
-from scarid_cli.errors import TooShort, UsageFault
+from scarid_cli.errors import ForeignLog, TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
@@ -259,7 +259,10 @@ class Job:
         self, source: ByteSource, through: Callable[[ByteSource], ByteSource] | None = None
     ) -> Table:
         """The table in a source, with a progress line where a person waits: not inside a pipe."""
-        table = open_table(through(source) if through else source)
+        try:
+            table = open_table(through(source) if through else source)
+        except ForeignLog as log:  # whose joints are in the order of the robot
+            raise ForeignLog(log.name, log.what, given_words(["robot"])) from None
         hands_over = self.place.following is not None
         if self.quiet or hands_over or not is_terminal(2) or stat.S_ISFIFO(os.fstat(1).st_mode):
             return table

@@ -23,6 +23,7 @@ TICKS = {"micros", "millis", "tick", "ticks"}  # words of a clock whose unit the
 RATE = ": give --rate HZ, if the rate is constant"
 NUMBER = re.compile(r"\d+")
 FORCES = {"force", "forces", "kraft"}
+CONTROLS = {"ctrl"}  # of MuJoCo, the torques of motors
 LETTER = re.compile(r"[A-Za-z]{1,2}[^A-Za-z]*")
 
 
@@ -80,7 +81,7 @@ def _torques(left: Sequence[str]) -> list[tuple[str, str]]:
     """Which columns become torques, or currents."""
     currents = _pair("current", left, QUANTITIES[CURRENT] | AMPERES)
     torques = _pair("tau", left, QUANTITIES[TORQUE] - FORCES)  # beside which a force is another
-    return torques or _pair("tau", left, FORCES) or currents
+    return torques or _pair("tau", left, FORCES) or currents or _pair("tau", left, CONTROLS)
 
 
 def _perhaps_alike(new: str, left: Sequence[str], count: int) -> str:
