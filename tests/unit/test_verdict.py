@@ -173,6 +173,11 @@ NOT_KNOWN = np.array([np.nan, np.nan])
             "torque of joint 1 is known only within 20 %",
         ),
         (
+            consequence(torque=np.array([0.1, 80.0])),
+            "doubtful",
+            "the torque of joint 2 is not known: its interval is wider than the torque",
+        ),
+        (
             consequence(torque=np.array([0.049, 0.049])),
             "good",
             "model torque within joint 1 9.9 %, joint 2 9.9 % on motions like this one",

@@ -253,9 +253,7 @@ def _vague(evidence: Evidence) -> list[str]:
     found, width = evidence.diagnostics.consequences, evidence.diagnostics.width
     intervals = zip(width * found.noise, width * found.torque, strict=True)
     reasons = [
-        f"the torque of joint {i} is known only within {percents([max(noise, whole)])}"
-        if np.isfinite(noise + whole)
-        else f"the uncertainty of the torque of joint {i} is not known"
+        _vague_torque(i, float(np.max([noise, whole])))
         for i, (noise, whole) in enumerate(intervals, start=1)
         if not (noise <= VAGUE and whole <= UNKNOWN)
     ]
@@ -264,6 +262,15 @@ def _vague(evidence: Evidence) -> list[str]:
     if not reasons or evidence.treatment.essential or not explained:
         return reasons
     return [*reasons, "try --essential, which leaves out the parameters that are not known"]
+
+
+def _vague_torque(joint: int, within: float) -> str:
+    """What is said of a torque that is known `within` this part of itself, which may be nan."""
+    if not np.isfinite(within):
+        return f"the uncertainty of the torque of joint {joint} is not known"
+    if within > 1.0:
+        return f"the torque of joint {joint} is not known: its interval is wider than the torque"
+    return f"the torque of joint {joint} is known only within {percents([within])}"
 
 
 def _unpredicted(evidence: Evidence) -> list[str]:
