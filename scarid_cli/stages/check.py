@@ -54,8 +54,9 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
     yield leaps.wraps(found)
     yield leaps.glitches(found, log.resampling("--missing", "drop"))
     log = leaps.mended(log, found)
+    related = velocities.relation(log, time.period)
     if log.dq is not None:
-        yield velocities.finding(velocities.relation(log, time.period), time.period)
+        yield velocities.finding(related, time.period)
     yield clock.held(log)
     yield clock.slower(log)
     empty = [name for name, x in zip(log.names, log.signals, strict=True) if np.isnan(x).all()]
@@ -76,14 +77,20 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
         yield failed("length", figure, "give a longer log")
         return
     whole = copied.status == driven.status == OK
-    yield from _moving(log, robot, motion, whole=whole)
+    alike = velocities.in_step(related)
+    yield from _moving(log, robot, motion, whole=whole, with_velocities=alike)
 
 
-def _moving(log: Log, robot: Robot, motion: Motion, *, whole: bool) -> Iterator[Finding]:
-    """The findings on the motion, and on the model if every joint has its own signals (`whole`)."""
+def _moving(
+    log: Log, robot: Robot, motion: Motion, *, whole: bool, with_velocities: bool
+) -> Iterator[Finding]:
+    """The findings on the motion, and on the model if every joint has its own signals (`whole`).
+
+    The velocities of the log are in the unit of its positions `with_velocities`.
+    """
     parts = motion.parts()
     speeds = np.max([np.abs(part.motion[1]).max(axis=1) for part in parts], axis=0)
-    finding, factors = units.positions(log, robot, speeds)
+    finding, factors = units.positions(log, robot, speeds, with_velocities=with_velocities)
     motion = motion.scaled(factors)
     parts = motion.parts()
     moved = movement.range_of_joints(parts, robot)

@@ -13,6 +13,9 @@ LOG = (
 )
 FAULTS = {
     "degrees": "awk -F, -v OFS=, 'NR > 1 { $2 *= 57.29577951; $3 *= 57.29577951 } 1'",
+    "degrees, with velocities": "awk -F, -v OFS=, '{ $2 *= 57.29577951; $3 *= 57.29577951 }"
+    ' NR == 1 { print "t,q1,q2,tau1,tau2,dq1,dq2" }'
+    " NR > 2 { print $0, ($2 - a) / ($1 - t), ($3 - b) / ($1 - t) } { t = $1; a = $2; b = $3 }'",
     "milliseconds": "awk -F, -v OFS=, 'NR > 1 { $1 *= 1000 } 1'",
     "torque reversed": "awk -F, -v OFS=, 'NR > 1 { $5 *= -1 } 1'",
     "exchanged": "awk -F, -v OFS=, '{ x = $4; if (NR > 1) { $4 = $5; $5 = x } } 1'",

@@ -24,10 +24,13 @@ IDLE = 0.003  # of all limits: a log in kN m is below it if no torque exceeds th
 GEAR = 6.0  # times a limit: less is a limit of the cell or of an older description, more a gear
 
 
-def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
+def positions(
+    log: Log, robot: Robot, speeds: Array, *, with_velocities: bool = False
+) -> tuple[Finding, Array]:
     """Positions and `speeds` (joints) [per s], the highest that are not noise, against the limits.
 
-    Also the factors (joints) that bring positions that are in degrees to rad, and in mm to m.
+    Also the factors (joints) that bring positions that are in degrees to rad, and in mm to m. The
+    velocities of the log, if it has any, are in the unit of the positions `with_velocities`.
     """
     factors = np.ones(log.joints)
     reach = np.nanmax(np.abs(log.q), axis=1)
@@ -42,7 +45,9 @@ def positions(log: Log, robot: Robot, speeds: Array) -> tuple[Finding, Array]:
         figure = f"{names} up to {reach[outside].max():.3g}, far outside the limits"
         for i in likely:
             factors[i] = OTHER_UNITS[robot.joints[i].type][1]
-        return failed("positions", figure, _converted(robot, outside, likely)), factors
+        return failed(
+            "positions", figure, _converted(robot, outside, likely, velocities=with_velocities)
+        ), factors
     excess = max(_excess(log.q[i], robot, i, speeds[i]) for i in outside)
     resting = max(_excess(log.q[i], robot, i, 0.0) for i in outside)
     inside = resting <= SPARE
@@ -84,11 +89,17 @@ def _turned(robot: Robot, likely: list[int], reach: Array) -> bool:
     return False
 
 
-def _converted(robot: Robot, outside: list[int], likely: list[int]) -> str:
-    """What to type for positions in another unit, of these joints or of those outside limits."""
+def _converted(robot: Robot, outside: list[int], likely: list[int], *, velocities: bool) -> str:
+    """What to type for positions in another unit, of these joints or of those outside limits.
+
+    And for their velocities, if these are in it.
+    """
     kinds = dict.fromkeys(robot.joints[i].type for i in outside)
     names = " and ".join(OTHER_UNITS[kind][2] for kind in kinds)
-    text = f"positions seem to be in {names}: `scarid convert {_options(robot, likely)}`"
+    typed = _options(robot, likely)
+    if velocities:
+        typed += " " + _options(robot, likely, "dq", "/s")
+    text = f"positions seem to be in {names}: `scarid convert {typed}`"
     every = [i for i, joint in enumerate(robot.joints) if joint.type in kinds]
     if likely != outside:
         return f"{text}, or `{_options(robot, outside)}` if only these are"
@@ -97,12 +108,13 @@ def _converted(robot: Robot, outside: list[int], likely: list[int]) -> str:
     return text
 
 
-def _options(robot: Robot, joints: list[int]) -> str:
-    """The options that convert the positions of these joints (from 0)."""
-    units = [OTHER_UNITS[robot.joints[i].type][0] for i in joints]
+def _options(robot: Robot, joints: list[int], name: str = "q", per: str = "") -> str:
+    """The options that convert the positions, or what is called so, of these joints (from 0)."""
+    units = [f"{OTHER_UNITS[robot.joints[i].type][0]}{per}" for i in joints]
     if len(joints) == len(robot.joints) and len({*units}) == 1:
-        return f"--unit 'q*={units[0]}'"
-    return " ".join(f"--unit q{i + 1}={unit}" for i, unit in zip(joints, units, strict=True))
+        return f"--unit '{name}*={units[0]}'"
+    pairs = zip(joints, units, strict=True)
+    return " ".join(f"--unit {name}{i + 1}={unit}" for i, unit in pairs)
 
 
 def _units(robot: Robot) -> str:

@@ -31,6 +31,13 @@ class Relation:
     slope: Array
 
 
+def in_step(related: Relation | None) -> bool:
+    """Whether each velocity is that of its position, in the same unit."""
+    if related is None or related.joint != tuple(range(len(related.joint))):
+        return False
+    return bool(np.all(np.abs(related.slope - 1.0) < RIGHT))
+
+
 def relation(log: Log, period: float) -> Relation | None:
     """How velocities and positions of a log are related; None if nothing moves, or none has any."""
     if log.dq is None or not period:
