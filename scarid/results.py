@@ -155,7 +155,10 @@ class Judged(Log):
 
     @property
     def covariance(self) -> np.ndarray[Any, Any]:
-        """The covariance of the estimates, in their order, by the noise of this log alone."""
+        """The covariance of the estimates, in their order, with what may be beyond the model.
+
+        That of the noise is scaled by one factor; the column `robust_error` has each one's own.
+        """
         import numpy as np
 
         found = self.meta.extra.get("covariance")
