@@ -45,6 +45,7 @@ def conditions(result: Result) -> tuple[float, float]:
     return float(found[1]), float(found[2])
 
 
+@long
 def test_the_condition_number_of_the_scara_can_be_below_3(scarid: Run) -> None:
     """Random motions have 9.4 to 19.7."""
     result = scarid("trajgen", "--optimise", "--criterion", "c", "--starts", 2, "--seed", 1)
@@ -70,6 +71,7 @@ def test_a_robot_keeps_all_its_limits(scarid: Run, samples: Path, tmp_path: Path
     assert re.search(r"predicted relative errors .*; unknown: ", result.err)
 
 
+@long
 def test_torques_limit_the_motion_where_they_are_small(
     scarid: Run, samples: Path, tmp_path: Path
 ) -> None:

@@ -62,6 +62,7 @@ def test_the_estimates_are_those_of_the_upright_robot(degrees: float, seed: int)
     assert found.torque < 3.0
 
 
+@long
 @pytest.mark.parametrize("seed", [301 + k for k in seeds(1, 9)])
 def test_cables_are_no_reversed_axes(seed: int) -> None:
     """Of ten such logs two were called so, of ten with cables that are bent far four."""
