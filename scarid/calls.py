@@ -130,7 +130,8 @@ def run(command: click.Command, inputs: Sequence[Any], options: Mapping[str, Any
             found = Text(_without(folder, given.text("".join(printed))), said)
     told = TOLD.get(command.name or "") == status and not options.get("strict")
     if status and not told:
-        raise RequirementError(said[-1] if said else _worst(found), status, found)
+        text = said[-1] if said else _worst(found) or f"exit status {status}"
+        raise RequirementError(text, status, found)
     return found
 
 
@@ -146,7 +147,9 @@ def _with_names(folder: str, batch: pa.RecordBatch) -> pa.RecordBatch:
 
 
 def _worst(found: Text) -> str:
-    """What a document of `check` says is worst."""
+    """What a document of `check` says is worst; nothing if it is another text."""
+    if not found.startswith("{"):
+        return ""
     data = found.data
     findings = [x for x in data["checks"] if x["status"] == data["status"]]
     return "; ".join(f"{x['name']}: {x['figure']}" for x in findings)

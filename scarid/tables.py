@@ -48,7 +48,7 @@ def _arrow_of(value: Any) -> pa.Table:
     if _is_frame(value):
         frame = _with_index(value)
         return pa.Table.from_pandas(frame, preserve_index=False).replace_schema_metadata(None)
-    if hasattr(value, "__arrow_c_stream__") and hasattr(value, "columns"):
+    if hasattr(value, "__arrow_c_stream__"):
         return pa.table(value)
     if isinstance(value, Mapping):
         return pa.table(dict(_columns(value)))

@@ -192,11 +192,12 @@ def of_arrow(name: str, schema: pa.Schema, batches: Iterator[pa.RecordBatch]) ->
             f"{name}: the name of a column is not UTF-8; rename it where the table is made"
         ) from None
     sound = _sound(name, batches)
-    if "t" in schema.names and pa.types.is_int64(schema.field("t").type):
+    at = schema.get_field_index("t")  # -1 without it, and where there are two
+    if at >= 0 and pa.types.is_int64(schema.field(at).type):
         first = next(sound, None)
         sound = chain([first] if first else [], sound)
-        if first and _beyond_doubles(first.column(schema.get_field_index("t"))):
-            plain = plain.set(schema.get_field_index("t"), pa.field("t", pa.int64()))
+        if first and _beyond_doubles(first.column(at)):
+            plain = plain.set(at, pa.field("t", pa.int64()))
     return Table(name, plain, meta, (cast(batch, plain, name) for batch in sound))
 
 

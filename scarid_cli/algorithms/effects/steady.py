@@ -37,8 +37,7 @@ def slower(trial: Trial) -> list[Products]:
     scales = away_from_reversals(rows, 2.0 / rows.bandwidth)
     columns = {name: _passed(rows, half, x) for name, x in trial.secants.items()}
     slow = replace(rows, W=_passed(rows, half, rows.W), y=_passed(rows, half, rows.y))
-    plain = replace(trial, noise=None, places=np.arange(rows.samples))
-    tried = [trial, plain] if trial.noise else [plain]
+    tried = [trial, _plain(trial)] if trial.noise else [trial]
     return [replace(x, rows=slow).products(scales, columns)[0] for x in tried]
 
 
@@ -49,6 +48,13 @@ def _passed(rows: Rows, low_pass: LowPass, x: Array) -> Array:
         for j in range(x.shape[1]):
             found[run, j] = low_pass.over(x[run, j])
     return found
+
+
+def _plain(trial: Trial) -> Trial:
+    """The same with rows that are not whitened."""
+    if not trial.noise:
+        return trial
+    return replace(trial, noise=None, places=np.arange(trial.rows.samples))
 
 
 def shaken(trial: Trial, pool: dict[int, tuple[str, int]]) -> set[int]:
@@ -68,14 +74,12 @@ def shaken(trial: Trial, pool: dict[int, tuple[str, int]]) -> set[int]:
     velocities *= np.array(rows.noise) / spread
     motion = rows.motion.copy()
     motion[1:3] += np.stack((velocities.T, slope(rows, velocities).T))
-    theta = trial.estimates[: trial.own]
-    still, moved = (Gears(x, model, theta) for x in (rows, replace(rows, motion=motion)))
-    plain = replace(trial, noise=None, places=np.arange(rows.samples))
-    products = plain.products(rows.scales, trial.secants)[0]
+    moved = Gears(replace(rows, motion=motion), model, trial.estimates[: trial.own])
+    products = _plain(trial).mismatches[0]
 
     def share(column: int) -> float:
         kind, joint = MISMATCHES[pool[column][0]], pool[column][1]
-        noise = (kind.secant(moved, joint) - kind.secant(still, joint)) * rows.scales
+        noise = (kind.secant(moved, joint) - trial.secants[kind.NAME][:, :, joint]) * rows.scales
         left = products.left_of(column)
         return float(np.sum((noise * trial.weights) ** 2)) / left if left else 0.0
 
