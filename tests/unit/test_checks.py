@@ -211,8 +211,8 @@ def test_errors_of_a_first_fit_are_those_of_leaving_out_parts() -> None:
     rng = np.random.default_rng(5)
     W, tau = rng.standard_normal((200, 2, 3)), rng.standard_normal((2, 200))
     found = solved(W, tau, np.ones((2, 200), dtype=bool))
-    y = found.A @ found.theta + found.rest
+    A, y = found.stacked, (found.weights * tau).ravel()
     part = np.tile(np.repeat(np.arange(10), 20), 2)
-    without = [np.linalg.lstsq(found.A[part != k], y[part != k])[0] for k in range(10)]
+    without = [np.linalg.lstsq(A[part != k], y[part != k])[0] for k in range(10)]
     expected = np.sqrt(0.9 * np.sum((np.array(without) - found.theta) ** 2, axis=0))
     assert found.scatter(2) == pytest.approx(expected, rel=1e-6)

@@ -26,5 +26,5 @@ def test_a_joint_with_negative_friction_is_found_without_friction_in_the_model(
     tau += np.array([signs]).T * (viscous * dq + coulomb * np.sign(dq))
     tau += 0.01 * np.random.default_rng(0).standard_normal(tau.shape)
     motion = np.stack((q, dq, ddq, tau, np.gradient(tau, 0.02, axis=1)))
-    found = fitted(RIGID, Samples(motion, np.ones(tau.shape, dtype=np.int64), 1.0))
+    found = fitted(RIGID, Samples(motion, np.ones(tau.shape, dtype=np.bool_), 1.0))
     assert found.driving == [j for j in (0, 1) if signs[j] < 0]

@@ -107,14 +107,14 @@ def _fit(robot: Robot, r2: Array) -> Finding:
 
 def _identifiable(robot: Robot, found: Solution) -> Finding:
     """The condition number of the regressor with columns of unit length."""
-    size = np.sqrt(np.sum(found.A**2, axis=0))
+    size = np.sqrt(np.sum(found.stacked**2, axis=0))
     absent = [name for name, x in zip(robot.names, size, strict=True) if not x > 0.0]
     advice = "use a motion that excites it (`scarid trajgen`), or fewer parameters"
     if absent and robot.body and not any(robot.body.gravity):  # which has been told
         return ok("identifiability", f"without gravity, nothing determines {', '.join(absent)}")
     if absent:
         return failed("identifiability", f"nothing determines {', '.join(absent)}", advice)
-    _, s, v = np.linalg.svd(found.A / size, full_matrices=False)
+    _, s, v = np.linalg.svd(found.stacked / size, full_matrices=False)
     condition = float(s[0] / s[-1]) if s[-1] > 0.0 else np.inf
     figure = f"scaled condition number {condition:.3g}"
     if condition <= WEAK:

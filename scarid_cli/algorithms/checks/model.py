@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ import numpy as np
 
 from scarid_cli.algorithms.beyond.signals import diagonal
 from scarid_cli.algorithms.changes.wiring import Wiring
+from scarid_cli.algorithms.regression.grams import grams
 from scarid_cli.algorithms.regression.normal_equations import inverse, roots
 from scarid_cli.algorithms.regression.rows import Rows
 from scarid_cli.algorithms.robots.description import Robot
@@ -142,27 +144,34 @@ def columns(robot: Robot, motion: Array) -> Array:
 
 @dataclass(frozen=True)
 class Solution:
-    """Weighted least squares: A (rows, parameters) is the weighted regressor, joint after joint.
+    """Weighted least squares of W (samples, joints, parameters); weights (joints, samples).
 
-    `rest` (rows) is what it leaves of the weighted torques, `inverse` (parameters, parameters) the
-    covariance of theta if rows are independent, and `residuals` (joints) are shares of the mean
+    `rest` (joints, samples) is what it leaves of the torques, `inverse` (parameters, parameters)
+    the covariance of theta if rows are independent, and `residuals` (joints) are shares of the mean
     square torque.
     """
 
-    A: Array
+    W: Array
+    weights: Array
     theta: Array
     rest: Array
     inverse: Array
     residuals: Array
 
+    @cached_property
+    def stacked(self) -> Array:
+        """The weighted regressor (rows, parameters), joint after joint."""
+        return _stacked(self.W, self.weights)
+
     def scatter(self, joints: int) -> Array:
         """The standard errors (parameters) by leaving out one of PARTS of the log after another."""
-        samples = len(self.A) // joints
+        samples = len(self.stacked) // joints
         part = np.tile(np.arange(samples) * PARTS // samples, joints)
-        grams = np.array([self.A[part == k].T @ self.A[part == k] for k in range(PARTS)])
-        scores = np.array([self.A[part == k].T @ self.rest[part == k] for k in range(PARTS)])
+        rest = (self.rest * self.weights).ravel()
+        sums = np.array([self.stacked[part == k].T @ self.stacked[part == k] for k in range(PARTS)])
+        scores = np.array([self.stacked[part == k].T @ rest[part == k] for k in range(PARTS)])
         moved = np.array(
-            [inverse(grams.sum(axis=0) - g) @ s for g, s in zip(grams, scores, strict=True)]
+            [inverse(sums.sum(axis=0) - g) @ s for g, s in zip(sums, scores, strict=True)]
         )
         return np.asarray(np.sqrt((PARTS - 1) / PARTS * np.sum(moved**2, axis=0)))
 
@@ -173,19 +182,28 @@ def solved(W: Array, tau: Array, counts: Marks) -> Solution:
     Each joint is weighted by the residual of a first fit. What the rows do not determine stays
     near 0.
     """
-    scale = _deviations(tau, counts)
-    squares = scale**2
-    for _ in range(2):
-        weights = 1.0 / np.sqrt(np.maximum(squares, EXACT * scale**2))
-        A, y = _weighted(W, tau, counts, weights)
-        size = np.sqrt(np.sum(A**2, axis=0))
-        size = np.where(size > 0.0, size, 1.0)
-        products = (A.T @ A) / np.outer(size, size) + RIDGE * np.eye(len(size))
-        covariance = np.linalg.inv(products) / np.outer(size, size)
-        theta = covariance @ (A.T @ y)
-        rest = np.where(counts, tau - np.einsum("sjp,p->js", W, theta), 0.0)
-        squares = np.sum(rest**2, axis=1) / np.maximum(counts.sum(axis=1), 1)
-    return Solution(A, theta, y - A @ theta, covariance, squares / scale**2)
+    scale, rows = _deviations(tau, counts), np.maximum(counts.sum(axis=1), 1)
+    each = grams(W, tau, counts)
+    weights = 1.0 / scale**2
+    first, _ = _solution(np.tensordot(weights, each, (0, 0)))
+    left = np.append(-first, 1.0)
+    weights = 1.0 / np.maximum((each @ left) @ left / rows, EXACT * scale**2)
+    theta, covariance = _solution(np.tensordot(weights, each, (0, 0)))
+    predicted = (W.reshape(-1, len(theta)) @ theta).reshape(W.shape[:2]).T
+    rest = np.where(counts, tau - predicted, 0.0)
+    residuals = np.sum(rest**2, axis=1) / rows / scale**2
+    factors = np.where(counts, np.sqrt(weights)[:, None], 0.0)
+    return Solution(W, factors, theta, rest, covariance, residuals)
+
+
+def _solution(products: Array) -> tuple[Array, Array]:
+    """The solution of normal equations in [W y]'[W y], and its covariance for unit variances."""
+    gram, right = products[:-1, :-1], products[:-1, -1]
+    size = np.sqrt(np.diag(gram))
+    size = np.where(size > 0.0, size, 1.0)
+    scaled = gram / np.outer(size, size) + RIDGE * np.eye(len(size))
+    covariance = np.linalg.inv(scaled) / np.outer(size, size)
+    return covariance @ right, covariance
 
 
 def pulled(motion: Array) -> Array:
@@ -215,9 +233,9 @@ def torque_signs(robot: Robot, samples: Samples) -> tuple[int, ...]:
         return (1,) * joints
     tau = motion[3]
     wide, weights = columns(robot, motion), 1.0 / _deviations(tau, counts)
-    parts = [_weighted(wide[:, [j]], tau[[j]], counts[[j]], weights[[j]]) for j in range(joints)]
-    independent, _ = roots(np.sum([A.T @ A for A, _ in parts], axis=0))
-    each = independent.T @ np.stack([A.T @ y for A, y in parts], axis=1)
+    each = grams(wide, tau, counts) * (weights**2)[:, None, None]
+    independent, _ = roots(each[:, :-1, :-1].sum(axis=0))
+    each = independent.T @ each[:, :-1, -1].T
     signs = np.array(list(product((1,), *[(1, -1)] * (joints - 1))))
     best = np.argmax(np.sum((signs @ each.T) ** 2, axis=1))
     return tuple(signs[best].tolist())
@@ -229,10 +247,9 @@ def _deviations(tau: Array, counts: Marks) -> Array:
     return np.array([x if x > 0.0 else 1.0 for x in found])
 
 
-def _weighted(wide: Array, tau: Array, counts: Marks, weights: Array) -> tuple[Array, Array]:
-    factors = counts * weights[:, None]
-    A = np.concatenate([wide[:, j] * factors[j][:, None] for j in range(len(tau))])
-    return A, np.concatenate(list(tau * factors))
+def _stacked(W: Array, factors: Array) -> Array:
+    """The rows of W (samples, joints, parameters) times factors (joints, samples), by joint."""
+    return np.concatenate([W[:, j] * x[:, None] for j, x in enumerate(factors)])
 
 
 def _powers(robot: Robot, wide: Array, samples: Samples, found: Solution) -> Array:

@@ -157,7 +157,7 @@ def _factor(needed: Array, beside: list[Array], tau: Array, counts: Marks) -> tu
 
 def _apart(found: Solution) -> bool:
     """Whether the first column is unlike all that the others can be."""
-    return bool(found.inverse[0, 0] * np.sum(found.A[:, 0] ** 2) <= ALIKE)
+    return bool(found.inverse[0, 0] * np.sum(found.stacked[:, 0] ** 2) <= ALIKE)
 
 
 def finding(robot: Robot, scale: Scale) -> Finding:

@@ -19,6 +19,7 @@ import numpy as np
 
 from scarid_cli.algorithms.processes.bandwidth import acceleration_noise
 from scarid_cli.algorithms.processes.resolution import resolution_of
+from scarid_cli.algorithms.regression.grams import grams
 from scarid_cli.algorithms.regression.information import inverse_deviations
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.tuning.lowpassed import Lowpassed, Segment, lowpassed
@@ -164,8 +165,7 @@ def at_cutoff(
         return Scatter(cutoff, np.inf, int(rows.sum()), share), None
     variances = np.array([y[k].var() for y, k in zip(tau, counts, strict=True)])
     sums = np.array([
-        products(robot.regressor(q[:, part], dq[:, part], ddq[:, part]), tau[:, part],
-                 counts[:, part])
+        grams(robot.regressor(q[:, part], dq[:, part], ddq[:, part]), tau[:, part], counts[:, part])
         for part in parts_of(q.shape[1])
     ])  # fmt: skip
     noises = _of_noise(robot, (q, dq, ddq), noise, counts)
@@ -174,7 +174,7 @@ def at_cutoff(
 
 
 def _of_noise(robot: Robot, motion: tuple[Array, ...], noise: Array, counts: Marks) -> Array:
-    """N'N of what noise (joints) of the accelerations adds to W, as `products` has it for W.
+    """N'N of what noise (joints) of the accelerations adds to W, as `grams` has it for W.
 
     It is N of some rows for all.
     """
@@ -182,7 +182,7 @@ def _of_noise(robot: Robot, motion: tuple[Array, ...], noise: Array, counts: Mar
     q, dq, ddq = (x[:, ::every] for x in motion)
     signs = np.random.default_rng(0).choice((-1.0, 1.0), ddq.shape)
     added = robot.regressor(q, dq, ddq + noise[:, None] * signs) - robot.regressor(q, dq, ddq)
-    return np.asarray(every * products(added, np.zeros_like(q), counts[:, ::every]))
+    return np.asarray(every * grams(added, np.zeros_like(q), counts[:, ::every]))
 
 
 def parts_of(samples: int) -> list[slice]:
@@ -193,18 +193,7 @@ def parts_of(samples: int) -> list[slice]:
 
 def sums_of(W: Array, tau: Array, counts: Marks) -> Array:
     """[W y]'[W y] of the rows that count (parts, joints, parameters + 1, parameters + 1)."""
-    return np.array([products(W[part], tau[:, part], counts[:, part]) for part in parts_of(len(W))])
-
-
-def products(W: Array, tau: Array, counts: Marks) -> Array:
-    """[W y]'[W y] of the rows that count (joints, parameters + 1, parameters + 1)."""
-    _, joints, count = W.shape
-    sums = np.empty((joints, count + 1, count + 1))
-    for j, chosen in enumerate(counts):
-        rows = np.empty((int(np.count_nonzero(chosen)), count + 1))
-        rows[:, :count], rows[:, count] = W[chosen, j], tau[j, chosen]
-        sums[j] = rows.T @ rows
-    return sums
+    return np.array([grams(W[part], tau[:, part], counts[:, part]) for part in parts_of(len(W))])
 
 
 def _jackknife(
