@@ -70,6 +70,7 @@ SECTIONS: Navigation = {
     "Project": [
         "compatibility*.md",
         "repository/CONTRIBUTING.md",
+        "adding.md",
         "repository/CHANGELOG.md",
         "repository/DESIGN.md",
         "design/*.md",
