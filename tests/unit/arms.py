@@ -42,11 +42,14 @@ def described_arm(urdf: str, tmp_path: Path, lines: str) -> Robot:
     return load(str(path))
 
 
-def seven_axes(centre: str = "0.01 0.02 0.1") -> str:
-    """The URDF of an arm whose axes are vertical and horizontal in turn, its links ever lighter."""
+def seven_axes(centre: str = "0.01 0.02 0.1", axes: int = 7) -> str:
+    """The URDF of an arm whose axes are vertical and horizontal in turn, its links ever lighter.
+
+    Seven of them, or the last ones of these.
+    """
     parts = ['<robot name="seven"><link name="l0"/>']
-    for i in range(1, 8):
-        m = 8 - i
+    for i in range(1, axes + 1):
+        m = axes + 1 - i
         parts.append(
             f'<joint name="j{i}" type="revolute"><parent link="l{i - 1}"/><child link="l{i}"/>'
             f'<origin xyz="0 0 0.2"/><axis xyz="{"0 0 1" if i % 2 else "0 1 0"}"/>'

@@ -29,15 +29,18 @@ from scarid_cli.stages.carried import Load, told
 from scarid_cli.stages.payload import payload, table
 
 
+AXES = 4
+
+
 @pytest.fixture(scope="module")
 def arm(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Seven axes whose tool frame is turned and shifted."""
+    """Four axes whose tool frame is turned and shifted."""
     flange = (
-        '<link name="flange"/><joint name="tool" type="fixed"><parent link="l7"/>'
+        '<link name="flange"/><joint name="tool" type="fixed"><parent link="l4"/>'
         '<child link="flange"/><origin xyz="0.1 0.02 0.3" rpy="0.4 -0.3 1.2"/></joint></robot>'
     )
     path = tmp_path_factory.mktemp("arm") / "arm.urdf"
-    path.write_text(seven_axes().replace("</robot>", flange))
+    path.write_text(seven_axes(axes=AXES).replace("</robot>", flange))
     return path
 
 
@@ -136,10 +139,10 @@ JOINT = (
 def test_the_command_finds_what_the_simulator_hung_there(
     arm: Path, shell: Shell, tmp_path: Path
 ) -> None:
-    (tmp_path / "arm.toml").write_text(f'title = "seven"\nurdf = "{arm}"\n' + 7 * JOINT)
+    (tmp_path / "arm.toml").write_text(f'title = "four"\nurdf = "{arm}"\n' + AXES * JOINT)
     made = shell(MADE)
     assert made.status == 0, made.err
-    found = shell("scarid payload --parameters bare.parquet --frame l7 loaded.parquet")
+    found = shell("scarid payload --parameters bare.parquet --frame l4 loaded.parquet")
     assert found.status == 0, found.err
     rows = {row["quantity"]: row for row in csv.DictReader(found.out.splitlines())}
     wanted = {"mass": 1.2, "x": 0.03, "y": -0.02, "z": 0.06, "Ixx": 0.004, "Ixy": 0.0, "Ixz": 0.0,
@@ -155,10 +158,10 @@ def test_the_command_finds_what_the_simulator_hung_there(
         assert float(rows[name]["estimate"]) == pytest.approx(wanted[name], abs=0.005)
     same = shell(
         "scarid identify -q loaded.parquet -o p.parquet;"
-        " scarid payload -q --parameters bare.parquet --frame l7 p.parquet"
+        " scarid payload -q --parameters bare.parquet --frame l4 p.parquet"
     )
     assert same.out == found.out
-    told = shell("scarid payload -q --json --parameters bare.parquet --frame l7 p.parquet")
+    told = shell("scarid payload -q --json --parameters bare.parquet --frame l4 p.parquet")
     machine = document(told.out)
     assert [x["estimate"] for x in machine["values"]] == [
         float(row["estimate"]) for row in rows.values()
@@ -168,21 +171,21 @@ def test_the_command_finds_what_the_simulator_hung_there(
     assert moments[0] > 0.0
     assert moments[2] < moments[0] + moments[1]
     page = shell(
-        "scarid payload -q --parameters bare.parquet --frame l7 p.parquet -o payload.parquet;"
+        "scarid payload -q --parameters bare.parquet --frame l4 p.parquet -o payload.parquet;"
         " scarid report bare.parquet payload.parquet"
     )
-    assert "in the frame of l7" in page.out
+    assert "in the frame of l4" in page.out
     assert f"{float(rows['mass']['estimate']):.4g}"[:4] in page.out
-    wrong = shell("scarid payload --parameters bare.parquet --frame l3 p.parquet")
-    refused(wrong, 2, "--frame l3: no link that is fixed to the last axis; it has l7, flange")
+    wrong = shell("scarid payload --parameters bare.parquet --frame l2 p.parquet")
+    refused(wrong, 2, "--frame l2: no link that is fixed to the last axis; it has l4, flange")
 
 
 def test_a_payload_is_found_when_it_is_picked_up(arm: Path, shell: Shell, tmp_path: Path) -> None:
     """Live and from the log, with the same bits however the rows arrive."""
-    (tmp_path / "arm.toml").write_text(f'title = "seven"\nurdf = "{arm}"\n' + 7 * JOINT)
+    (tmp_path / "arm.toml").write_text(f'title = "four"\nurdf = "{arm}"\n' + AXES * JOINT)
     made = shell(MADE.replace("15", "30").replace("0.003,0;", "0.003,18.3;"))
     assert made.status == 0, made.err
-    command = "scarid payload --parameters bare.parquet --frame l7"
+    command = "scarid payload --parameters bare.parquet --frame l4"
     found = shell(f"{command} --trace trace.csv loaded.parquet -o l.csv && scarid report l.csv")
     assert found.status == 0, found.err
     assert "Payloads over time" in found.out
@@ -217,7 +220,7 @@ def test_a_robot_without_a_urdf_has_no_flange(shell: Shell) -> None:
 
 
 def test_the_bare_robot_twice_has_no_payload(arm: Path, shell: Shell, tmp_path: Path) -> None:
-    (tmp_path / "arm.toml").write_text(f'title = "seven"\nurdf = "{arm}"\n' + 7 * JOINT)
+    (tmp_path / "arm.toml").write_text(f'title = "four"\nurdf = "{arm}"\n' + AXES * JOINT)
     made = shell(
         "export SCARID_ROBOT=arm.toml; scarid trajgen -q --seed 5 --duration 8 |"
         " scarid simulate -q | scarid identify -q -o bare.parquet"
