@@ -1,7 +1,8 @@
 """What `scarid check` says of logs with a known fault, and of clean ones: `make bench-checks`.
 
 The clean logs are simulated with the encoders and the noise of their descriptions. Each is spoiled
-in one way, see `spoiled.py`. The printed table is that of docs/known-faults.md.
+in one way, see `spoiled.py`. docs/known-faults.md has the first four columns of the printed table,
+and says below it what is in the last one.
 """
 
 from __future__ import annotations

@@ -28,7 +28,6 @@ from scarid_cli.io.table import Metadata, Table
 from scarid_cli.stages.carried import Load, told
 from scarid_cli.stages.payload import payload, table
 
-
 AXES = 4
 
 

@@ -8,7 +8,7 @@ from scarid_cli.algorithms.imperfections.declared import TORQUE, Number, PerJoin
 class TorqueConstantError(PerJoint):
     """Relative error of the motor constant in the log.
 
-    logged = (1 + e) true: 0.05 makes the logged torque 5 % too large.
+    logged = (1 + e) commanded: 0.05 makes the logged torque 5 % too large.
     """
 
     NAME = "torque-constant-error"
@@ -18,7 +18,7 @@ class TorqueConstantError(PerJoint):
 class TorqueOffset(PerJoint):
     """Constant offset of the logged torque.
 
-    logged = true + offset.
+    logged = commanded + offset.
     """
 
     NAME = "torque-offset"
