@@ -108,11 +108,12 @@ def test_every_format_and_way_in_gives_the_same_bytes(
 
 @pytest.mark.parametrize("chain", IN_A_SHELL)
 def test_processes_give_the_same_bytes_too(chain: str, users_shell: Run) -> None:
+    formats = FORMATS if ALL else {"csv": "csv", "parquet": "parquet"}
     made = [
         f"scarid convert --format {name} $SAMPLES/scara2.csv -o log.{extension}"
-        for name, extension in FORMATS.items()
+        for name, extension in formats.items()
     ]
-    ways = [chain.replace("LOG", f"log.{extension}") for extension in FORMATS.values()]
+    ways = [chain.replace("LOG", f"log.{extension}") for extension in formats.values()]
     ways += [chain.replace("LOG", "< log.parquet")]
     ways += [f"cat log.parquet | {chain.replace('LOG', '')}"]
     ways += [f"export SCARID_FORMAT=arrow; {chain.replace('LOG', 'log.csv')} | scarid convert"

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pyarrow as pa
 import pytest
+from conftest import long
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from stages.tables import PERIOD, SCARA, Kept, collected, cut, motion, table
@@ -66,6 +67,7 @@ def test_each_segment_is_a_record_of_its_own(name: str) -> None:
     assert of_its_own(STAGES[name], LENGTHS) >= 3
 
 
+@long
 @pytest.mark.parametrize("name", GIVEN)
 def test_settings_are_found_in_each_segment(name: str) -> None:
     methods = [DIFFERENTIATORS.load(name)()] * 2

@@ -6,19 +6,22 @@ settings say so. See docs/theory.md, section "Kalman filters and smoothers".
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from scarid_cli.arrays import Array
 
 
+@lru_cache(maxsize=256)  # settings that are searched for differ in noise and intensity, mostly
 def discretised(states: int, damping: float, frequency: float, h: float) -> tuple[Array, Array]:
     """The matrices F and Q (states, states) of the motion sampled every h [s], for unit intensity.
 
     The states are position, velocity, acceleration and its derivatives. The acceleration is white
     noise through the inverse of s, s^2 + w^2 or s (s^2 + w^2) for 3, 4 or 5 states, where s stands
     for s + damping [1/s] and w is the frequency [rad/s]; with neither it is a chain of integrators.
-    The matrices are exact, by Van Loan's matrix exponential (IEEE Trans. Autom. Control 23 (1978)
-    395).
+    They are exact, by Van Loan's matrix exponential (IEEE Trans. Autom. Control 23 (1978) 395), and
+    shared: they must not be changed.
     """
     orders = states - 2
     characteristic = np.poly(poles(orders, damping, frequency)).real
