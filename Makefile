@@ -73,9 +73,9 @@ $(VENV)/installed: $(BUILD_FILES) | $(BIN)/python
 	$(SCARID) --version
 	@touch $@
 
-# Both marks at once: a fresh machine compiles the kernels once.
+# Both marks at once: a fresh machine compiles the kernels once, and only the modules that it imports.
 $(VENV)/tested: $(BUILD_FILES) | $(BIN)/python
-	$(PIP) install --editable '.[test,lint]'
+	$(PIP) install --no-compile --editable '.[test,lint]'
 	@touch $(VENV)/installed $@
 
 # Of each process that tests start: one thread of linear algebra, and modules that are compiled once.

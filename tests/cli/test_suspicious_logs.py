@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT, Result
+from unit.arms import seven_axes
 
 from scarid_cli.algorithms.checks import units
 from scarid_cli.algorithms.checks.finding import FAILED, WARNING
@@ -164,6 +165,28 @@ def test_a_tilted_base_is_named(degrees: float, tmp_path: Path, scarid: Run) -> 
         assert found.startswith("good: ")
     else:
         assert not stated
+
+
+@pytest.mark.parametrize("axes", [2, 3])
+def test_a_tilt_has_more_columns_than_an_arm_may_have_axes(
+    axes: int, tmp_path: Path, scarid: Run
+) -> None:
+    pytest.importorskip("pinocchio")
+    (tmp_path / "arm.urdf").write_text(seven_axes(axes=axes))
+    joint = (
+        "[[joint]]\nacceleration_limit = 9.0\nencoder_resolution = 1e-5\ntorque_noise = 0.05\n"
+        "terms = { inertia = 0.1, viscous = 0.5, coulomb = 0.6, offset = 0.0 }\n"
+    )
+    upright, tilted = (tmp_path / f"{name}.toml" for name in ("upright", "tilted"))
+    upright.write_text(f'urdf = "arm.urdf"\n{axes * joint}')
+    tilted.write_text(f"gravity = [1.7, 0.0, -9.66]\n{upright.read_text()}")
+    log = tmp_path / "log.parquet"
+    assert scarid("trajgen", "--robot", tilted, "--seed", "1", "-o", tmp_path / "r.csv").status == 0
+    assert scarid("simulate", "--robot", tilted, tmp_path / "r.csv", "-o", log).status == 0
+    found = verdict(scarid("identify", "--robot", upright, log))
+    told = re.search(r"a tilt by ([\d.]+) \+- ", found)
+    assert told, found
+    assert float(told[1]) == pytest.approx(10.0, abs=0.3)
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1000.0, "mN m"), (0.001, "kN m"), (1.0, None)])

@@ -63,8 +63,8 @@ class Addition:
 def gains(additions: Sequence[Addition], joints: int) -> Array:
     """The gains of the torques (joints) that were fitted, 1 where none was."""
     found = np.ones(joints)
-    for addition in additions:
-        found[addition.joint] += addition.size if addition.name == RelativeGain.NAME else 0.0
+    for gain in (x for x in additions if x.name == RelativeGain.NAME):
+        found[gain.joint] += gain.size
     return found
 
 
