@@ -24,6 +24,11 @@ NAMES = {
     "imperfection": list(IMPERFECTIONS),
     "robot": built_in(),
 }
+# Theory and decisions are read like the others, though their shell blocks are not run.
+EVERY = sorted({*PAGES, *(str(p.relative_to(ROOT)) for p in (ROOT / "docs").glob("*/*.md"))})
+# Nobody reads a reference, or what was measured when, from top to bottom.
+REFERENCES = ("docs/tables.md", "docs/gauntlet/tables.md", "docs/design/research-log.md")
+TEN_MINUTES = 2500  # words
 USERS = [page for page in PAGES if page not in ("CONTRIBUTING.md", "DESIGN.md")]
 # What only those who wrote the program have read.
 FOREIGN = re.compile(
@@ -64,7 +69,7 @@ def test_pages_that_anything_names_are_there() -> None:
     assert {(path, name) for path, name in named if not (ROOT / name).is_file()} == set()
 
 
-@pytest.mark.parametrize("name", PAGES)
+@pytest.mark.parametrize("name", EVERY)
 def test_links_lead_somewhere(name: str) -> None:
     page = ROOT / name
     missing = []
@@ -76,6 +81,11 @@ def test_links_lead_somewhere(name: str) -> None:
         if not there.exists() or (anchor and anchor not in anchors(there)):
             missing.append(target)
     assert missing == []
+
+
+@pytest.mark.parametrize("name", [name for name in EVERY if name not in REFERENCES])
+def test_a_page_is_read_in_ten_minutes(name: str) -> None:
+    assert len((ROOT / name).read_text("utf-8").split()) <= TEN_MINUTES
 
 
 def test_nothing_is_a_link_to_somewhere_else() -> None:

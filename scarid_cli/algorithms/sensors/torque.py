@@ -12,9 +12,9 @@ from scarid_cli.kernels import sos
 
 @dataclass(frozen=True)
 class TorqueSensor:
-    """logged = (1 + error) true + offset, then a first-order low-pass; arrays have one per joint.
+    """logged = (1 + error) commanded + offset, then a first-order low-pass; one value per joint.
 
-    The true torque is constant from one tick of the controller to the next, h [s] later, so that
+    The command is constant from one tick of the controller to the next, h [s] later, so that
     the low-pass dy/dt = w (u - y) has the exact solution y(t) = u + (y(0) - u) exp(-w t) in
     between. The bandwidth [Hz] is w / (2 pi); 0 stands for no low-pass.
     """
