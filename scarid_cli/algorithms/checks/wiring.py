@@ -22,7 +22,7 @@ from scarid_cli.algorithms.checks.search import ALIKE, FALL, Explained, searched
 from scarid_cli.algorithms.robots.description import Robot
 
 SURE = 30.0  # standard errors of the friction, whose sign decides then
-EXPLAINED = 0.02  # of the mean square torque of each joint: exchanged joints leave far more
+EXPLAINED = 0.002  # of the mean square torque of each joint: exchanged joints leave far more
 
 
 def wired(robot: Robot, samples: Samples) -> Explained[Wiring]:
