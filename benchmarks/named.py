@@ -45,6 +45,7 @@ from scarid_cli.algorithms.beyond.torques import (
     Spring,
     Stribeck,
     Uneven,
+    Warming,
 )
 from scarid_cli.algorithms.robots.description import Robot
 
@@ -81,6 +82,7 @@ LACKING: dict[str, tuple[type[Phenomenon], ...]] = {
     "cubic cable": (Cable,),
     "motor saturates": (Saturation,),
     "torque drifts": (Drift,),
+    "friction drifts": (Warming,),
     "torque ripple": (Ripple,),
     "Coulomb friction over the position 30 %": (Uneven,),
     "link length +1 %": (Geometry,),

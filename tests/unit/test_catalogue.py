@@ -32,6 +32,7 @@ HORIZONTAL = {
     "Stribeck friction",
     "cubic cable",
     "torque ripple",
+    "friction drifts",
 }
 
 

@@ -42,6 +42,11 @@ class Model:
         """Which of the kept parameters are of torques that a joint transmits: all but friction."""
         return self._marks(transmitted)
 
+    @property
+    def rubs(self) -> Marks:
+        """Which of the kept parameters are of friction."""
+        return self._marks(lambda term: term.FRICTION)
+
     def link_torques(self, motion: Array, theta: Array) -> Array:
         """The torques (samples, joints) of the links alone, without friction and motors.
 

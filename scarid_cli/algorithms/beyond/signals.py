@@ -21,12 +21,12 @@ class Signals:
     """What torques beyond the model depend on, each (samples, joints).
 
     `q`, `v` and `time` [s] from the start; `predicted` are the torques of the model, `transmitted`
-    those of it that pass through the gears, 0 without a model. `turns` (joints) is whether a joint
-    turns by a good part of a turn. `usual` (joints) are the speeds by which velocities are scaled,
-    `ripples` (ripples, joints) the periods of each ripple per rad or m, 0 where there is none, and
-    `passed` what the low-pass behind the rows leaves of a frequency [Hz]. `others` (joints) is 1
-    for a joint whose torque others can be compared with. The `model` has the parameters `theta`,
-    and `motion` (3, joints, samples) has the accelerations, too.
+    those of it that pass through the gears, and `rubbing` those of friction, 0 without a model.
+    `turns` (joints) is whether a joint turns by a good part of a turn. `usual` (joints) are the
+    speeds by which velocities are scaled, `ripples` (ripples, joints) the periods of each ripple
+    per rad or m, 0 where there is none, and `passed` what the low-pass behind the rows leaves of a
+    frequency [Hz]. `others` (joints) is 1 for a joint whose torque others can be compared with. The
+    `model` has the parameters `theta`; `motion` (3, joints, samples) has the accelerations, too.
     """
 
     q: Array
@@ -34,6 +34,7 @@ class Signals:
     time: Array
     predicted: Array
     transmitted: Array
+    rubbing: Array
     turns: Marks
     usual: Array
     ripples: Array
@@ -53,14 +54,16 @@ class Signals:
         q, v = rows.motion[0].T, rows.motion[1].T
         time = np.broadcast_to(rows.h * (rows.at - rows.at[0])[:, None], v.shape)
         usual = np.sqrt(np.mean(v**2, axis=0)) + 1e-300
-        own = np.flatnonzero(model.transmits) if model else np.empty(0, dtype=np.int64)
-        torques = predicted(rows, estimates), rows.W[:, :, own] @ estimates[own]
+        none = np.empty(0, dtype=np.int64)
+        kept = [np.flatnonzero(x) for x in (model.transmits, model.rubs)] if model else [none, none]
+        transmitted, rubbing = (rows.W[:, :, own] @ estimates[own] for own in kept)
         return cls(
             q=q,
             v=v,
             time=time,
-            predicted=torques[0],
-            transmitted=torques[1],
+            predicted=predicted(rows, estimates),
+            transmitted=transmitted,
+            rubbing=rubbing,
             turns=turning(rows, model),
             usual=usual,
             ripples=np.zeros((0, v.shape[1])),

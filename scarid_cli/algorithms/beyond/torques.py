@@ -174,6 +174,28 @@ class Drift(Shape):
         return np.asarray(x.time - x.time.mean(axis=0))
 
 
+class Warming(Shape):
+    """Friction that changes in proportion to the time, as while a robot warms up.
+
+    Its size is the change from the start to the end of the log, over the mean friction.
+    """
+
+    NAME = "warming"
+    UNIT = "of this friction from start to end"
+    LACKS = "friction of {joints} changes during the log, as while a robot warms up"
+    IMPERFECTIONS = ("friction-drift",)
+    LASTS = False
+
+    @staticmethod
+    def shape(x: Signals) -> Array:
+        since = x.time - x.time.mean(axis=0)
+        return np.asarray(x.rubbing * since / (float(np.ptp(x.time)) or 1.0))
+
+    @classmethod
+    def columns(cls, x: Signals) -> Array | None:
+        return diagonal(cls.shape(x)) if x.model and x.rubbing.any() else None
+
+
 class RelativeGain(Shape):
     """A torque that was logged too large or too small, relative to those of the other joints.
 
