@@ -37,7 +37,7 @@ HEAD = (
 SHOWN = {
     "joints": "joint 2",
     "periods": "10 periods per rad",
-    "gravity": "[0.17, 0, -9.81]",
+    "gravity": " (state gravity = [0.17, 0, -9.81] in the TOML file of the robot)",
     "zeros": "joint 2 is at 0.05 rad",
     "distances": "the distance from axis 1 to axis 2 is 1 % larger",
 }

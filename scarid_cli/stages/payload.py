@@ -82,6 +82,16 @@ def table(found: Payload, of: Table, link: str) -> Table:
 
 def told(found: Payload, link: str) -> Iterator[str]:
     """What hangs there, what the motion does not tell, and whether a body can be like this."""
+    mass, half = float(found.values[0]), plus_minus(found.errors[0])
+    if not found.shown:
+        yield f"nothing more than the bare robot has hangs on {link}: mass {mass:.3g} {half} kg"
+        return
+    if mass < 0.0:
+        yield (
+            f"{-mass:.4g} {half} kg less than the bare robot has hangs on {link}: give the log "
+            "with the lighter tool for --parameters"
+        )
+        return
     parts = [
         f"{name} {value:.4g} {plus_minus(error)} {unit}"
         for name, value, error, unit in zip(
@@ -93,20 +103,15 @@ def told(found: Payload, link: str) -> Iterator[str]:
     unknown = [name for name, error in zip(NAMES, found.errors, strict=True) if np.isnan(error)]
     if unknown:
         yield f"not told by this motion: {', '.join(unknown)}"
-    vague = [
-        name
-        for name, value, error in zip(NAMES, found.values, found.errors, strict=True)
-        if np.isfinite(error) and name.startswith("I") and HALF * error > abs(value)
-    ]
-    if vague:
-        yield f"not distinguishable from 0: {', '.join(vague)}"
+    if found.vague:
+        yield f"not distinguishable from 0: {', '.join(found.vague)}"
     if not found.possible:
         yield (
             "warning: no body has these values. The nearest one, "
             f"{found.away:.2g} standard deviations away, has {_text(found.told)}; take a motion "
             "with larger accelerations for the inertia"
         )
-    for controller, line in settings(found.told).items():
+    for controller, line in settings(found.told, found.values - HALF * found.errors).items():
         yield f"for {controller}, if {link} is its flange: {line}"
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from conftest import ROOT, Result
 from unit.arms import seven_axes
@@ -165,6 +166,33 @@ def test_a_tilted_base_is_named(degrees: float, tmp_path: Path, scarid: Run) -> 
         assert found.startswith("good: ")
     else:
         assert not stated
+
+
+@pytest.mark.parametrize("share", [0.6, 0.75])
+def test_a_clipped_torque_is_never_good(
+    share: float, samples: Path, tmp_path: Path, scarid: Run
+) -> None:
+    table = pd.read_csv(samples / "scara2.csv")
+    most = share * table["tau1"].abs().max()
+    table["tau1"] = table["tau1"].clip(-most, most)
+    table.to_csv(tmp_path / "log.csv", index=False)
+    found = verdict(scarid("identify", "--robot", "scara2", tmp_path / "log.csv"))
+    assert found.startswith("doubtful: saturation: the torque of joint 1 stays at its extreme in ")
+
+
+@pytest.mark.parametrize("signals", [("tau",), ("q", "tau")])
+def test_exchanged_joints_are_named(
+    signals: tuple[str, ...], samples: Path, tmp_path: Path, scarid: Run
+) -> None:
+    table = pd.read_csv(samples / "scara2.csv")
+    names = {f"{s}{j}": f"{s}{3 - j}" for s in signals for j in (1, 2)}
+    table.rename(columns=names)[table.columns].to_csv(tmp_path / "log.csv", index=False)
+    found = verdict(scarid("identify", "--robot", "scara2", tmp_path / "log.csv"))
+    grade, _, first = found.partition(": ")
+    assert grade in ("doubtful", "not identifiable")
+    assert first.startswith("order of joints: the model fits far better with ")
+    options = " ".join(f"--map {name}={other}" for name, other in names.items())
+    assert f"`scarid convert {options}`" in found
 
 
 @pytest.mark.parametrize("axes", [2, 3])

@@ -25,8 +25,9 @@ from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.algorithms.robots.rigid import PINOCCHIO, Frame
 from scarid_cli.errors import BadData
 from scarid_cli.io.table import Metadata, Table
-from scarid_cli.stages.carried import Load, told
-from scarid_cli.stages.payload import payload, table
+from scarid_cli.stages.carried import Load
+from scarid_cli.stages.carried import told as followed
+from scarid_cli.stages.payload import payload, table, told
 
 AXES = 4
 
@@ -117,9 +118,9 @@ def test_a_change_that_is_taken_back_says_so() -> None:
     first = Piece(37.27, 60.0, 39.27, 90, [none])
     loads = [Load(np.array([mass, 0.0, 0.0, 0.0]), np.full(4, 0.01)) for mass in (0.0, 0.5)]
     plain = "picked up 0.5 +- 0.028 kg at 37.27 s (suspected at 39.27 s)"
-    assert told(first, *loads) == plain
+    assert followed(first, *loads) == plain
     again = replace(first, misplaced=32.02)
-    assert told(again, *loads) == f"{plain}, not at 32.02 s as told before"
+    assert followed(again, *loads) == f"{plain}, not at 32.02 s as told before"
 
 
 MADE = (
@@ -227,6 +228,35 @@ def test_the_bare_robot_twice_has_no_payload(arm: Path, shell: Shell, tmp_path: 
     assert made.status == 0, made.err
     done = shell("scarid payload --parameters bare.parquet bare.parquet")
     refused(done, 65, "both identifications are the same; give a log with the payload")
+
+
+def hung(mass: float, error: float, inertia: float = 0.02) -> Payload:
+    """A body of this mass, known within so much, of which the inertia has an error of .01."""
+    phi = np.array([inertia, 0.0, 0.0, inertia, 0.0, inertia, 0.0, 0.0, 0.1 * mass, mass])
+    phi[[0, 3]] += 0.01 * abs(mass)
+    errors = np.array([*[0.01] * 6, *[0.001] * 3, error])
+    found = Standard(phi, np.diag(errors**2), np.diag(1.0 / errors))
+    return in_frame(found, Frame(7, np.eye(3), np.zeros(3)))
+
+
+@pytest.mark.parametrize("mass", [0.02, -0.02])
+def test_nothing_that_hangs_there_has_neither_a_centre_nor_settings(mass: float) -> None:
+    found = hung(mass, 0.02)
+    assert np.isnan(found.errors[1:]).all()
+    (line,) = told(found, "tool")
+    half = "0.039"
+    assert line == f"nothing more than the bare robot has hangs on tool: mass {mass:g} +- {half} kg"
+
+
+def test_less_than_the_bare_robot_has_is_no_body() -> None:
+    (line,) = told(hung(-0.5, 0.02), "tool")
+    assert line.startswith("0.5 +- 0.039 kg less than the bare robot has hangs on tool: give ")
+
+
+@pytest.mark.parametrize(("inertia", "lists"), [(0.1, 2), (0.015, 1)])
+def test_an_inertia_that_may_be_0_is_not_in_the_settings(inertia: float, lists: int) -> None:
+    settings_of = [x for x in told(hung(2.0, 0.02, inertia), "tool") if x.startswith("for UR")]
+    assert settings_of[0].count("[") == lists
 
 
 def test_what_a_motion_does_not_tell_has_no_value() -> None:

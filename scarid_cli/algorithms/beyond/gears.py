@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from scarid_cli.algorithms.beyond.model import Model
+from scarid_cli.algorithms.beyond.model import MOTORS, Model
 from scarid_cli.algorithms.beyond.phenomenon import Fitted, Phenomenon
 from scarid_cli.algorithms.filters.two_sided import two_sided_taps
 from scarid_cli.algorithms.regression.low_pass import LowPass
@@ -188,6 +188,19 @@ class ElasticGear(Mismatch):
     @staticmethod
     def told(size: float, error: float) -> tuple[float, float]:
         return 1.0 / size, error / size**2
+
+    @classmethod
+    def sizes(cls, fitted: Fitted) -> str:
+        """The stiffness, which is a bound where the inertia behind the gear is not known.
+
+        The links yield by what they need themselves. A parameter that has the inertia of motor and
+        links together makes the inertial part of it too large, by the square of their ratio.
+        """
+        terms = [p.term for p in fitted.robot.parameters]
+        apart = {j for term in terms if isinstance(term, MOTORS) for j in term.joints}
+        if all(x.joint + 1 in apart for x in fitted.own):
+            return super().sizes(fitted)
+        return f"at most {super().sizes(fitted)} (less by the motor's part of the inertia there)"
 
 
 class ElasticJoint(Mismatch):

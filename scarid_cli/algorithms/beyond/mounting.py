@@ -22,10 +22,7 @@ class Tilt(OfTorques):
 
     NAME = "tilt"
     UNIT = "rad"
-    LACKS = (
-        "gravity acts in another direction than described, as on a tilted base (state gravity = "
-        "{gravity} in the TOML file of the robot)"
-    )
+    LACKS = "gravity acts in another direction than described, as on a tilted base{gravity}"
     CHANGE = "tilt"
     FITTED = RELATIVE = COMPARED = True
     FIRST = 2  # a short log tells a tilt better than what else it makes of joint 1
@@ -58,6 +55,7 @@ class Geometry(OfTorques):
     NAME = "geometry"
     UNIT = "of the distance"
     LACKS = "the geometry is not as described: {distances}"
+    RANGE = (-1.0, 1.0)  # a distance of less than nothing, or twice what it is, has another cause
 
     @classmethod
     def columns(cls, x: Signals) -> Array | None:
@@ -76,9 +74,13 @@ def _distance(found: Found, joint: int) -> str:
 
 
 def _gravity(robot: Robot, sines: Array) -> str:
-    """That of a base that leans by angles of these sines, as the description of a robot has it."""
+    """What to state of a base that leans by angles of these sines."""
     assert robot.body
-    return _vector(tilted(np.array(robot.body.gravity), sines))
+    described = _vector(np.array(robot.body.gravity))
+    gravity = _vector(tilted(np.array(robot.body.gravity), sines))
+    if gravity == described:  # the log shows that it leans, and not where to
+        return ""
+    return f" (state gravity = {gravity} in the TOML file of the robot)"
 
 
 def _vector(values: Array) -> str:

@@ -18,6 +18,7 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.physical import inertia_of, pseudo_inertia
 from scarid_cli.algorithms.robots.rigid import SYMBOLS, Frame
 from scarid_cli.arrays import Array
+from scarid_cli.interval import HALF
 
 KNOWN = 1e-6  # share of a parameter that must be in the rows, as a projection
 MASS, MOMENTS, INERTIA = 9, [6, 7, 8], slice(6)
@@ -44,6 +45,17 @@ class Payload:
     def possible(self) -> bool:
         """Whether a body can have these values, of which it may have any that are not told."""
         return self.away < AS_GOOD
+
+    @property
+    def shown(self) -> bool:
+        """Whether there is a mass, without which there is neither a centre nor an inertia."""
+        return bool(abs(self.values[0]) > HALF * self.errors[0])
+
+    @property
+    def vague(self) -> list[str]:
+        """The names of the moments and products of inertia that are not apart from 0."""
+        known = zip(NAMES[4:], self.values[4:], self.errors[4:], strict=True)
+        return [name for name, x, error in known if np.isfinite(error) and HALF * error > abs(x)]
 
     @property
     def told(self) -> Array:
@@ -103,6 +115,8 @@ def in_frame(found: Standard, frame: Frame) -> Payload:
     """The payload in a frame that is fixed to the last axis."""
     values, errors = located(found.phi, found.covariance, frame)
     body, away = values, 0.0
+    if not abs(values[0]) > HALF * errors[0]:
+        return Payload(values, np.array([errors[0], *[np.nan] * 9]), body, away)
     if not np.linalg.eigvalsh(pseudo_inertia(found.phi))[0] > 0.0:
         nearby, away = nearest(found.phi, found.factor)
         body = _of_centre(nearby, frame)

@@ -35,6 +35,11 @@ class Wiring:
         order, signs = tuple(range(joints)), (1,) * joints
         return cls((order, order), (signs, signs))
 
+    @property
+    def exchanged(self) -> bool:
+        """Whether any signal is that of another joint."""
+        return self.places != self.same(len(self.places[0])).places
+
     def reversed(self, signal: int, joint: int) -> Wiring:
         signs = [list(s) for s in self.signs]
         signs[signal][joint] *= -1

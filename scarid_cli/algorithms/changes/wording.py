@@ -187,8 +187,10 @@ def _amounts(e: Explanation, values: dict[str, float]) -> str:
             f"torques {'lead' if e.amounts[0] > 0.0 else 'lag'} by {lag:.3g} {plus_minus(error)} ms"
         )
     if hypothesis.kind == TILT:
-        tilt = np.degrees(np.linalg.norm(e.amounts))
-        return f"by {tilt:.2g} {plus_minus(np.degrees(np.max(e.errors)), 1)} degrees"
+        known = np.isfinite(e.errors)  # not about an axis about which nothing turns
+        amounts, errors = np.array(e.amounts)[known], np.array(e.errors)[known]
+        tilt, error = np.degrees((np.linalg.norm(amounts), errors.max(initial=0.0)))
+        return f"by {tilt:.2g} {plus_minus(error, 1)} degrees"
     if hypothesis.kind == ZERO:
         size = "large" if e.amounts[0] < 0.0 else "small"
         amount = f"{abs(e.amounts[0]):.3g} {plus_minus(e.errors[0])} {hypothesis.units[0]}"

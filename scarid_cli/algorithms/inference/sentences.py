@@ -143,6 +143,7 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> li
         if PHENOMENA[effect.name].LACKS
         and effect.significant(level)
         and np.any(_wide(effect, least))
+        and _possible(effect, effect.joints(level, len(robot.joints)))
     ]
     if not found:
         return []
@@ -151,6 +152,12 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> li
     there = Found(robot, joints, best.amounts, best.noise, diagnostics.cycles)
     advice = PHENOMENA[best.name].lacks(there)
     return [f"{advice}; {_allowing(names, _wide(best, least))} it"]
+
+
+def _possible(effect: Effect, joints: Iterable[int]) -> bool:
+    """Whether there is such a thing at all of these joints (from 0)."""
+    kind = PHENOMENA[effect.name]
+    return kind.RANGE is None or all(kind.possible(float(effect.amounts[j])) for j in joints)
 
 
 def _least(names: Sequence[str], diagnostics: Diagnostics) -> Array:

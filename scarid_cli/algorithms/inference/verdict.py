@@ -104,10 +104,11 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     joints = evidence.diagnostics.joints
     summary = _summary(evidence)
     obstacles = [*_idle(joints, robot), *_undetermined(evidence)]
-    found = gains.fitted(evidence.diagnostics, len(evidence.names))
+    apart = gains.significant(evidence.diagnostics)
+    found = gains.fitted(evidence.diagnostics, len(evidence.names)) or _far(apart, evidence)
     bias = [*evidence.failed, *([gains.told(found)] if found else []), *_biased(evidence)]
     if obstacles:
-        return Verdict(NOT_IDENTIFIABLE, (*obstacles, *evidence.failed, summary), bool(bias))
+        return Verdict(NOT_IDENTIFIABLE, (*evidence.failed, *obstacles, summary), bool(bias))
     wrong = [
         *bias,
         *_forgotten(evidence.diagnostics),
@@ -121,7 +122,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     names, diagnostics = evidence.names, evidence.diagnostics
     own = dict(zip(names, evidence.estimates.tolist(), strict=False))
     notes = [*additions_of(own, diagnostics, robot), *notes_of(names, diagnostics, robot)]
-    if apart := gains.significant(diagnostics):
+    if apart and not found:
         notes = [f"{gains.told(apart)}; the intervals allow for it", *notes]
     notes = [*_inertia_unknown(evidence), *notes]
     if not wrong and any(x.end - x.start >= LASTING for x in evidence.diagnostics.bursts):
@@ -129,6 +130,12 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     rough = [] if wrong else _rough(evidence)
     grade = DOUBTFUL if wrong else ROUGH if rough else GOOD
     return Verdict(grade, (*wrong, *rough, summary, *notes), bool(bias))
+
+
+def _far(apart: list[gains.Gain], evidence: Evidence) -> list[gains.Gain]:
+    """Gains that were not fitted, if one is farther from 1 than the stated torque of its joint."""
+    stated = np.maximum(evidence.diagnostics.lacking, gains.KNOWN)
+    return apart if any(abs(x.factor - 1.0) > stated[x.joint] for x in apart) else []
 
 
 def _rough(evidence: Evidence) -> list[str]:

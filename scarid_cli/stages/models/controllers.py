@@ -9,16 +9,21 @@ import numpy as np
 from scarid_cli.algorithms.robots.physical import inertia_of
 from scarid_cli.arrays import Array
 
+PRINCIPAL = [4, 7, 9]  # the moments of inertia among the values
 
-def settings(values: Array) -> dict[str, str]:
+
+def settings(values: Array, lows: Array) -> dict[str, str]:
     """A line for each controller, from mass [kg], centre [m] and inertia about it [kg m2] (10).
 
-    Values that are not told are nan. There are none without mass and centre, and where the inertia
-    is not told as a whole it is left out, or 0 where there must be one.
+    Values that are not told are nan, and `lows` (10) are the lower ends of their intervals. There
+    are no lines without a mass and its centre. An inertia that is not told as a whole, or with a
+    moment that may be 0, is left out, or 0 where there must be one.
     """
-    if not np.isfinite(values[:4]).all():
+    if not (np.isfinite(values[:4]).all() and values[0] > 0.0):
         return {}
-    inertia = values[4:] if np.isfinite(values[4:]).all() else None
+    inertia = (
+        values[4:] if np.isfinite(values[4:]).all() and (lows[PRINCIPAL] > 0.0).all() else None
+    )
     return {
         "UR": _ur(values[0], values[1:4], inertia),
         "Franka": _franka(values[0], values[1:4], inertia),

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 Step = Callable[[], object]
 Progress = Callable[[], AbstractContextManager[Step]]
 
-# Checks without which no derivative is one, or not that of its joint.
-SPOILING = ("wraps", "glitches", "clock", "equal positions")
+# Checks without which derivatives or torques are not those of the joints.
+SPOILING = ("wraps", "glitches", "clock", "equal positions", "saturation")
 
 
 @dataclass(frozen=True)

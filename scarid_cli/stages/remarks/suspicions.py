@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from scarid_cli.algorithms.checks import gearing, mounting, scale, velocities, wiring
+from scarid_cli.algorithms.checks import gearing, mounting, scale, search, velocities, wiring
 from scarid_cli.algorithms.checks.finding import FAILED, OK, TORQUES, Finding
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.checks.model import Samples, enough
@@ -68,10 +68,15 @@ def _samples(rows: Rows, robot: Robot) -> Samples | None:
 def _described(samples: Samples, robot: Robot) -> list[Finding]:
     """What is unlike in the description, by what explains the torques best.
 
-    Single signs are tried where the model leaves what a wrong one would leave.
+    Signals of other joints and single signs are tried where the model leaves what a wrong one would
+    leave.
     """
     mounted = mounting.mounted(robot, samples)
     if mounted.fit.residuals.max() > mounting.TURNED:
+        wired = wiring.wired(robot, samples)
+        better = wired.fit.misfit < mounted.fit.misfit + np.log(search.FALL)
+        if wired.case.exchanged and better and wired.fit.residuals.max() <= mounting.UNEXPLAINED:
+            return [x for x in wiring.findings(wired, robot) if x.status == FAILED]
         signed = wiring.signed(robot, samples)
         some = len(set(signed.case.signs[1])) > 1
         explained = signed.fit.residuals.max() <= mounting.UNEXPLAINED

@@ -104,14 +104,17 @@ def of_payload(table: Table) -> Document:
     """What `payload` has found, from its table."""
     rows, extra = _rows(table), table.meta.extra
     told = [row["quantity"] for row in rows if row["robust_error"] is not None]
-    body = np.array([nan if row["body"] is None else row["body"] for row in rows])
+    body, lows = (
+        np.array([nan if row[name] is None else row[name] for row in rows])
+        for name in ("body", "low")
+    )
     return _document(
         {
             **_head("payload", table),
             **{name: extra[name] for name in ("frame", "possible", "away")},
             "told": told,
             "values": [_with_half(row) for row in rows],
-            "controllers": settings(body),
+            "controllers": settings(body, lows),
         }
     )
 
