@@ -171,8 +171,11 @@ def _wrong_step(
 
 
 def _not_increasing(name: str, time: float, before: float, row: int, remedy: str = SORT) -> BadData:
-    if time == before > EPOCH:
-        remedy = "write it with at least 14 digits, or as seconds since the start of the log"
+    if time == before:
+        digits = "write it with at least 14 digits; " if time > EPOCH else ""
+        remedy = (
+            f"{digits}`scarid check` says whether rows are repeated, or the clock is too coarse"
+        )
     return bad_data(
         name,
         f"{time} after {before:.12g}",

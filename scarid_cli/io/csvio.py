@@ -37,6 +37,9 @@ JSON = (b'{"', b"[{", b"[[")  # how a file of JSON begins
 MISSING = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
 # Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
+DATED = re.compile(
+    r"\s*(\d+[-/.:]\d+[-/.:]\d|[\d.]+ *[a-z]+\s*$)"
+)  # a date, or a time with its unit
 INDEX = "index"  # a first column without a name, which pandas writes
 
 
@@ -273,7 +276,8 @@ def _types(row: dict[str, str]) -> list[pa.DataType]:
 def _type(name: str, value: str) -> pa.DataType:
     """That of a column that we know, unless it should be a number of a joint and is a name."""
     known, numeric = column_type(name), bool(NUMERIC.match(value))
-    if known is not None and (numeric or not value or name != "joint"):
+    text = name == "joint" or (name == "t" and bool(DATED.match(value)))
+    if known is not None and (numeric or not value or not text):
         return known
     return pa.float64() if numeric else pa.string()
 

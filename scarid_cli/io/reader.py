@@ -16,7 +16,7 @@ from scarid_cli.io.bytesource import ByteSource, unpacked
 from scarid_cli.io.clock import clocked
 from scarid_cli.io.remedies import Remedies, Remedy, read_on
 from scarid_cli.io.selection import Lacking
-from scarid_cli.io.table import SEGMENT, Table, cast
+from scarid_cli.io.table import SEGMENT, Table, cast, remedy_of
 
 # From the columns of a table, those whose values a command reads.
 Reads = Callable[[list[str]], Iterable[str]]
@@ -112,10 +112,9 @@ def _faults_of_columns(table: Table, schema: schemas.TableSchema) -> Iterator[Fa
 
 
 def _faults_of_types(table: Table, types: dict[str, pa.DataType]) -> Iterator[Fault]:
-    remedy = "convert the column where the table is made"
     for field in table.schema:
         if not _same_type(field.type, types.get(field.name, field.type)):
-            yield field.name, f"type {field.type}", str(types[field.name]), remedy
+            yield field.name, f"type {field.type}", str(types[field.name]), remedy_of(field.name)
 
 
 def _refuse(table: Table, faults: Iterator[Fault]) -> None:

@@ -178,6 +178,13 @@ def cast(batch: pa.RecordBatch, schema: pa.Schema, name: str) -> pa.RecordBatch:
     return pa.RecordBatch.from_arrays(columns, schema=schema)
 
 
+def remedy_of(column: str) -> str:
+    """What to do with a column of another type."""
+    if column == "t":
+        return "let `scarid convert` make it seconds since the start"
+    return "convert the column where the table is made"
+
+
 def _cast(column: pa.Array, field: pa.Field, name: str) -> pa.Array:
     try:
         return column.cast(field.type)
@@ -186,9 +193,7 @@ def _cast(column: pa.Array, field: pa.Field, name: str) -> pa.Array:
             name,
             f"a value of type {column.type} that does not fit ({str(error).partition(chr(10))[0]})",
             expected=str(field.type),
-            remedy="let `scarid convert` make it seconds since the start"
-            if field.name == "t"
-            else "convert the column where the table is made",
+            remedy=remedy_of(field.name),
             column=field.name,
         ) from None
 

@@ -76,9 +76,12 @@ def gains(bare: Table, loaded: Table, robot: Robot, load: Load) -> Told:
     found = with_load(one, other, directions(robot), shared, load)
     told = Told(found, _constants(robot))
     if not told.known.any():
+        within = HALF * 100.0 * float(found.errors.min())
+        centre = "" if load.centre is not None else ", or state its centre as well (--centre)"
         raise BadData(
-            "gains: the motion does not tell any of them; use a motion that turns the joints "
-            "against gravity, with and without the load, or state its centre as well (--centre)"
+            f"gains: the motion tells none of them better than within {within:.2g} %; use a motion "
+            "that turns the joints against gravity and is longer or faster, with and without the "
+            f"load{centre}"
         )
     return told
 

@@ -42,7 +42,7 @@ CASES = {
     "time since 1970 with too few digits": (
         [GOOD[0], *(f"1.76389e+09,{k},2" for k in range(4))],
         "row 2, column t: found 1763890000.0 after 1763890000, expected time to increase from row "
-        "to row; write it with at least 14 digits",
+        "to row; write it with at least 14 digits; `scarid check` says whether rows are repeated",
     ),
     "time running back": (with_line(5, "0.01,4,2"), "row 5, column t: found 0.01 after 0.03"),
     "rows in reverse order": (

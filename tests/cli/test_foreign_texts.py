@@ -120,9 +120,12 @@ CLOCKS = {
 }
 
 
+@pytest.mark.parametrize("name", ["time", "t"])
 @pytest.mark.parametrize("kind", CLOCKS)
-def test_texts_that_are_times_become_seconds(kind: str, shell: Shell, tmp_path: Path) -> None:
-    found = converted(shell, tmp_path, written(",".join(["time", *ORDER[1:]]), CLOCKS[kind]))
+def test_texts_that_are_times_become_seconds(
+    kind: str, name: str, shell: Shell, tmp_path: Path
+) -> None:
+    found = converted(shell, tmp_path, written(",".join([name, *ORDER[1:]]), CLOCKS[kind]))
     np.testing.assert_allclose(found, LOG, atol=1e-9)
 
 

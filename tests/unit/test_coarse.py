@@ -39,6 +39,22 @@ def test_the_rate_is_found_whatever_the_pieces(
     assert not ticks(t, values, cuts).coarse
 
 
+@given(
+    st.sampled_from([62.5, 120.0, 125.0, 250.0, 333.0, 400.0, 1000.0]),
+    st.sampled_from([0.008, 0.01, 0.016, 0.02, 0.1, 1.0]),
+    st.sampled_from([0.0, 1.7e9]),
+)
+def test_the_rate_is_found_where_ticks_have_rows_by_turns(
+    rate: float, tick: float, epoch: float
+) -> None:
+    """As of 250 Hz in hundredths of a second: 2 and 3 rows."""
+    rows = np.arange(int(25.0 * rate))
+    times = np.round(epoch + tick * np.floor(rows / rate / tick + 1e-6), 3)
+    found = ticks(times, np.random.default_rng(0).standard_normal((2, len(rows))), [])
+    if found.coarse:
+        assert found.rate == rate
+
+
 @given(st.integers(2, 5), st.lists(st.integers(0, 1 << 10), max_size=4))
 def test_rows_that_are_written_several_times_are_no_coarse_clock(
     times: int, cuts: list[int]

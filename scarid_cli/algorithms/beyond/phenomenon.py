@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 class Found:
     """What the log of a robot shows of an entry: the joints (from 0), and amounts with their noise.
 
-    `cycles` (ripples, joints) are the periods of ripples per rad or m.
+    `cycles` (ripples, joints) are the periods of ripples per rad or m, and `names` those of all
+    parameters that were estimated, which an estimator may have added to those of the robot.
     """
 
     robot: Robot
@@ -30,6 +31,7 @@ class Found:
     amounts: Array
     noise: Array
     cycles: Array
+    names: Sequence[str] = ()
 
 
 @dataclass(frozen=True)

@@ -92,7 +92,7 @@ class Zeros(OfPositions):
     UNIT = "{position}"
     LACKS = (
         "where the log has a position of 0, {zeros} (state it as `zero` in the TOML file of the "
-        "robot)"
+        "robot, with which `scarid convert` mends the log)"
     )
     CHANGE = "zero"
     TOGETHER = True  # of one calibration

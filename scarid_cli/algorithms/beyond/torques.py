@@ -18,6 +18,7 @@ from scarid_cli.algorithms.beyond.phenomenon import (
     side_by_side,
 )
 from scarid_cli.algorithms.beyond.signals import Signals, diagonal
+from scarid_cli.algorithms.robots import terms
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.arrays import Array
 from scarid_cli.words import listed
@@ -82,6 +83,14 @@ class Decayed(Shape):
     @classmethod
     def shape(cls, x: Signals) -> Array:
         return x.friction(cls.SPEED)
+
+    @classmethod
+    def lacks(cls, found: Found) -> str:
+        """The remedy is none where it has been taken."""
+        own = {terms.Stribeck.SYMBOL.format(i=j + 1) for j in found.joints}
+        if own <= {*found.names}:
+            return f"friction of {cls.facts(found)['joints']} is not that of Stribeck's curve"
+        return super().lacks(found)
 
 
 class SlowFriction(Decayed):

@@ -213,7 +213,10 @@ def findings(mounting: Mounting, what: str = "the model fits") -> list[Finding]:
     if turned:
         zeros = " and ".join(f"joint {j} at {turn:.0f} degrees" for j, turn in turned)
         figure = f"{better} {zeros} where the log has a position of 0"
-        advice = "is this its zero? state it as `zero` [rad] in the TOML file of the robot"
+        advice = (
+            "is this its zero? state it as `zero` [rad] in the TOML file of the robot, with which "
+            "`scarid convert --robot FILE.toml` mends the log"
+        )
         found.append(failed("zeros", figure, advice))
     if mounting.gravity:
         found.append(_gravity(mounting.gravity, what))

@@ -10,6 +10,8 @@ from scarid_cli.arrays import Array, median
 
 MOST = 0.5  # of the rows: from here on a time belongs to several rows, and says which one of none
 TICKS = 1000  # that are kept, and from which the rate is known
+LONGER = 1.5  # times the usual tick
+NEAR = 1e-3  # of a row: rounding of times since 1970
 FEWEST = 3  # ticks of the clock of which the rows are known: the first and the last are not whole
 
 
@@ -53,10 +55,19 @@ class Ticks:
 
     @property
     def rate(self) -> float | None:
-        """Rows per second by the ticks that are whole; None if there are too few."""
+        """Rows per second by the ticks that are whole; None if there are too few.
+
+        Ticks may have rows by turns, as 2 and 3. Of numbers that one row more or less would give,
+        it is the one with the fewest digits.
+        """
         if len(self.times) < FEWEST:
             return None
-        return median(np.array(self.counts[1:-1])) / median(np.diff(self.times))
+        counts, lengths = np.array(self.counts[1:-1]), np.diff(self.times)[1:]
+        usual = lengths <= LONGER * median(lengths)  # the others are gaps
+        seconds = float(lengths[usual].sum())
+        rate, apart = int(counts[usual].sum()) / seconds, np.ptp(counts[usual]) > 0
+        digits = (float(f"{rate:.{k}g}") for k in range(1, 17))
+        return next((x for x in digits if abs(x - rate) * seconds <= max(apart, NEAR)), rate)
 
     @property
     def counting(self) -> str:

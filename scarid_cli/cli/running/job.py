@@ -216,7 +216,8 @@ class Job:
         if not arm.log.columns and arm.log.converts and not table.meta.history:
             self.notes.append(
                 f"{table.name}: taken as positions and torques of the joints, as `scarid convert "
-                f"--robot {arm.name}` writes them; if it is a log of the motors, convert it first"
+                f"--robot {arm.name}` writes them; if it has other zeros, or is of the motors, "
+                "convert it first"
             )
         return table
 
