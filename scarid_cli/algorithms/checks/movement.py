@@ -50,7 +50,10 @@ def range_of_joints(parts: list[Lowpassed], robot: Robot) -> Finding:
     if not idle:
         return ok("motion", f"{text} rms")
     names = joints_text(i + 1 for i in idle)
-    advice = "excite every joint (`scarid trajgen`), or fix these joints in the description"
+    advice = (
+        "excite every joint (`scarid trajgen`), or fix these joints in the description and give "
+        "their columns other names (`scarid convert --map`)"
+    )
     return failed("motion", f"{names} hardly move{'s' if len(idle) == 1 else ''}: {text}", advice)
 
 

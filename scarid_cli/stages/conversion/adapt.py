@@ -129,7 +129,10 @@ def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:
     counts = Counter(f.name for f in fields)
     twice = next((name for name, count in counts.items() if count > 1), None)
     if twice:
-        raise UsageFault(f"--map: two columns would be called {twice!r}")
+        raise UsageFault(
+            f"--map: two columns would be called {twice!r}; give the other one another name as "
+            f"well: --map NAME={twice}"
+        )
     return fields
 
 

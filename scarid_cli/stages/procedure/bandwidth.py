@@ -92,7 +92,8 @@ def _too_few(record: Record, robot: Robot) -> BadData:
     if still and sum(s.q.shape[1] for s in segments) >= FEWEST:
         return BadData(
             f"{record.name}: {joints_text(still)} {'does' if len(still) == 1 else 'do'} not move; "
-            "give a log in which every joint moves, or fix these joints in the description"
+            "give a log in which every joint moves, or fix these joints in the description and "
+            "give their columns other names (`scarid convert --map held=q2 --map q2=q3`)"
         )
     return BadData(
         f"{record.name}: too few rows are away from reversals and standstill to choose a "
