@@ -13,6 +13,7 @@ import numpy as np
 from scarid_cli.algorithms.checks import (
     clock,
     fit,
+    jumps,
     leaps,
     movement,
     scale,
@@ -52,8 +53,10 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
     yield values.missing(log)
     found = leaps.found_in(log)
     yield leaps.wraps(found)
-    yield leaps.glitches(found, log.resampling("--missing", "drop"))
-    log = leaps.mended(log, found)
+    resampling, mended = log.resampling("--missing", "drop"), leaps.mended(log, found)
+    jumped = jumps.jumped(mended)
+    yield leaps.glitches(found, jumps.told(jumped, log.joints, log.rows), resampling)
+    log = jumps.without(mended, jumped)
     related = velocities.relation(log, time.period)
     if log.dq is not None:
         yield velocities.finding(related, time.period)

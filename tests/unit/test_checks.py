@@ -10,7 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from stages.tables import collected, table
 
-from scarid_cli.algorithms.checks import clock, values
+from scarid_cli.algorithms.checks import clock, jumps, values
 from scarid_cli.algorithms.checks.clock import GAP
 from scarid_cli.algorithms.checks.finding import FAILED, OK, STATUSES, WARNING, worst
 from scarid_cli.algorithms.checks.log import Log
@@ -216,3 +216,42 @@ def test_errors_of_a_first_fit_are_those_of_leaving_out_parts() -> None:
     without = [np.linalg.lstsq(A[part != k], y[part != k])[0] for k in range(10)]
     expected = np.sqrt(0.9 * np.sum((np.array(without) - found.theta) ** 2, axis=0))
     assert found.scatter(2) == pytest.approx(expected, rel=1e-6)
+
+
+def swept(rows: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Times and the positions (2, rows) of a smooth motion, from an encoder."""
+    rng = np.random.default_rng(seed)
+    t = 0.005 * np.arange(rows)
+    frequencies, phases = rng.uniform(0.1, 1.0, (2, 4, 1)), rng.uniform(0.0, 6.0, (2, 4, 1))
+    q = np.sum(rng.uniform(0.2, 0.5, (2, 4, 1)) * np.sin(6.28 * frequencies * t + phases), axis=1)
+    return t, np.round(q, 4)
+
+
+@given(st.integers(100, 1000), st.integers(0, 1 << 16))
+def test_a_smooth_motion_does_not_jump(rows: int, seed: int) -> None:
+    t, q = swept(rows, seed)
+    assert jumps.jumped(Log(t, q, np.zeros_like(q))) == []
+
+
+@given(st.integers(20, 80), st.integers(10, 200), st.integers(0, 1 << 16))
+def test_readings_that_were_lost_for_a_while_are_told(start: int, count: int, seed: int) -> None:
+    t, q = swept(400, seed)
+    q[1] += 5.0  # so that 0 is none of its positions
+    q[1, start : start + count] = 0.0
+    found = jumps.jumped(Log(t, q, np.zeros_like(q)))
+    assert found == [jumps.Jump(1, start, start + count, 0.0)]
+    (text,) = jumps.told(found, 2, 400)
+    assert text == f"q2 is 0 in rows {start + 1} to {start + count}"
+    mended = jumps.without(Log(t, q, np.zeros_like(q)), found)
+    assert np.isnan(mended.q[1]).sum() == count
+
+
+@given(st.integers(50, 350), st.integers(0, 1 << 16))
+def test_two_logs_one_after_the_other_are_told_apart(start: int, seed: int) -> None:
+    t, q = swept(400, seed)
+    q[:, start:] += np.array([[3.0], [-4.0]])
+    found = jumps.jumped(Log(t, q, np.zeros_like(q)))
+    assert found == [jumps.Jump(j, start) for j in (0, 1)]
+    told = jumps.told(found, 2, 400)
+    assert list(told) == [f"all positions jump before row {start + 1}"]
+    assert f"--rows 1:{start} and --rows {start + 1}:400" in "".join(told.values())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from math import pi
 
@@ -54,9 +55,14 @@ def wraps(found: Found) -> Finding:
     return failed("wraps", figure, "an angle or a counter that wraps: `scarid convert --unwrap`")
 
 
-def glitches(found: Found, resampling: str) -> Finding:
-    """Single readings far from those beside them; `resampling` interpolates them once empty."""
+def glitches(found: Found, jumps: Mapping[str, str], resampling: str) -> Finding:
+    """Readings far from those beside them, and jumps with what to do about each (jumps.told).
+
+    `resampling` interpolates single readings once they are empty.
+    """
     own = {name: leaps for name, leaps in found.items() if len(leaps.glitches)}
+    if jumps:
+        return failed("glitches", "; ".join(jumps), "; ".join(dict.fromkeys(jumps.values())))
     if not own:
         return ok("glitches", "none")
     texts = [

@@ -90,9 +90,12 @@ def usable(log: Log, held: Marks) -> Marks:
 
 
 def _segments(kept: Log, period: float) -> list[Segment]:
-    gaps = np.flatnonzero(np.diff(kept.t) > GAP * period) + 1
+    apart = np.diff(kept.t) > GAP * period
+    if kept.segment is not None:
+        apart |= np.diff(kept.segment) != 0.0
+    gaps = (np.flatnonzero(apart) + 1).tolist()
     found = []
-    for start, end in pairwise([0, *gaps.tolist(), kept.rows]):
+    for start, end in pairwise([0, *gaps, kept.rows]):
         t, signals = kept.t[start:end], kept.signals[:, start:end]
         if len(t) >= FEWEST:
             signals = _regular(t, signals, period)

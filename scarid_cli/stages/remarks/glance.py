@@ -9,7 +9,7 @@ from math import isfinite
 
 import numpy as np
 
-from scarid_cli.algorithms.checks import clock, leaps, units, values, velocities
+from scarid_cli.algorithms.checks import clock, jumps, leaps, units, values, velocities
 from scarid_cli.algorithms.checks.finding import FAILED, OK, WARNING, Finding
 from scarid_cli.algorithms.checks.log import Log
 from scarid_cli.algorithms.robots.description import Robot
@@ -86,8 +86,11 @@ def of_measurement(held: Compact) -> list[Finding]:
     if log.dq is not None:
         period = held.source.period
         found.append(velocities.finding(velocities.relation(some, period), period))
-    if leapt := leaps.found_in(log):
-        found += [leaps.wraps(leapt), leaps.glitches(leapt, log.resampling("--missing", "drop"))]
+    leapt = leaps.found_in(log)
+    jumped = jumps.told(jumps.jumped(leaps.mended(log, leapt)), log.joints, log.rows)
+    if leapt or jumped:
+        resampling = log.resampling("--missing", "drop")
+        found += [leaps.wraps(leapt), leaps.glitches(leapt, jumped, resampling)]
     return [finding for finding in found if finding.status != OK]
 
 
