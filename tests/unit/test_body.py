@@ -69,7 +69,7 @@ def test_what_is_told_of_a_body_is_possible(seed: int, told: set[int]) -> None:
 
 def test_controllers_get_their_units() -> None:
     values = np.array([2.0, 0.01, -0.02, 0.05, 0.01, 0.0, 0.0, 0.02, 0.0, 0.025])
-    lines = lines_of(values)
+    lines = lines_of(values, values)
     assert lines["UR"] == "set_target_payload(2, [0.01, -0.02, 0.05], [0.01, 0.02, 0.025, 0, 0, 0])"
     assert lines["Franka"] == (
         "robot.setLoad(2, {0.01, -0.02, 0.05}, {0.01, 0, 0, 0, 0.02, 0, 0, 0, 0.025})"
@@ -79,6 +79,8 @@ def test_controllers_get_their_units() -> None:
     )
     assert (
         "set_target_payload(2, [0.01, -0.02, 0.05])"
-        in lines_of(np.append(values[:9], np.nan)).values()
+        in lines_of(np.append(values[:9], np.nan), values).values()
     )
-    assert not lines_of(np.append(np.nan, values[1:]))
+    assert not lines_of(np.append(np.nan, values[1:]), values)
+    vague = lines_of(values, np.append(values[:9], -0.001))
+    assert vague["UR"] == "set_target_payload(2, [0.01, -0.02, 0.05])"

@@ -263,7 +263,7 @@ def test_sizes_are_told_with_their_units_and_intervals() -> None:
         "there is a gap in the gear of joint 2 (backlash), with the encoder on the motor; fitted "
         "as well: 0.002 +- 0.00039 rad at joint 2",
         "something yields between encoder and link of joint 1 (an elastic gear or belt); fitted as "
-        "well: 100 +- 2 N m/rad at joint 1",
+        "well: at most 100 +- 2 N m/rad at joint 1 (less by the motor's part of the inertia there)",
         "motor and link of joint 2 oscillate against each other, the encoder on the link; "
         "fitted as well: 20 +- 0.31 Hz at joint 2",
         "the torque of joint 1 has a hysteresis, as of its sensor; fitted as well: 0.2 +- 0.02 N m "

@@ -15,7 +15,7 @@ from scarid_cli.algorithms.beyond.catalogue import (
     TORQUES,
     WIDESPREAD,
 )
-from scarid_cli.algorithms.beyond.gears import Gears
+from scarid_cli.algorithms.beyond.gears import Gears, Presliding
 from scarid_cli.algorithms.beyond.model import Model
 from scarid_cli.algorithms.beyond.mounting import Tilt
 from scarid_cli.algorithms.beyond.ripple import Ripples
@@ -269,7 +269,26 @@ class Trial:
         """The effects of gaps, hysteresis and presliding, of the joints that are not fitted."""
         products, places = self.mismatches
         own = {x: columns for x, columns in places.items() if x in WIDESPREAD}
-        return self.beside(products, own, plain, plain) if own else []
+        found = self.beside(products, own, plain, plain) if own else []
+        return [x if self._builds_up(x) else replace(x, name=Reversals.NAME) for x in found]
+
+    def _builds_up(self, effect: Effect) -> bool:
+        """Whether friction that builds up behind a reversal does so beyond what the low-pass makes.
+
+        A joint that sticks leaves much the same in the rows next to a reversal.
+        """
+        if effect.name != Presliding.NAME or not effect.significant() or not self.rows.bandwidth:
+            return True
+        assert self.model
+        sizes = np.maximum(np.nan_to_num(effect.amounts), Presliding.SMALL)
+        of = Gears(self.rows, self.model, self.estimates[: self.own])
+        each = [Presliding.secant(of, j, float(size)) for j, size in enumerate(sizes)]
+        scales = away_from_reversals(self.rows, 1.0 / self.rows.bandwidth)
+        products, places = self.products(scales, {Presliding.NAME: np.stack(each, axis=2)})
+        plain = products.solved([])
+        return plain is None or any(
+            x.significant() for x in self.beside(products, places, plain, plain)
+        )
 
     @cached_property
     def ripples(self) -> Ripples:

@@ -108,7 +108,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     found = gains.fitted(evidence.diagnostics, len(evidence.names)) or _far(apart, evidence)
     bias = [*evidence.failed, *([gains.told(found)] if found else []), *_biased(evidence)]
     if obstacles:
-        return Verdict(NOT_IDENTIFIABLE, (*evidence.failed, *obstacles, summary), bool(bias))
+        return Verdict(NOT_IDENTIFIABLE, (*obstacles, *evidence.failed, summary), bool(bias))
     wrong = [
         *bias,
         *_forgotten(evidence.diagnostics),
