@@ -161,8 +161,8 @@ def _remedy(column: str) -> str:
         return "make a trajectory with `scarid trajgen`"
     more = {"t": "; --rate HZ where there is no clock", "tau": "; docs/robots.md for currents"}
     return (
-        f"rename yours with `scarid convert --map {column}=NAME` (docs/tables.md has all names"
-        f"{more.get(column.rstrip('0123456789'), '')})"
+        f"let `scarid convert` find it, or rename yours with `scarid convert --map {column}=NAME` "
+        f"(docs/tables.md has all names{more.get(column.rstrip('0123456789'), '')})"
     )
 
 
