@@ -54,7 +54,10 @@ class Geometry(OfTorques):
 
     NAME = "geometry"
     UNIT = "of the distance"
-    LACKS = "the geometry is not as described: {distances}"
+    LACKS = (
+        "the geometry is not as described: {distances} (correct the URDF, from which exported "
+        "models have it)"
+    )
     RANGE = (-1.0, 1.0)  # a distance of less than nothing, or twice what it is, has another cause
 
     @classmethod
