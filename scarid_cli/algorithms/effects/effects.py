@@ -48,6 +48,7 @@ class Effect:
     those that are not in it), or else how far the parameters move. One that is `suspected` counts
     whether it is significant or not. One that is `shared` was fitted for other joints, so that
     these may have it as far as the log can tell. It is the best of so many that were `searched`.
+    `told` is the entry as which it is told, if not its own.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Effect:
     suspected: bool = False
     shared: bool = False
     searched: float = 1.0
+    told: str = ""
 
     @cached_property
     def ratios(self) -> Array:
@@ -270,7 +272,7 @@ class Trial:
         products, places = self.mismatches
         own = {x: columns for x, columns in places.items() if x in WIDESPREAD}
         found = self.beside(products, own, plain, plain) if own else []
-        return [x if self._builds_up(x) else replace(x, name=Reversals.NAME) for x in found]
+        return [x if self._builds_up(x) else replace(x, told=Reversals.NAME) for x in found]
 
     def _builds_up(self, effect: Effect) -> bool:
         """Whether friction that builds up behind a reversal does so beyond what the low-pass makes.

@@ -150,7 +150,7 @@ def notes_of(names: Sequence[str], diagnostics: Diagnostics, robot: Robot) -> li
     best = max(found, key=lambda effect: effect.clearness(level))
     joints = best.joints(level, len(robot.joints))
     there = Found(robot, joints, best.amounts, best.noise, diagnostics.cycles, names)
-    advice = PHENOMENA[best.name].lacks(there)
+    advice = PHENOMENA[best.told or best.name].lacks(there)
     return [f"{advice}; {_allowing(names, _wide(best, least))} it"]
 
 
