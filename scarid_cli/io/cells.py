@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Sequence
 
+# Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
 NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
 
 

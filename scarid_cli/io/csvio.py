@@ -36,10 +36,8 @@ JSON = (b'{"', b"[{", b"[[")  # how a file of JSON begins
 # How programs write a missing number; in a table with a column of text they are texts.
 MISSING = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
-# Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
-DATED = re.compile(
-    r"\s*(\d+[-/.:]\d+[-/.:]\d|[\d.]+ *[a-z]+\s*$)"
-)  # a date, or a time with its unit
+# A date, or a time with its unit, where a number of seconds is expected.
+DATED = re.compile(r"\s*(\d+[-/.:]\d+[-/.:]\d|[\d.]+ *[a-z]+\s*$)")
 INDEX = "index"  # a first column without a name, which pandas writes
 
 

@@ -123,7 +123,14 @@ class Mismatch(Phenomenon):
     @classmethod
     def sizes(cls, fitted: Fitted) -> str:
         """`117 +- 4 N m/rad at joint 1 and 98 +- 3 N m/rad at joint 2`."""
-        return listed([f"{_told(cls, x, fitted)} at joint {x.joint + 1}" for x in fitted.own])
+        return listed([cls.size_of(x, fitted) for x in fitted.own])
+
+    @classmethod
+    def size_of(cls, one: Addition, fitted: Fitted) -> str:
+        """`117 +- 4 N m/rad at joint 1`, with half the 95 % interval."""
+        value, error = cls.told(one.size, one.error)
+        unit = cls.unit(fitted.joint(one))
+        return f"{value:.{cls.DIGITS}g} {plus_minus(error)} {unit} at joint {one.joint + 1}"
 
     @classmethod
     def told(cls, size: float, error: float) -> tuple[float, float]:
@@ -190,17 +197,16 @@ class ElasticGear(Mismatch):
         return 1.0 / size, error / size**2
 
     @classmethod
-    def sizes(cls, fitted: Fitted) -> str:
+    def size_of(cls, one: Addition, fitted: Fitted) -> str:
         """The stiffness, which is a bound where the inertia behind the gear is not known.
 
         The links yield by what they need themselves. A parameter that has the inertia of motor and
         links together makes the inertial part of it too large, by the square of their ratio.
         """
-        terms = [p.term for p in fitted.robot.parameters]
-        apart = {j for term in terms if isinstance(term, MOTORS) for j in term.joints}
-        if all(x.joint + 1 in apart for x in fitted.own):
-            return super().sizes(fitted)
-        return f"at most {super().sizes(fitted)} (less by the motor's part of the inertia there)"
+        text, terms = super().size_of(one, fitted), (p.term for p in fitted.robot.parameters)
+        if any(isinstance(term, MOTORS) and one.joint + 1 in term.joints for term in terms):
+            return text
+        return f"at most {text} (less by the motor's part of the inertia there)"
 
 
 class ElasticJoint(Mismatch):
@@ -273,12 +279,6 @@ class Presliding(Mismatch):
         q, dq = of.rows.motion[:2, joint]
         share = (q - played(of.rows, q, s)) / s - np.sign(dq)
         return of.own(joint, of.passed(of.coulomb(joint) * share / s))
-
-
-def _told(kind: type[Mismatch], one: Addition, fitted: Fitted) -> str:
-    """`117 +- 4 N m/rad`, with half the 95 % interval."""
-    value, error = kind.told(one.size, one.error)
-    return f"{value:.{kind.DIGITS}g} {plus_minus(error)} {kind.unit(fitted.joint(one))}"
 
 
 def played(rows: Rows, x: Array, size: float) -> Array:

@@ -9,7 +9,7 @@ drops out.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -114,13 +114,13 @@ def standard(B: Array, difference: Array, covariance: Array) -> Standard:
 def in_frame(found: Standard, frame: Frame) -> Payload:
     """The payload in a frame that is fixed to the last axis."""
     values, errors = located(found.phi, found.covariance, frame)
-    body, away = values, 0.0
-    if not abs(values[0]) > HALF * errors[0]:
-        return Payload(values, np.array([errors[0], *[np.nan] * 9]), body, away)
-    if not np.linalg.eigvalsh(pseudo_inertia(found.phi))[0] > 0.0:
-        nearby, away = nearest(found.phi, found.factor)
-        body = _of_centre(nearby, frame)
-    return Payload(values, errors, body, away)
+    free = Payload(values, errors, values, 0.0)
+    if not free.shown:
+        return replace(free, errors=np.array([errors[0], *[np.nan] * 9]))
+    if np.linalg.eigvalsh(pseudo_inertia(found.phi))[0] > 0.0:
+        return free
+    nearby, away = nearest(found.phi, found.factor)
+    return replace(free, body=_of_centre(nearby, frame), away=away)
 
 
 def located(phi: Array, covariance: Array, frame: Frame) -> tuple[Array, Array]:

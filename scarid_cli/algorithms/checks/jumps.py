@@ -42,7 +42,8 @@ def _rows(t: Array, q: Array) -> list[int]:
         return []
     steps, seconds = np.abs(np.diff(q[known])), np.diff(t[known])
     speeds = np.divide(steps, seconds, out=np.zeros_like(steps), where=seconds > 0.0)
-    order = np.argsort(speeds)[::-1][: MOST + 1]
+    few = np.argpartition(speeds, -(MOST + 1))[-(MOST + 1) :]
+    order = few[np.argsort(speeds[few])[::-1]]
     fastest = speeds[order]
     apart = (fastest[:-1] > OUT * fastest[1:]) & (fastest[1:] > 0.0)
     if not apart.any():

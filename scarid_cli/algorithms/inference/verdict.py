@@ -122,7 +122,7 @@ def verdict(evidence: Evidence, robot: Robot) -> Verdict:
     names, diagnostics = evidence.names, evidence.diagnostics
     own = dict(zip(names, evidence.estimates.tolist(), strict=False))
     notes = [*additions_of(own, diagnostics, robot), *notes_of(names, diagnostics, robot)]
-    if apart and not found:
+    if apart and found is not apart:
         notes = [f"{gains.told(apart)}; the intervals allow for it", *notes]
     notes = [*_inertia_unknown(evidence), *notes]
     if not wrong and any(x.end - x.start >= LASTING for x in evidence.diagnostics.bursts):
