@@ -2,19 +2,23 @@
 
 Each `scarid_cli/kernels/NAME.py` with a `NAME.pxd` beside it becomes an extension. Without a
 working C compiler the build goes on with a warning, makes a wheel for any machine, and the same
-files run interpreted.
+files run interpreted. What Cython adds to every kernel (memory views) is one module, `_shared`:
+without it the build takes three times as long.
 """
 
 import os
+import subprocess
 import sys
 import sysconfig
 import tempfile
 import warnings
+from copy import deepcopy
 from distutils.ccompiler import new_compiler
 from distutils.errors import CCompilerError, DistutilsExecError
 from distutils.sysconfig import customize_compiler
 from pathlib import Path
 
+import Cython
 from Cython.Build import cythonize
 from setuptools import Extension, setup
 
@@ -28,6 +32,33 @@ DIRECTIVES = {
 
 # Loops as short as a regressor has columns: the checks before vectors cost more than they save.
 SHORT_LOOPS = {"information": ["-fno-tree-vectorize"]}
+
+BUILD = Path("build/cython", Cython.__version__)  # files of two versions do not go together
+SHARED = "_shared"
+PACKAGE = "scarid_cli.kernels"
+
+
+def extension(name: str, source: Path) -> Extension:
+    """A module of the kernels: its bits are those of the interpreted file."""
+    return Extension(
+        f"{PACKAGE}.{name}",
+        [str(source)],
+        # No contraction to fused multiply-add: compiled and interpreted bits stay equal.
+        # No symbols of debuggers, which are two thirds of a wheel.
+        extra_compile_args=["-O3", "-g0", "-ffp-contract=off", *SHORT_LOOPS.get(name, [])],
+        define_macros=[("Py_LIMITED_API", "0x030B0000")],
+        py_limited_api=True,
+    )
+
+
+def shared() -> Extension:
+    """The module of what Cython adds to every kernel."""
+    path = BUILD / f"{SHARED}.c"
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        words = [f"--generate-shared={path}", f"--module-name={PACKAGE}.{SHARED}"]
+        subprocess.run([sys.executable, "-m", "cython", *words], check=True)
+    return extension(SHARED, path)
 
 
 def compiles() -> bool:
@@ -57,22 +88,16 @@ def man_pages() -> list[str]:
 
 extensions = cythonize(
     [
-        Extension(
-            f"scarid_cli.kernels.{pxd.stem}",
-            [str(pxd.with_suffix(".py"))],
-            # No contraction to fused multiply-add: compiled and interpreted bits stay equal.
-            # No symbols of debuggers, which are two thirds of a wheel.
-            extra_compile_args=["-O3", "-g0", "-ffp-contract=off", *SHORT_LOOPS.get(pxd.stem, [])],
-            define_macros=[("Py_LIMITED_API", "0x030B0000")],
-            py_limited_api=True,
-        )
+        extension(pxd.stem, pxd.with_suffix(".py"))
         for pxd in sorted(Path("scarid_cli/kernels").glob("*.pxd"))
     ],
     compiler_directives=DIRECTIVES,
-    build_dir="build/cython",
+    build_dir=str(BUILD),
+    shared_utility_qualified_name=f"{PACKAGE}.{SHARED}",
 )
-for extension in extensions:
-    extension.optional = True  # set after cythonize, which does not carry it over
+extensions.append(shared())
+for module in extensions:
+    module.optional = True  # set after cythonize, which does not carry it over
 
 compiled = compiles()
 setup(
