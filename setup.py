@@ -12,7 +12,6 @@ import sys
 import sysconfig
 import tempfile
 import warnings
-from copy import deepcopy
 from distutils.ccompiler import new_compiler
 from distutils.errors import CCompilerError, DistutilsExecError
 from distutils.sysconfig import customize_compiler

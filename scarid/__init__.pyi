@@ -720,7 +720,7 @@ def gains(
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.
-        toml: Write the torque constants that are then right, as lines of a TOML file.
+        toml: Write the torque constants that are then right, as lines of the TOML file of a robot whose logs have currents.
         no_history: Write no history into the metadata.
     """
 

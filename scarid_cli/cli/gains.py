@@ -34,7 +34,9 @@ from scarid_cli.cli.declaring.declare import declare
 @options.robot
 @selecting.window
 @options.side_output(
-    "--toml", help="Write the torque constants that are then right, as lines of a TOML file."
+    "--toml",
+    help="Write the torque constants that are then right, as lines of the TOML file of a robot "
+    "whose logs have currents.",
 )
 @options.as_json
 @options.table_output

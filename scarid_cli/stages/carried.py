@@ -191,6 +191,8 @@ def summary(piece: Piece, load: Load, link: str) -> str:
     when = f"from {piece.start:.4g} to {piece.end:.4g} s"
     if not load.shown:
         return f"{when} nothing more than the bare robot has ({mass:.3g} {half} kg)"
+    if mass < 0.0:
+        return f"{when} {-mass:.4g} {half} kg less than the bare robot has"
     own = zip(NAMES[1:], load.values[1:], load.errors[1:], load.hidden, strict=True)
     centre = [f"{name} {x:.3g} {plus_minus(e)} m" for name, x, e, hidden in own if not hidden]
     where = f"; in the frame of {link} {', '.join(centre)}" if centre else ""

@@ -19,7 +19,8 @@ from scarid_cli.errors import BadData
 from scarid_cli.interval import HALF, plus_minus
 from scarid_cli.io import schemas
 from scarid_cli.io.table import Table, table_of
-from scarid_cli.stages.payload import frame_of
+from scarid_cli.stages.payload import LOADED, frame_of, loaded
+from scarid_cli.stages.records.corrected import gains_of
 from scarid_cli.stages.results.parameters import GAINS
 from scarid_cli.stages.results.products import products_of
 
@@ -68,22 +69,41 @@ def load_in(
     return Load(*mass, frame.carried(place), error)
 
 
-def gains(bare: Table, loaded: Table, robot: Robot, load: Load) -> Told:
+def gains(bare: Table, other: Table, robot: Robot, load: Load) -> Told:
     """The gains, from the tables of parameters of the bare robot and of the loaded one."""
-    _require_same_gains(bare, loaded)
+    _require_same_gains(bare, other)
     shared = Model(robot, list(range(len(robot.names)))).transmits
-    one, other = products_of(bare, robot), products_of(loaded, robot)
-    found = with_load(one, other, directions(robot), shared, load)
+    one, two = products_of(bare, robot), products_of(other, robot)
+    found = with_load(one, two, directions(robot), shared, load)
     told = Told(found, _constants(robot))
     if not told.known.any():
         within = HALF * 100.0 * float(found.errors.min())
         centre = "" if load.centre is not None else ", or state its centre as well (--centre)"
+        remedy = freed(bare) or (
+            "use a motion that turns the joints against gravity and is longer or faster, with and "
+            f"without the load{centre}"
+        )
         raise BadData(
-            f"gains: the motion tells none of them better than within {within:.2g} %; use a motion "
-            "that turns the joints against gravity and is longer or faster, with and without the "
-            f"load{centre}"
+            f"gains: the motion tells none of them better than within {within:.2g} %; {remedy}"
         )
     return told
+
+
+def freed(bare: Table) -> str:
+    """What to do where the torques of the bare robot's log do not fit together; empty if they do.
+
+    With a gain that is wrong in its parameters, these are too vague to tell any gain.
+    """
+    told = bare.meta.extra.get(GAINS) or {}
+    if gains_of(bare) or all(
+        abs(k - 1.0) < max(CHANGED, CERTAINLY * error) for k, error in told.values()
+    ):
+        return ""
+    anchor = next((j for j in range(1, len(told) + 2) if str(j) not in told), 1)
+    return (
+        f"the torques of the bare robot's log do not fit together: identify it with `scarid "
+        f"identify --free-gains {anchor}`, and give that table for --parameters"
+    )
 
 
 def _require_same_gains(bare: Table, loaded: Table) -> None:
@@ -113,8 +133,11 @@ def _constants(robot: Robot) -> Array:
     return np.where(alone, log.constants, np.nan)
 
 
-def table(found: Told, robot: Robot, of: Table) -> Table:
-    """A row for each joint, with its 95 % interval; empty where the gain is not told."""
+def table(found: Told, robot: Robot, of: Table, with_load: Table) -> Table:
+    """A row for each joint, with its 95 % interval; empty where the gain is not told.
+
+    From the parameters of the bare robot and of the loaded one.
+    """
     k, errors = found.gains.factors, found.gains.errors
     span = np.exp(HALF * errors)
     columns = (k, k * errors, k / span, k * span, found.constants / k)
@@ -125,6 +148,7 @@ def table(found: Told, robot: Robot, of: Table) -> Table:
     extra = {
         "covariance": found.gains.covariance.tolist(),
         "wrong": [j + 1 for j in found.wrong],
+        LOADED: loaded(with_load),
     }
     meta = replace(of.meta, kind="gains", extra=extra)
     return table_of("gains", schemas.load("gains").arrow(), rows, meta)
@@ -155,17 +179,25 @@ def _gain(gains: Gains, j: int) -> str:
 
 
 def toml_lines(found: Told) -> str:
-    """The [[joint]] entries of a TOML file, with the torque constants that make the gains 1."""
+    """The [[joint]] entries of a TOML file, with the torque constants that make the gains 1.
+
+    A joint whose log has torques gets a comment: a constant would not be read.
+    """
     lines = ["# The torque constants that the gains of `scarid gains` make right."]
     if np.isnan(found.constants).any():
-        lines.append("# Without an own constant: what to multiply the logged torque by.")
+        lines += [
+            "# A log that has torques reads no constants: multiply those that made them by the",
+            "# factor, or give the table of gains to `scarid identify --gains`.",
+        ]
     for j, constant in enumerate(found.constants):
         lines += ["", f"[[joint]]  # {j + 1}"]
         if not found.known[j]:
             lines.append("# not told")
             continue
-        own = bool(np.isfinite(constant))
-        value = (constant if own else 1.0) / found.gains.factors[j]
-        unit = f"N m/A, in place of {constant:g}" if own else "of the logged torque"
-        lines.append(f"torque_constant = {value:.5g}  # {unit}; gain {_gain(found.gains, j)}")
+        value, gain = 1.0 / found.gains.factors[j], f"gain {_gain(found.gains, j)}"
+        if np.isfinite(constant):
+            own = f"torque_constant = {constant * value:.5g}"
+            lines.append(f"{own}  # N m/A, in place of {constant:g}; {gain}")
+        else:
+            lines.append(f"# times {value:.5g}; {gain}")
     return "\n".join([*lines, ""])

@@ -52,6 +52,7 @@ def identify(
     keep: Callable[[Checkpoint], None] | None = None,
     findings: list[Finding] | None = None,
     watch: Callable[[SoFar], None] | None = None,
+    loaded: bool = False,
 ) -> Table:
     """The table of parameters, estimated from all rows of a motion.
 
@@ -59,7 +60,7 @@ def identify(
     sample (Fig. 6). `checkpoint` is the checkpoint of an earlier estimation that is continued, and
     `keep` receives that of this one. `findings` receives what is not in order with the log; what
     makes the result wrong enters the verdict as well. `watch` is offered what is known so far after
-    each batch of rows, unless they are all held.
+    each batch of rows, unless they are all held. A `loaded` robot carries what is not described.
     """
     findings = [] if findings is None else findings
     treatment = treatment or Treatment()
@@ -70,7 +71,18 @@ def identify(
         checkpoint = Checkpoint.at_start(estimator.init(initial), table.period, held)
     times, reach = Times(table, checkpoint.seen), Reach(len(robot.joints))
     watched = times.watched(reach.watched(table))
-    judged = partial(_judged, table, robot, estimator, initial, treatment, variance, times, reach)
+    judged = partial(
+        _judged,
+        table,
+        robot,
+        estimator,
+        initial,
+        treatment,
+        variance,
+        times,
+        reach,
+        loaded=loaded,
+    )
     checkpoint = _after_all_rows(
         watched, robot, estimator, treatment, checkpoint, trace, watch, judged
     )
@@ -105,6 +117,8 @@ def _judged(
     reach: Reach,
     checkpoint: Checkpoint,
     findings: Sequence[Finding],
+    *,
+    loaded: bool = False,
 ) -> tuple[Table, list[Finding]]:
     """The table of parameters at a checkpoint, and what is not in order beside the findings."""
     _check_enough(table, robot, checkpoint.subsample.counted)
@@ -117,7 +131,7 @@ def _judged(
         rows = regressed(checkpoint.subsample.rows(), robot)
         further = without_placeholders(further, rows, robot) + of_velocities(rows)
         if all(finding.status != FAILED for finding in (*findings, *further)):
-            further += of_model(rows, robot)
+            further += of_model(rows, robot, loaded=loaded)
     every = [*findings, *further]
     bodies = None
     if treatment.consistent:

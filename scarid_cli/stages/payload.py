@@ -20,6 +20,7 @@ from scarid_cli.io.table import Table, table_of
 from scarid_cli.stages.models.controllers import settings
 from scarid_cli.stages.results.estimates import Estimates
 
+LOADED = "loaded"  # in the metadata: the verdict on the loaded robot
 OF_TORQUES = (
     "the intervals assume that the logged torques are right: if they are 1 % too large, so is the "
     "mass (a load of known mass shows this: `scarid gains`)"
@@ -75,9 +76,22 @@ def table(found: Payload, of: Table, link: str) -> Table:
     rows = zip(
         NAMES, UNITS, values, found.errors, values - half, values + half, found.told, strict=True
     )
-    extra = {"frame": link, "possible": found.possible, "away": found.away}
+    extra = {
+        "frame": link,
+        "possible": found.possible,
+        "away": found.away,
+        LOADED: loaded(of),
+    }
     meta = replace(of.meta, kind="payload", extra=extra)
     return table_of("payload", schemas.load("payload").arrow(), list(rows), meta)
+
+
+def loaded(table: Table) -> dict[str, object] | None:
+    """The verdict on the loaded robot and its reasons, from its parameters; None without one."""
+    extra = table.meta.extra
+    if "verdict" not in extra:
+        return None
+    return {"verdict": extra["verdict"], "reasons": list(extra["reasons"])}
 
 
 def told(found: Payload, link: str) -> Iterator[str]:

@@ -10,7 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from stages.tables import collected, table
 
-from scarid_cli.algorithms.checks import clock, jumps, values
+from scarid_cli.algorithms.checks import clock, jumps, scale, values
 from scarid_cli.algorithms.checks.clock import GAP
 from scarid_cli.algorithms.checks.finding import FAILED, OK, STATUSES, WARNING, worst
 from scarid_cli.algorithms.checks.log import Log
@@ -255,3 +255,19 @@ def test_two_logs_one_after_the_other_are_told_apart(start: int, seed: int) -> N
     told = jumps.told(found, 2, 400)
     assert list(told) == [f"all positions jump before row {start + 1}"]
     assert f"--rows 1:{start} and --rows {start + 1}:400" in "".join(told.values())
+
+
+@pytest.mark.parametrize(
+    ("factors", "unit"),
+    [
+        ([0.01, 0.011, 0.009], True),  # of the largest torque, say
+        ([1e3, 1.1e3, 900.0], True),
+        ([1.0, 1.1, 0.28], False),  # a load on the other side of an axis
+        ([6.0, 5.0, 20.0], False),  # heavier than the arm
+        ([1.0, 1.0, 1.0], False),
+    ],
+)
+def test_a_load_is_no_unit(factors: list[float], *, unit: bool) -> None:
+    """Of a loaded robot, all torques are in another unit or none is said to be."""
+    found = scale.Scale(np.array(factors), 0.01 * np.array(factors), np.array([3.0, 2.0, 1.0]))
+    assert found.of_a_unit == unit

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from conftest import Result
 from scipy.optimize import least_squares
@@ -21,6 +22,8 @@ from scarid_cli.algorithms.changes.known_load import (
 )
 from scarid_cli.algorithms.uncertainty.joint_products import JointProducts
 from scarid_cli.arrays import Array
+from scarid_cli.io.table import Metadata, Table
+from scarid_cli.stages.gains import freed
 
 # Of parameters 0 to 4, 0 to 3 are shared and 4 is the friction of joint 0; joint 2 shares none
 # and has parameter 5 alone. The load changes 0 by its mass and 2 by its first moment.
@@ -184,6 +187,25 @@ def test_errors_grow_with_the_inflation_by_autocorrelated_noise() -> None:
     four = replace(one, products=replace(one.products, inflation=4.0))
     narrow, wide = (alone(x, 1e3, {1, 2}) for x in (one, four))
     assert wide.errors[0] == pytest.approx(2.0 * narrow.errors[0], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("extra", "anchor"),
+    [
+        ({}, None),
+        ({"relative_gains": {"1": [1.004, 0.003], "3": [0.999, 0.001]}}, None),
+        ({"relative_gains": {"1": [1.004, 0.003], "3": [1.247, 0.002]}}, 2),
+        ({"relative_gains": {"2": [1.247, 0.002]}}, 1),
+        ({"relative_gains": {"2": [1.247, 0.002]}, "torque_gains": [1.0, 1.25]}, None),
+    ],
+)
+def test_what_a_wrong_gain_makes_vague_is_identified_with_free_gains(
+    extra: dict[str, object], anchor: int | None
+) -> None:
+    bare = Table("bare", pa.schema([]), Metadata(kind="parameters", extra=extra), iter(()))
+    said = freed(bare)
+    assert (f"`scarid identify --free-gains {anchor}`" in said) == (anchor is not None)
+    assert bool(said) == (anchor is not None)
 
 
 def test_a_gain_that_changed_between_the_logs_is_refused(shell: Callable[..., Result]) -> None:

@@ -27,6 +27,7 @@ from scarid_cli.errors import BadData
 from scarid_cli.io.table import Metadata, Table
 from scarid_cli.stages.carried import Load
 from scarid_cli.stages.carried import told as followed
+from scarid_cli.stages.models.controllers import settings as settings_for
 from scarid_cli.stages.payload import payload, table, told
 
 AXES = 4
@@ -170,6 +171,11 @@ def test_the_command_finds_what_the_simulator_hung_there(
     moments = np.linalg.eigvalsh(inertia_of(np.array([x["body"] for x in machine["values"]])[4:]))
     assert moments[0] > 0.0
     assert moments[2] < moments[0] + moments[1]
+    assert machine["loaded"]["verdict"] in found.err
+    less = document(shell("scarid payload -q --json --parameters p.parquet bare.parquet").out)
+    assert less["controllers"] == {}
+    assert less["away"] is None
+    assert all(x["body"] is None for x in less["values"])
     page = shell(
         "scarid payload -q --parameters bare.parquet --frame l4 p.parquet -o payload.parquet;"
         " scarid report bare.parquet payload.parquet"
@@ -249,7 +255,10 @@ def test_nothing_that_hangs_there_has_neither_a_centre_nor_settings(mass: float)
 
 
 def test_less_than_the_bare_robot_has_is_no_body() -> None:
-    (line,) = told(hung(-0.5, 0.02), "tool")
+    found = hung(-0.5, 0.02)
+    assert np.isnan(found.body).all()
+    assert settings_for(found.told, found.values - 2.0 * found.errors) == {}
+    (line,) = told(found, "tool")
     assert line.startswith("0.5 +- 0.039 kg less than the bare robot has hangs on tool: give ")
 
 

@@ -33,7 +33,8 @@ class Payload:
     """Mass [kg], centre [m] and inertia about the centre [kg m2] in a frame, as in NAMES.
 
     `values` and `errors` (10); an error is nan where the motion does not tell the value. `body`
-    (10) are the values of the nearest body that there can be, so many standard deviations `away`.
+    (10) are the values of the nearest body that there can be, so many standard deviations `away`:
+    nan and inf if less hangs there than on the bare robot.
     """
 
     values: Array
@@ -117,6 +118,8 @@ def in_frame(found: Standard, frame: Frame) -> Payload:
     free = Payload(values, errors, values, 0.0)
     if not free.shown:
         return replace(free, errors=np.array([errors[0], *[np.nan] * 9]))
+    if values[0] < 0.0:  # what was taken away: no body hangs there
+        return replace(free, body=np.full(10, np.nan), away=np.inf)
     if np.linalg.eigvalsh(pseudo_inertia(found.phi))[0] > 0.0:
         return free
     nearby, away = nearest(found.phi, found.factor)

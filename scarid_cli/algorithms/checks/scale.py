@@ -76,6 +76,16 @@ class Scale:
         return [j for j in above if self._beyond_a_tool(j, least, most)]
 
     @property
+    def of_a_unit(self) -> bool:
+        """Whether all torques are as in one other unit, which no load makes them.
+
+        No load halves the torques of several joints at once, or makes them a thousand times as
+        large.
+        """
+        every = len(self.low or self.high) == len(self.known) > 1
+        return every and bool(self.low or _prefix(self))
+
+    @property
     def agrees(self) -> bool:
         """Whether the torques are about those that the masses need, as far as is known."""
         return bool(self.known) and not (self.low or self.high or self.reversed)

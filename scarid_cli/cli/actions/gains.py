@@ -32,8 +32,9 @@ def run(
     bare = job.read(parameters, "parameters")
     arm = job.robot(robot, bare)
     load = stage.load_in(arm, frame, (kg, error), place)
-    found = stage.gains(bare, loaded(job, files, robot, arm, gains_of(bare)), arm, load)
-    result = stage.table(found, arm, bare)
+    other = loaded(job, files, robot, arm, gains_of(bare))
+    found = stage.gains(bare, other, arm, load)
+    result = stage.table(found, arm, bare, other)
     if lines:
         lines.write(stage.toml_lines(found))
     job.write_or_print(job.recorded(result), of_gains if as_json else None)

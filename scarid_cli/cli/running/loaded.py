@@ -25,7 +25,7 @@ def loaded(
         return job.read(files[0], "parameters")
     logs, arm = read_logs(job, files, robot or arm.name, lambda file, own: read(job, file, own))
     logs = [corrected(log, gains) for log in logs] if gains else logs
-    result = blind.identified(logs, arm, progress=searching(job))
+    result = blind.identified(logs, arm, progress=searching(job), loaded=True)
     verdict, reasons = result.meta.extra["verdict"], result.meta.extra["reasons"]
     job.say(f"the loaded robot: {verdict}: {reasons[0]}")
     return result

@@ -16,10 +16,10 @@ def settings(values: Array, lows: Array) -> dict[str, str]:
     """A line for each controller, from mass [kg], centre [m] and inertia about it [kg m2] (10).
 
     Values that are not told are nan, and `lows` (10) are the lower ends of their intervals. There
-    are no lines without a mass and its centre. An inertia that is not told as a whole, or with a
-    moment that may be 0, is left out, or 0 where there must be one.
+    are no lines without a mass above 0 and its centre. An inertia that is not told as a whole, or
+    with a moment that may be 0, is left out, or 0 where there must be one.
     """
-    if not (np.isfinite(values[:4]).all() and values[0] > 0.0):
+    if not (np.isfinite(values[:4]).all() and lows[0] > 0.0):
         return {}
     inertia = (
         values[4:] if np.isfinite(values[4:]).all() and (lows[PRINCIPAL] > 0.0).all() else None

@@ -45,17 +45,18 @@ def of_velocities(rows: Rows) -> list[Finding]:
     return [found] if found.status == FAILED else []
 
 
-def of_model(rows: Rows, robot: Robot) -> list[Finding]:
+def of_model(rows: Rows, robot: Robot, *, loaded: bool = False) -> list[Finding]:
     """Axes, zeros, gravity and signs unlike in the description, and torques in another unit.
 
-    A torque that never changes, as of a joint without a motor, says nothing about them.
+    What a `loaded` robot carries is not described: only one unit of all torques is then told. A
+    torque that never changes, as of a joint without a motor, says nothing about them.
     """
     samples = _samples(rows, robot)
     if samples is None:
         return []
     driven = np.all(np.ptp(samples.motion[3], axis=1) > 0.0)
     unlike = _described(samples, robot) if driven else []
-    return unlike or _scale(samples, robot)
+    return unlike or _scale(samples, robot, loaded=loaded)
 
 
 def _samples(rows: Rows, robot: Robot) -> Samples | None:
@@ -88,7 +89,7 @@ def _described(samples: Samples, robot: Robot) -> list[Finding]:
     return mounting.findings(mounted.case)
 
 
-def _scale(samples: Samples, robot: Robot) -> list[Finding]:
+def _scale(samples: Samples, robot: Robot, *, loaded: bool) -> list[Finding]:
     """Torques in another unit, or all of them reversed.
 
     That all friction is negative then is a reason of the verdict by itself. Torques of some joints
@@ -99,6 +100,8 @@ def _scale(samples: Samples, robot: Robot) -> list[Finding]:
         signed = wiring.signed(robot, samples)
         told = signed.fit.brakes or all(sign > 0 for sign in signed.case.signs[1])
         return [] if told else [wiring.signs(signed, robot)]
+    if loaded and not size.of_a_unit:
+        return []
     found = scale.finding(robot, size)
     if len(size.low or size.high) < len(robot.joints):
         found = replace(found, advice=f"{found.advice}; {CAUSE}")

@@ -95,6 +95,7 @@ def of_gains(table: Table) -> Document:
             **_head("gains", table),
             "told": told,
             "wrong": table.meta.extra["wrong"],
+            "loaded": table.meta.extra["loaded"],
             "joints": rows,
         }
     )
@@ -111,7 +112,7 @@ def of_payload(table: Table) -> Document:
     return _document(
         {
             **_head("payload", table),
-            **{name: extra[name] for name in ("frame", "possible", "away")},
+            **{name: extra[name] for name in ("frame", "possible", "away", "loaded")},
             "told": told,
             "values": [_with_half(row) for row in rows],
             "controllers": settings(body, lows),
