@@ -11,7 +11,14 @@ import pyarrow as pa
 from scarid_cli.algorithms.regression.treatment import Treatment
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.drives import drives
-from scarid_cli.algorithms.robots.physical import Physical, chi_square, inertia_of, nearest
+from scarid_cli.algorithms.robots.physical import (
+    Physical,
+    chi_square,
+    inertia_of,
+    nearest,
+    pseudo_inertia,
+)
+from scarid_cli.algorithms.robots.rigid import Held
 from scarid_cli.arrays import Array
 from scarid_cli.io.table import Table, number, table_of
 from scarid_cli.io.urdf import Inertial, rewritten
@@ -21,6 +28,7 @@ from scarid_cli.stages.results.prediction import qualities
 SHOWN = 5  # parameters that a message names at most
 COLLAPSE = 2.0  # ratio of residual variances above which a warning is given: physical consistency
 # then adds more torque error than there was before
+LEAST = 1e-9  # share of its mass that a link behind a joint keeps at least
 FALL = 0.01  # of R2: a smaller decrease is negligible, however small the residual was
 
 
@@ -34,13 +42,18 @@ def document(
 ) -> str:
     """The URDF with the new inertias, friction and motors; the lines of a table as a comment.
 
-    Links fixed to a moving link are part of its body and lose their own inertia.
+    Links fixed to a moving link are part of its body and lose their own inertia. Those behind
+    joints that are no axes keep theirs, because simulators refuse moving links without a mass.
     """
     assert robot.body
     links: dict[str, Inertial | None] = {}
-    for body, (own, fixed) in zip(found.bodies, robot.body.links, strict=True):
-        links[own] = Inertial.of(body[9], body[6:9], inertia_of(body))
+    for axis, (body, (own, fixed)) in enumerate(
+        zip(found.bodies, robot.body.links, strict=True), start=1
+    ):
+        held, share = _held(robot, found, axis)
+        links[own] = _inertial(body - share * sum(x.carried for x in held))
         links |= dict.fromkeys(fixed)
+        links |= {x.link: _inertial(share * x.own) for x in held}
     own_drives = drives(robot, found.axes)
     moved = own_drives.axes
     friction = {x.joint: (x.viscous, x.coulomb) for x in moved if x.viscous or x.coulomb}
@@ -48,6 +61,40 @@ def document(
     rest = ", ".join(f"{name} {x:.6g}" for name, x in own_drives.not_in_urdf(found.axes).items())
     remark = f"{command}; not part of the URDF: {rest}" if rest else command
     return rewritten(text, links, friction, remark, motors, table)
+
+
+def _inertial(body: Array) -> Inertial:
+    return Inertial.of(body[9], body[6:9], inertia_of(body))
+
+
+def _possible(body: Array) -> bool:
+    return bool(np.linalg.eigvalsh(pseudo_inertia(body))[0] > 0.0)
+
+
+def _held(robot: Robot, found: Physical, axis: int) -> tuple[list[Held], float]:
+    """The links that an axis (from 1) carries behind other joints, and the share of their masses.
+
+    It is 1, or halved until the rest of the body of the axis is one that there can be.
+    """
+    assert robot.body
+    held, share = [x for x in robot.body.held if x.axis == axis], 1.0
+    body, carried = found.bodies[axis - 1], sum(x.carried for x in held)
+    while held and share > LEAST and not _possible(body - share * carried):
+        share *= 0.5
+    return held, share
+
+
+def held_report(robot: Robot, found: Physical) -> Iterator[str]:
+    """Which links keep masses of their own that are part of the body of an axis."""
+    assert robot.body
+    for axis, (own, _) in enumerate(robot.body.links, start=1):
+        held, share = _held(robot, found, axis)
+        if held:
+            names, part = ", ".join(x.link for x in held), "" if share == 1.0 else f"{share:g} of "
+            yield (
+                f"{names}: behind joints that are no axes, with {part}the masses of the "
+                f"description, which {own} is lighter by"
+            )
 
 
 def base_table(table: Table, identified: Estimates, found: Physical) -> Table:

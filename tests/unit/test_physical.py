@@ -8,15 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from unit.arms import URDF, described_arm, seven_axes, sines
+from unit.arms import FINGERS, URDF, described_arm, seven_axes, sines
 
 from scarid_cli.algorithms.regression.information import least_squares
+from scarid_cli.algorithms.robots import newton_euler
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.physical import Physical, nearest, pseudo_inertia
 from scarid_cli.algorithms.robots.reading import load
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
-from scarid_cli.stages.urdf import SHOWN, _first_few, document
+from scarid_cli.stages.urdf import SHOWN, _first_few, document, held_report
 
 pinocchio = pytest.importorskip("pinocchio")
 pytest.importorskip("cvxpy")
@@ -159,6 +160,33 @@ def test_everything_else_of_the_urdf_stays(robot: Robot) -> None:
     assert found.bodies[1][9] == pytest.approx(1.3, abs=0.02)
     motion = np.random.default_rng(0).standard_normal((3, 2, 5))
     np.testing.assert_allclose(torques_of(written, *motion), torques_of(text, *motion), atol=0.05)
+
+
+@pytest.mark.parametrize("size", [1.0, 0.1])
+def test_fingers_keep_a_mass_of_their_own(tmp_path: Path, size: float) -> None:
+    """Simulators refuse moving links without one; together with their link they are its body.
+
+    Where that is lighter than what the description has for the fingers, they keep a part.
+    """
+    text = URDF.replace("TYPE", "revolute").replace("</robot>", f"{FINGERS}</robot>")
+    (tmp_path / "hand.urdf").write_text(text)
+    arm = load(str(tmp_path / "hand.urdf"))
+    assert arm.body
+    bodies = np.reshape(arm.body.standard, (2, 10)) * np.array([[1.0], [size]])
+    found = Physical(bodies, {}, arm.apriori, 0.0)
+    written = document(text, arm, found, "scarid urdf")
+    rng = np.random.default_rng(0)
+    held = np.tile([[0.0], [0.02]], 5)  # the second finger, by its <mimic>
+    q = np.vstack((rng.standard_normal((2, 5)), held))
+    rates = [np.vstack((x, np.zeros((2, 5)))) for x in rng.standard_normal((2, 2, 5))]
+    expected = newton_euler.torques(arm.body.axes, np.array(arm.body.gravity), q[:2],
+                                    rates[0][:2], rates[1][:2], bodies.ravel())  # fmt: skip
+    np.testing.assert_allclose(torques_of(written, q, *rates)[:2], expected, atol=1e-9)
+    (told,) = held_report(arm, found)
+    assert told.startswith("left finger, right finger: behind joints that are no axes, with")
+    assert ("of the masses" in told) == (size < 1.0)
+    model = pinocchio.buildModelFromXML(written)
+    assert all(model.inertias[j].mass > 0.0 for j in range(1, 5))
 
 
 def test_without_cvxpy_the_extra_is_named(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -104,6 +104,20 @@ class Frame:
 
 
 @dataclass(frozen=True)
+class Held:
+    """A link behind a joint that is no axis, such as a finger, where this joint is held.
+
+    It is part of the body of the `axis` (from 1). Its standard parameters (10), and those of the
+    links that are fixed to it, are `own` in its frame, and `carried` in that of the axis.
+    """
+
+    axis: int
+    link: str
+    own: Array
+    carried: Array
+
+
+@dataclass(frozen=True)
 class Body:
     """A serial arm as a URDF describes it.
 
@@ -239,6 +253,22 @@ class Body:
         for i, name in enumerate(self.moving, start=1):
             own = child[name]
             found.append((own, [link for link in together[i] if link != own]))
+        return found
+
+    @cached_property
+    def held(self) -> list[Held]:
+        """The links with a mass behind joints that are no axes."""
+        import pinocchio  # after it has been found by `read`
+
+        model, found = read(self.path, self.joints).model, []
+        tree = ElementTree.parse(self.path).getroot()
+        child = {j.get("name"): link(j, "child") for j in tree.findall("joint")}
+        for name in _chain(self.path, self.joints).locked:
+            own, frame = model.inertias[model.getJointId(name)], self.frames[child[name]]
+            if frame.axis and own.mass > 0.0:
+                carried = pinocchio.SE3(frame.turn, frame.origin).act(own)
+                both = (x.toDynamicParameters()[PINOCCHIO] for x in (own, carried))
+                found.append(Held(frame.axis, child[name], *both))
         return found
 
     @cached_property

@@ -99,6 +99,8 @@ class Source:
 
 def _urdf(source: Source) -> str:
     text, found = source.urdf_text(), source.bodies
+    for line in urdf.held_report(source.robot, found):
+        source.job.say(line)
     notes = listed(source.rows, found.base)
     return urdf.document(text, source.robot, found, command_line(), notes)
 

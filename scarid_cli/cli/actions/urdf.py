@@ -46,6 +46,8 @@ def run(
     found = stage.physical(identified)
     for line in stage.consistency_report(identified, found):
         job.say(line)
+    for line in stage.held_report(arm, found):
+        job.say(line)
     if log:
         treatment = for_motion(log.meta, treatment, given)
         r2 = stage.r2_before_and_after(log, identified, found, treatment)
