@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from scarid_cli.algorithms.plants.definite import random_postures
 from scarid_cli.algorithms.plants.model import Model, inertia, model
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.trajectories.limits import Limits
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault
 
@@ -89,9 +89,6 @@ def typical_inertia(arm: Model, robot: Robot) -> Array:
     It is the one that a torque finds while the other joints are free, 1 / (M^-1)_ii. Gains for the
     diagonal of M let the joints of light wrists oscillate.
     """
-    limits = Limits.of(robot.joints)
-    lower = np.where(np.isfinite(limits.lower), limits.lower, -np.pi)
-    upper = np.where(np.isfinite(limits.upper), limits.upper, np.pi)
-    postures = np.random.default_rng(0).uniform(lower, upper, (POSTURES, len(lower)))
+    postures = random_postures(robot, POSTURES)
     sizes = [1.0 / np.diag(np.linalg.inv(inertia(arm, q))) for q in postures]
     return np.asarray(np.median(sizes, axis=0), dtype=np.float64)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from scarid_cli.algorithms.plants.definite import indefinite
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.files import text_of
 from scarid_cli.algorithms.robots.physical import Physical
@@ -28,7 +29,7 @@ from scarid_cli.stages.models.modelled import modelled
 from scarid_cli.stages.results.estimates import Estimates, estimates_with_covariance
 from scarid_cli.stages.results.parameters import identified
 
-OF_BODIES = ("urdf", "mjcf")
+OF_BODIES = ("urdf", "mjcf", "json")
 
 
 def run(
@@ -45,12 +46,14 @@ def run(
     """Write the model, and say what it lacks of what was identified."""
     stated = the_robot(description, robot)
     if base and kind not in OF_BODIES:
-        raise UsageFault(f"--base: {kind} has no bodies of its own; it is for urdf and mjcf")
+        raise UsageFault(f"--base: {kind} has no bodies of its own; it is for urdf, mjcf and json")
     out, side = job.text(place), job.side_table(base)
     table = job.read(parameters, "parameters")
     source = Source(job, table, list(table.batches), job.robot(stated, table), name, place)
     for note in identified(source.table, source.robot).left_out:
         job.say(f"warning: the {kind} file has the parameters alone, and lacks: {note}")
+    if kind not in OF_BODIES and source.doubt:
+        job.say(source.doubt)
     out.write(WRITERS[kind](source))
     if side:
         job.write(job.recorded(urdf.base_table(table, source.estimates, source.bodies)), side)
@@ -81,6 +84,19 @@ class Source:
     def estimates(self) -> Estimates:
         """The estimates with their covariance, which the nearest bodies need."""
         return estimates_with_covariance(self.table, self.robot)
+
+    @cached_property
+    def doubt(self) -> str:
+        """A warning, if no robot has the mass matrix of the parameters as they are."""
+        found = identified(self.table, self.robot)
+        values = dict(zip(found.robot.names, found.theta.tolist(), strict=True))
+        impossible = indefinite(found.robot.with_values(values))
+        return f"warning: {impossible.text}" if impossible else ""
+
+    @property
+    def notes(self) -> list[str]:
+        """What code says at its top: the intervals of the parameters."""
+        return [*([self.doubt, ""] if self.doubt else []), *listed(self.rows)]
 
     @cached_property
     def bodies(self) -> Physical:
@@ -130,7 +146,7 @@ def _json(source: Source) -> str:
 
 def _c(source: Source) -> str:
     found = identified(source.table, source.robot)
-    return c_header(found, source.name, command_line(), listed(source.rows))
+    return c_header(found, source.name, command_line(), source.notes)
 
 
 def _matlab(source: Source) -> str:
@@ -140,7 +156,7 @@ def _matlab(source: Source) -> str:
             "name; state another one with --name"
         )
     found = identified(source.table, source.robot)
-    return matlab_class(found, source.name, command_line(), listed(source.rows))
+    return matlab_class(found, source.name, command_line(), source.notes)
 
 
 WRITERS: dict[str, Callable[[Source], str]] = {
