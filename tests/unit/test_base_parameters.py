@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from unit.arms import URDF, described_arm, long_chain, turned_axes
+from unit.arms import URDF, described_arm, long_chain, seven_axes, turned_axes
 
 from scarid_cli.algorithms.robots.base import independent
 from scarid_cli.algorithms.robots.coupled import CoupledInertia
 from scarid_cli.algorithms.robots.reading import load
+from scarid_cli.algorithms.robots.rigid import SYMBOLS
 from scarid_cli.algorithms.robots.terms import JointMotion, StandardTerm
 from scarid_cli.arrays import Array
 from scarid_cli.cli.robot import described
@@ -80,6 +81,24 @@ def test_rounded_angles_of_a_urdf_add_no_parameters(digits: int, tmp_path: Path)
     parameters = load(str(path)).parameters
     assert sum(isinstance(p.term, StandardTerm) for p in parameters) == 43
     assert len(parameters) == 43 + 5 + 3 * 7
+
+
+@pytest.mark.parametrize("lever", [0.3, 0.03, 0.003])
+def test_the_masses_of_a_tiny_arm_count(lever: float, tmp_path: Path) -> None:
+    """On a lever of millimetres a mass has next to no column, and next to no inertia beside it."""
+    path = tmp_path / "tiny.urdf"
+    path.write_text(seven_axes(axes=4).replace('xyz="0 0 0.2"', f'xyz="{lever} 0 {lever}"'))
+    robot = load(str(path))
+    assert robot.body
+    motion = np.random.default_rng(1).uniform(-3.0, 3.0, (3, 4, 50))
+    W, columns = robot.regressor(*motion), robot.body.columns(*motion)
+    names = [f"{symbol}{i}" for i in robot.body.link_numbers for symbol in SYMBOLS]
+    combined = np.zeros_like(columns)
+    for k, parameter in enumerate(robot.parameters):
+        for name, factor in parameter.parts:
+            if name in names:
+                combined[..., names.index(name)] += factor * W[..., k]
+    np.testing.assert_allclose(combined, columns, atol=2e-5)
 
 
 def test_dependent_columns_are_counted_to_those_before_them() -> None:

@@ -62,7 +62,8 @@ def independent(W: Array) -> tuple[list[int], Array]:
     """The columns that are independent of those before them, and the others in terms of them.
 
     W is (rows, columns). The second result B (kept columns, columns) gives the dropped columns,
-    W_dropped = W_kept B; it is zero for columns that are kept, or that count as nothing.
+    W_dropped = W_kept B; it is zero for columns that are kept, and for those that count as nothing
+    unless they are a combination of others to within rounding, as of a mass on a short lever.
     """
     lengths = np.linalg.norm(W, axis=0)
     nothing = NOTHING * lengths.max(initial=0.0)
@@ -84,12 +85,11 @@ def independent(W: Array) -> tuple[list[int], Array]:
     rounding = np.finfo(np.float64).eps * len(W)
     parts: Array = np.asarray(np.linalg.lstsq(small[:, kept], small, rounding)[0], dtype=np.float64)
     parts[:, kept] = 0.0
-    parts[:, lengths <= nothing] = 0.0
     # What a rounded angle leaves of a column has a share of every other one, which says nothing.
     left = np.linalg.norm(W - W[:, kept] @ parts, axis=0)
     rounded = left > EXACT * lengths
     little = np.abs(parts) * lengths[kept][:, None] <= DEPENDENT * lengths
-    parts[little & rounded] = 0.0
+    parts[(little | (lengths <= nothing)) & rounded] = 0.0
     return kept, parts
 
 
