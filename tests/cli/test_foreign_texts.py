@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 from bags import table
-from conftest import Result, Shell
+from conftest import Result, Shell, refused
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -301,3 +301,35 @@ def test_a_log_that_wraps_is_refused_for_this_reason(scarid: Run, samples: Path)
     assert "wraps: q1 leaps by 360 in 2 rows" in result.err
     assert "`scarid convert --unwrap`" in result.err
     assert "too few rows are away from reversals" in result.err
+
+
+def test_a_unit_that_is_not_known_is_asked_for_wherever_the_column_is_named(
+    shell: Shell, tmp_path: Path
+) -> None:
+    """What convert suggests does not end in values of another unit."""
+    (tmp_path / "log.csv").write_text(
+        "t,pos 1 [deg],pos 2 [deg],moment 1 [%],moment 2 [%]\n0,1,2,3,4\n1,2,3,4,5\n"
+    )
+    told = shell("scarid convert log.csv").err
+    assert "--map 'tau*=moment * [%]' --unit 'tau*=X N m'" in told
+    named = "scarid convert -q --map 'q*=pos * [deg]' --map 'tau*=moment * [%]'"
+    refused(shell(f"{named} log.csv"), 2, "tau1=moment 1 [%]", "what one % is", "--unit 'tau1=")
+    stated = shell(f"{named} --unit 'tau*=0.5 N m' log.csv")
+    assert stated.out.splitlines()[1].endswith(",1.5,2")
+
+
+def test_currents_that_a_description_calls_torques_are_asked_for_their_constants(
+    shell: Shell, tmp_path: Path, samples: Path
+) -> None:
+    (tmp_path / "arm.urdf").write_text((samples / "arm.urdf").read_text())
+    (tmp_path / "log.csv").write_text("enc_a,enc_b,current_1,current_2\n1,2,3,4\n2,3,4,5\n")
+    text = (samples / "arm.toml").read_text().replace('torques = "current"', "")
+    text = text.replace('"i_a"', '"current_1"').replace('"i_b"', '"current_2"')
+    (tmp_path / "arm.toml").write_text(text.replace(', "tau?" = "mA"', ""))
+    for command in ("check", "identify", "convert"):
+        found = shell(f"scarid {command} --robot arm.toml log.csv")
+        refused(found, 2, "tau1 = 'current_1' is by its name a current", "torque_constant")
+    (tmp_path / "arm.toml").write_text(text.replace('"mA"', '"0.05 N m"'))
+    found = shell("scarid convert -q --robot arm.toml log.csv")
+    torques = found.out.splitlines()[2].split(",")[3:]
+    assert torques == ["0.2", "0.25"]

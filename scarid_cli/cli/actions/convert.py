@@ -17,8 +17,10 @@ from scarid_cli.io.table import Table
 from scarid_cli.stages.conversion.adapt import adapted
 from scarid_cli.stages.conversion.cells import names_in_cells
 from scarid_cli.stages.conversion.lacking import lacking
+from scarid_cli.stages.conversion.recorders import unstated_unit
 from scarid_cli.stages.conversion.side import episodes_joined
 from scarid_cli.stages.conversion.turns import one_row_for_all
+from scarid_cli.stages.conversion.units import unit_option
 from scarid_cli.stages.conversion.wording import is_current
 from scarid_cli.stages.records.runs import runs_joined
 
@@ -62,7 +64,7 @@ def run(
         table, turns = one_row_for_all(table, job.notes.append)
         table, names = names_in_cells(table)
         columns = columns_of(job, table, pairs, given, recorder, arm, order, turns or names)
-        _require_torques(pairs, columns, arm)
+        _require_units(pairs, columns, arm)
         clock = rate or (arm and arm.log and arm.log.rate)
         _tell_lacking(job, table, columns, arm, clock=bool(clock))
     else:
@@ -91,16 +93,25 @@ def _adapted(table: Table, columns: Columns, rate: float | None, robot: Robot | 
     return episodes_joined(table, EPISODE)
 
 
-def _require_torques(pairs: dict[str, str], columns: Columns, robot: Robot | None) -> None:
-    """Refuse to call a current a torque, unless its torque constant is stated."""
-    if robot and robot.log and robot.log.torques == CURRENT:
-        return
-    for new, old in pairs.items():
-        converted = any(fnmatchcase(new, pattern) for pattern, _ in columns.units)
-        if numbered([new], "tau") and not converted and is_current(old):
+def _require_units(pairs: dict[str, str], columns: Columns, robot: Robot | None) -> None:
+    """Refuse a column whose name states a unit that is none of ours, unless it is stated.
+
+    And to call a current a torque, unless its torque constant is.
+    """
+    constants = robot and robot.log and robot.log.torques == CURRENT
+    mapped = {n: o for n, o in columns.names.items() if any(fnmatchcase(n, p) for p in pairs)}
+    for new, old in mapped.items():
+        if any(fnmatchcase(new, pattern) for pattern, _ in columns.units):
+            continue
+        if numbered([new], "tau") and not constants and is_current(old):
             raise UsageFault(
                 f"--map {new}={old}: by its name a current and no torque; state what one ampere "
                 f"gives, as in --unit '{new}=0.05 N m', or call it current{new[3:]}"
+            )
+        if numbered([new], "q", "dq", "tau", "current") and (unit := unstated_unit(old)):
+            raise UsageFault(
+                f"--map {new}={old}: its name does not say what one {unit} is; state it, as in "
+                f"{unit_option(new)}"
             )
 
 

@@ -15,9 +15,10 @@ from scarid_cli.io.notation import Notation, notation_of
 from scarid_cli.io.roles import role_of
 from scarid_cli.io.table import Table
 from scarid_cli.stages.conversion.cells import in_their_order
-from scarid_cli.stages.conversion.recorders import expanded, known_unit, recognised, units_in_names
+from scarid_cli.stages.conversion.recorders import expanded, recognised, units_in_names
 from scarid_cli.stages.conversion.seconds import clock_columns, with_one_clock
 from scarid_cli.stages.conversion.side import as_role, flattened, side_by_side, texts_flattened
+from scarid_cli.stages.conversion.units import known_unit
 from scarid_cli.stages.conversion.wording import Unclear, in_short, in_words
 from scarid_cli.words import listed
 

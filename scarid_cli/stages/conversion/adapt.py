@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 from fnmatch import fnmatchcase
-from math import inf, pi
 
 import numpy as np
 import pyarrow as pa
@@ -16,26 +15,7 @@ from scarid_cli.io.csvio import MISSING
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Table, doubles, matrix, number
 from scarid_cli.stages.conversion.dates import since_start
-
-# For each unit that a log may have: the factor to multiply by, and the resulting unit.
-UNITS = {
-    "deg": (pi / 180.0, "rad"),
-    "deg/s": (pi / 180.0, "rad/s"),
-    "deg/s2": (pi / 180.0, "rad/s2"),
-    "rev": (2.0 * pi, "rad"),
-    "rpm": (2.0 * pi / 60.0, "rad/s"),
-    "mm": (1e-3, "m"),
-    "mm/s": (1e-3, "m/s"),
-    "mN m": (1e-3, "N m"),
-    "N mm": (1e-3, "N m"),
-    "kN m": (1e3, "N m"),
-    "mN": (1e-3, "N"),
-    "kN": (1e3, "N"),
-    "mA": (1e-3, "A"),
-    "ms": (1e-3, "s"),
-    "us": (1e-6, "s"),
-    "ns": (1e-9, "s"),
-}
+from scarid_cli.stages.conversion.units import UNITS, scale_of
 
 
 def adapted(
@@ -139,7 +119,7 @@ def _renamed(table: Table, names: dict[str, str]) -> list[pa.Field]:
 def _scales(names: list[str], units: list[tuple[str, str]]) -> dict[str, tuple[float, str]]:
     scales: dict[str, tuple[float, str]] = {}
     for pattern, text in units:
-        scale = _scale(text)
+        scale = scale_of(text)
         if scale is None:
             raise UsageFault(
                 f"--unit {pattern}={text}: unknown unit; write one of {', '.join(UNITS)}, rad, "
@@ -150,19 +130,6 @@ def _scales(names: list[str], units: list[tuple[str, str]]) -> dict[str, tuple[f
             raise UsageFault(f"--unit: no column {pattern!r}; the table has {', '.join(names)}")
         scales |= dict.fromkeys(found, scale)
     return scales
-
-
-def _scale(text: str) -> tuple[float, str] | None:
-    """The factor and the resulting unit of a text such as `deg`, or `0.001534 rad` per count."""
-    first, _, rest = text.partition(" ")
-    try:
-        factor, unit = float(first), rest
-    except ValueError:
-        factor, unit = 1.0, text
-    known = {**UNITS, **{si: (1.0, si) for _, si in UNITS.values()}}
-    if unit not in known or not 0.0 < abs(factor) < inf:
-        return None
-    return factor * known[unit][0], known[unit][1]
 
 
 def _rows(

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from fnmatch import fnmatchcase
 
 import pyarrow as pa
 
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.logs import JOINT, LogFormat
+from scarid_cli.algorithms.robots.logs import CURRENT, JOINT, LogFormat
 from scarid_cli.arrays import Array
-from scarid_cli.errors import bad_data
-from scarid_cli.io.schemas import of_joints
+from scarid_cli.errors import UsageFault, bad_data
+from scarid_cli.io.schemas import numbered, of_joints
 from scarid_cli.io.table import Table, matrix, number, with_columns
 from scarid_cli.stages.conversion.adapt import adapted
+from scarid_cli.stages.conversion.wording import is_current
 
 Transform = Callable[[Array], Array]
 
@@ -31,6 +33,7 @@ def as_described(
     """
     log = robot.log or LogFormat()
     described = {new: old for new, old in log.columns.items() if old not in names.values()}
+    _require_torques(robot, log, described)
     clocked = "t" in table.columns or "t" in {**described, **names}
     table = adapted(
         table,
@@ -39,6 +42,18 @@ def as_described(
         rate if rate or clocked else log.rate,
     )
     return at_joints(table, robot, log)
+
+
+def _require_torques(robot: Robot, log: LogFormat, described: dict[str, str]) -> None:
+    """Refuse a description that calls currents torques, without saying what one ampere gives."""
+    for new, old in described.items():
+        converted = any(fnmatchcase(new, pattern) for pattern, _ in log.units)
+        if log.torques != CURRENT and not converted and numbered([new], "tau") and is_current(old):
+            raise UsageFault(
+                f"{robot.name}: [log] columns: {new} = {old!r} is by its name a current and no "
+                'torque; state torques = "current" and the torque_constant of each joint, or '
+                f'units = {{ {new} = "0.05 N m" }}'
+            )
 
 
 def at_joints(table: Table, robot: Robot, log: LogFormat) -> Table:

@@ -7,7 +7,8 @@ import shlex
 from collections.abc import Collection, Sequence
 
 from scarid_cli.io.schemas import COUNTED_FROM_0, numbered
-from scarid_cli.stages.conversion.recorders import CURRENT
+from scarid_cli.stages.conversion.recorders import CURRENT, unstated_unit
+from scarid_cli.stages.conversion.units import unit_option
 from scarid_cli.stages.conversion.wording import (
     AMPERES,
     CLOCK,
@@ -136,7 +137,8 @@ def _pair(new: str, left: Sequence[str], words: Collection[str]) -> list[tuple[s
 
 
 def _mapping(new: str, name: str) -> str:
-    return f"--map {shlex.quote(f'{new}={name}')}"
+    unit = f" {unit_option(new, 'X')}" if unstated_unit(name) else ""
+    return f"--map {shlex.quote(f'{new}={name}')}{unit}"
 
 
 def _most(names: Sequence[str], words: Collection[str]) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.schemas import column_type
-from scarid_cli.stages.conversion.adapt import UNITS
+from scarid_cli.stages.conversion.units import STRANGE, UNSTATED, known_unit
 
 CURRENT = "current{i}"
 
@@ -189,21 +189,9 @@ def _numbered(
         yield new.replace("{i}", str(i)), found[key]
 
 
-ALIASES = {
-    "°": "deg", "degree": "deg", "degrees": "deg", "Grad": "deg", "turn": "rev", "turns": "rev",
-    "sec": "s", "seconds": "s", "µs": "us", "msec": "ms", "usec": "us", "nsec": "ns",
-    "Nm": "N m", "N*m": "N m", "N·m": "N m", "N.m": "N m", "mNm": "mN m", "kNm": "kN m",
-    "Nmm": "N mm", "1/min": "rpm", "rad/s^2": "rad/s2", "deg/s^2": "deg/s2", "m/s^2": "m/s2",
-}  # fmt: skip
-KNOWN = {**{unit: unit for unit in UNITS}, **{si: si for _, si in UNITS.values()}, **ALIASES}
 BRACKETS = re.compile(r"(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\])]*)[\])]\s*")
 SUFFIX = re.compile(r"(?P<name>.+)_(?P<unit>[^_]+)")
 TIMES = ("time", "timestamp", "zeit", "temps", "tiempo", "tempo")  # of the clock, before a unit
-
-
-def known_unit(text: str) -> str | None:
-    """The unit that a log states with this text, as UNITS calls it; None if it is none of them."""
-    return KNOWN.get(text.strip()) or KNOWN.get(text.strip().lower())
 
 
 def unit_in_name(column: str) -> tuple[str, str] | None:
@@ -213,6 +201,12 @@ def unit_in_name(column: str) -> tuple[str, str] | None:
     if not match or not unit:
         return None
     return "t" if match["name"].lower() in TIMES else match["name"], unit
+
+
+def unstated_unit(column: str) -> str:
+    """The unit in the name of a column that only its device knows, as %; empty if there is none."""
+    match = UNSTATED.fullmatch(column) or STRANGE.fullmatch(column)
+    return match[1] if match and not unit_in_name(column) else ""
 
 
 def element(column: str, k: int) -> str:

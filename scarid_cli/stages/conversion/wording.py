@@ -8,8 +8,14 @@ from dataclasses import dataclass
 
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.schemas import COUNTED_FROM_0, column_type, named
-from scarid_cli.stages.conversion.adapt import UNITS
-from scarid_cli.stages.conversion.recorders import CURRENT, Recognised, recognised, unit_in_name
+from scarid_cli.stages.conversion.recorders import (
+    CURRENT,
+    Recognised,
+    recognised,
+    unit_in_name,
+    unstated_unit,
+)
+from scarid_cli.stages.conversion.units import UNITS, unit_option
 
 POSITION, VELOCITY, TORQUE = "q{i}", "dq{i}_measured", "tau{i}"
 # In English, German, French, Spanish and Italian, without accents.
@@ -64,13 +70,8 @@ TIMES = {"stamp", "time", "times", "timestamp", "timestamps", "tout"}
 # What a unit alone says of a column whose words say nothing but the joint.
 BY_UNIT = {"deg": POSITION, "rad": POSITION, "rev": POSITION, "deg/s": VELOCITY,
            "rad/s": VELOCITY, "rpm": VELOCITY, "N m": TORQUE, "mN m": TORQUE, "kN m": TORQUE,
-           "N mm": TORQUE, "A": CURRENT, "mA": CURRENT}  # fmt: skip
-# Units that only their device knows.
-UNSTATED = re.compile(
-    r".*(?:[\[(]|[_ ](?=\S*\Z))\s*"
-    r"(incs?|increments?|counts?|cnt|ticks?|pulses?|[^\])_ ]*%|pct|percent|permille|LSB)"
-    r"\s*[\])]?\s*"
-)
+           "N mm": TORQUE, "N cm": TORQUE, "kgf m": TORQUE, "kgf cm": TORQUE, "lbf ft": TORQUE,
+           "lbf in": TORQUE, "ozf in": TORQUE, "A": CURRENT, "mA": CURRENT}  # fmt: skip
 # Signs of formulas, and a dot or two above a q or theta, by their words.
 SIGNS = {"\u03b8": " theta ", "\u03d1": " theta ", "\u03c4": " tau ", "q\u0307": " qdot ",
          " theta \u0307": " qdot ", "q\u0308": " ddot ", " theta \u0308": " ddot "}  # fmt: skip
@@ -184,8 +185,8 @@ def words_of(name: str) -> tuple[str, ...]:
 
 def _read(name: str) -> _Column:
     """A column, the unit that its name states, and the words before it."""
-    if (match := UNSTATED.fullmatch(name)) and not unit_in_name(name):
-        return _Column(name, "", words_of(name[: match.start(1)]), match[1])
+    if unit := unstated_unit(name):
+        return _Column(name, "", words_of(name[: name.rindex(unit)]), unit)
     before, unit = unit_in_name(name) or (name, "")
     return _Column(name, unit, words_of(before))
 
@@ -221,7 +222,7 @@ def _by_joint(new: str, columns: Sequence[_Column]) -> dict[Key, _Column]:
         if column.unstated:
             raise Unclear(
                 f"{column.name} does not say what one {column.unstated} is (state it as well, as "
-                f"in --unit '{new.replace('{i}', '*')}=0.001 {'N m' if new == TORQUE else 'rad'}')"
+                f"in {unit_option(new.replace('{i}', '*'))})"
             )
         key = tuple(word for word in column.words if word not in PLAIN | QUANTITIES[new])
         if key in found:
