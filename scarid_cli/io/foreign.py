@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Collection, Sequence
 from os import SEEK_END
@@ -23,6 +24,9 @@ ARCHIVES = (".npz", ".npy", ".mat", ".h5", ".hdf5")
 END_OF_ZIP = struct.Struct("<4s6xH10x")  # the last bytes: a mark, and how many files there are
 MANY = 0xFFFF  # stands for a number that is elsewhere
 COMMENTS = b"#%\r\n"  # that begin a line before the header, if it is not empty
+
+
+END = re.compile(rb"\r?\n\s*EOF\s*\Z")  # the last line of some programs
 
 
 class TranslatedCsv(Wrapped):
@@ -49,7 +53,8 @@ class TranslatedCsv(Wrapped):
     def _fetch(self, size: int) -> bytes:
         data = self.source.read_some(size)
         if not self._space:
-            return data.translate(self._table)
+            data = data.translate(self._table)
+            return data if self.source.peek(1) else END.sub(b"\n", data)
         ended = not data
         while not ended and b"\n" not in data:
             more = self.source.read_some(size)

@@ -13,13 +13,17 @@ from scarid_cli.errors import UsageFault
 from scarid_cli.io.bytesource import ByteSource
 from scarid_cli.io.cells import NUMERIC
 from scarid_cli.io.echoed import joint_state_names
+from scarid_cli.io.scopes import channels
 
+LONG = re.compile(r"\s*[+-]?\d+\s*\Z")  # an integer of any length, as of nanoseconds
 SPACE = " "  # any white space between values
 SEPARATORS = (",", ";", "\t", "|", SPACE)
 NAMES = {",": "commas", ";": "semicolons", "\t": "tabs", "|": "bars", SPACE: "white space"}
+LOOKED_AT = 8  # lines of a table, if there are so many, which must be alike
 ROWS = 3  # lines that are looked at: a header, if there is one, and rows
 MOST_LINES = 10_000  # that are looked at for them, among comments and empty lines
 LATEST = 64  # rows that may stand before the header: what a program says of its file
+NOTHING = ("", "-", "na", "n/a", "#n/a", "nan", "null", "none")  # of a value that is missing
 COMMENT = "#%"  # with which a comment begins
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*\Z")
 
@@ -69,7 +73,7 @@ def notation_of(source: ByteSource, given: Notation | None, *, by_name: bool) ->
     The columns of a log without names are called after the file if they are to be renamed
     `by_name`; else a log without names is refused.
     """
-    comments, lines, skip = _first_lines(source)
+    comments, lines, skip, above = _first_lines(source)
     given = given or Notation(separator="")
     found = given if given.separator else _looked_at(lines, source.name)
     separator, comma = found.separator, found.decimal_comma
@@ -79,6 +83,10 @@ def notation_of(source: ByteSource, given: Notation | None, *, by_name: bool) ->
     if separator == "," and (echoed := joint_state_names(fields)):
         return Notation(separator, comma, echoed)
     if not all(is_number(field, comma=comma) for field in fields):
+        for count in (2, 1):  # the first line may be one of several that are above the numbers
+            rows = [split(line, separator) for line in (*above, *lines[:count])]
+            if not is_number(rows[-1][0], comma=comma) and (of_channels := channels(rows)):
+                return Notation(separator, comma, of_channels, skip=skip + count)
         units = _units(lines, separator, comma=comma)
         header = tuple(name.strip() for name in fields) if units else ()
         if units and len({*header}) < len(header):
@@ -120,7 +128,7 @@ def split(line: str, separator: str) -> list[str]:
 
 
 def is_number(text: str, *, comma: bool) -> bool:
-    return bool(NUMERIC.match(text.replace(",", ".") if comma else text))
+    return bool(NUMERIC.match(text.replace(",", ".") if comma else text) or LONG.match(text))
 
 
 def _units(lines: Sequence[str], separator: str, *, comma: bool) -> tuple[str, ...]:
@@ -145,24 +153,27 @@ def _joined(first: Sequence[str], second: Sequence[str]) -> tuple[str, ...]:
     return tuple(".".join(filter(None, pair)) for pair in pairs)
 
 
-def _first_lines(source: ByteSource) -> tuple[list[str], list[str], int]:
-    """The comments before the table, its first lines, and how many lines are before both."""
-    count, skip = ROWS, 0
+def _first_lines(source: ByteSource) -> tuple[list[str], list[str], int, list[str]]:
+    """The comments before the table, its first lines, and how many lines are before both.
+
+    The last are those lines, as far as they are not empty.
+    """
+    count, skip, above = LOOKED_AT, 0, list[str]()
     while True:
         block = source.peek_lines(count)
         text = _lines(block.decode("utf-8-sig", errors="replace"))[:count]
         rows = [i for i, line in enumerate(text) if line.strip() and line[0] not in COMMENT]
         complete = len(text) < count or count > MOST_LINES
-        start = _start([text[i] for i in rows])
+        start = _start([text[i] for i in rows], complete=complete or len(rows) > LATEST)
         if start is not None or complete or len(rows) > LATEST:
             break
         count *= 2
     if start:
-        skip = rows[start]
+        skip, above = rows[start], [text[i] for i in rows[:start]]
         text, rows = text[skip:], [i - skip for i in rows[start:]]
     text = text[: rows[:ROWS][-1] + 1] if len(rows) >= ROWS else text
     comments = [line for line in text if line.startswith(tuple(COMMENT))]
-    return comments, [text[i] for i in rows[:ROWS]], skip
+    return comments, [text[i] for i in rows[:ROWS]], skip, above
 
 
 def _lines(text: str) -> list[str]:
@@ -171,15 +182,33 @@ def _lines(text: str) -> list[str]:
     return lines if lines[-1] else lines[:-1]
 
 
-def _start(lines: Sequence[str]) -> int | None:
-    """The line with which a table begins: as many values as in the next two, the last numbers."""
-    for at in range(min(len(lines) - ROWS + 1, LATEST)):
-        for separator in SEPARATORS:
-            rows = [split(line, separator) for line in lines[at : at + ROWS]]
-            numbers = sum(is_number(field.replace(",", "."), comma=False) for field in rows[-1])
-            if len({len(row) for row in rows}) == 1 < len(rows[0]) and 2 * numbers > len(rows[0]):
+def _start(lines: Sequence[str], *, complete: bool) -> int | None:
+    """The line with which a table begins: as many values as in the next ones, these numbers.
+
+    The one behind it may have units. As many as LOOKED_AT lines are looked at, unless these lines
+    are `complete`: what a program says of its channels has numbers in some lines, too.
+    """
+    for most in (LOOKED_AT, ROWS) if complete else (LOOKED_AT,):
+        least = ROWS if complete else most
+        for at in range(min(len(lines) - least + 1, LATEST)):
+            if any(_is_table(lines[at : at + most], separator) for separator in SEPARATORS):
                 return at
     return None
+
+
+def _is_table(lines: Sequence[str], separator: str) -> bool:
+    """Whether the lines have as many values each, and those from the third on mostly numbers."""
+    rows = [split(line, separator) for line in lines]
+    if len({len(row) for row in rows}) > 1 or len(rows[0]) < 2:
+        return False
+    found = 0
+    for row in rows[ROWS - 1 :]:
+        there = [field for field in row if field.strip().lower() not in NOTHING]
+        numbers = sum(is_number(field.replace(",", "."), comma=False) for field in there)
+        if there and 2 * numbers <= len(there):
+            return False
+        found += numbers
+    return found > 0
 
 
 def _looked_at(lines: Sequence[str], name: str) -> Notation:

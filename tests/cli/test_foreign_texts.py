@@ -333,3 +333,79 @@ def test_currents_that_a_description_calls_torques_are_asked_for_their_constants
     found = shell("scarid convert -q --robot arm.toml log.csv")
     torques = found.out.splitlines()[2].split(",")[3:]
     assert torques == ["0.2", "0.25"]
+
+
+CHANNELS = ["fPosition1", "fPosition2", "fTorque1", "fTorque2"]
+PROPERTIES = {
+    "SymbolComment": "",
+    "Data-Type": "REAL64",
+    "SampleTime[ms]": "10",
+    "Port": "851",
+    "ScaleFactor": "1",
+}
+
+
+@pytest.mark.parametrize("properties", [0, 1, 3, 5])
+@pytest.mark.parametrize("units", [None, ["deg", "deg", "(None)", "(None)"], ["(None)"] * 4])
+def test_channels_of_a_scope_are_named_above_their_properties(
+    properties: int, units: list[str] | None, shell: Shell, tmp_path: Path
+) -> None:
+    """Some of which are numbers in each column, and the last line says that it is the last."""
+
+    def pairs(first: str, cells: list[str]) -> str:
+        return "\t".join(f"{first}\t{cell}" for cell in cells)
+
+    lines = ["Name\tScope Project", "File\tC:\\log.csv", "", pairs("Name", CHANNELS)]
+    lines += [pairs(name, [cell] * 4) for name, cell in [*PROPERTIES.items()][:properties]]
+    lines += [pairs("Unit", units), ""] if units else [""]
+    scaled = LOG * np.array([1e3, *(DEGREES[1:] if units and units[0] == "deg" else [1.0] * 4)])
+    for row in scaled.tolist():
+        t, values = f"{row[0]:.17g}", [f"{x:.17g}".replace(".", ",") for x in row[1:]]
+        lines.append("\t".join(f"{t.replace('.', ',')}\t{x}" for x in values))
+    found = converted(shell, tmp_path, "\r\n".join([*lines, "EOF", ""]))
+    np.testing.assert_allclose(found, LOG, rtol=1e-12)
+
+
+@pytest.mark.parametrize("unit", ["deg", ""])
+def test_a_file_of_labview_has_names_behind_its_header(
+    unit: str, shell: Shell, tmp_path: Path
+) -> None:
+    def of_all(label: str, cell: str) -> str:
+        return "\t".join([label, *[cell] * 4, ""])
+
+    lines = ["LabVIEW Measurement\t", "Separator\tTab\t", "Multi_Headings\tNo\t",
+             "***End_of_Header***\t", "\t", "Channels\t4\t\t\t\t", of_all("Samples", str(ROWS)),
+             of_all("Date", "2026/01/02"), "\t".join(["Y_Unit_Label", unit, unit, "", "", ""]),
+             of_all("X_Dimension", "Time"), of_all("X0", "0.0E+0"), of_all("Delta_X", "0.01"),
+             "***End_of_Header***\t\t\t\t\t",
+             "X_Value\tPos_1\tPos_2\tTorque_1\tTorque_2\tComment"]  # fmt: skip
+    scaled = LOG * (DEGREES if unit else 1.0)
+    lines += ["\t".join([*(f"{x:.17g}" for x in row), ""]) for row in scaled]
+    (tmp_path / "log.lvm").write_text("\r\n".join([*lines, ""]))
+    done = shell("scarid convert log.lvm | cut -d, -f1-5")
+    names, values = table(done.out)
+    assert names == ORDER
+    np.testing.assert_allclose(values, LOG, rtol=1e-12)
+
+
+def test_a_comment_has_the_names_of_rows_that_begin_with_nanoseconds(
+    shell: Shell, tmp_path: Path
+) -> None:
+    clock = [str(1_609_060_336_768_428_032 + 10_000_000 * k) for k in range(ROWS)]
+    found = converted(shell, tmp_path, written("#timestamp [ns],q1,q2,tau1,tau2", clock))
+    np.testing.assert_allclose(found - [found[0, 0], 0, 0, 0, 0], LOG, atol=1e-6)
+
+
+@given(st.data())
+def test_a_header_stays_one_above_rows_that_lack_most_values(data: st.DataObject) -> None:
+    """As of sources that write in turn: each row has the values of one of them."""
+    groups = [[1, 2], [3, 4]]
+    lines = [",".join(ORDER)]
+    for row in LOG:
+        own = data.draw(st.sampled_from(groups))
+        missing = data.draw(st.sampled_from(["", "nan"]))
+        lines.append(",".join(f"{x:.6f}" if k in (0, *own) else missing for k, x in enumerate(row)))
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "log")
+        path.write_text("\n".join(lines) + "\n")
+        assert notation_of(ByteSource.open(str(path)), None, by_name=False).plain
