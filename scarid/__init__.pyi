@@ -254,7 +254,7 @@ def resample(
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
-    missing: Literal['refuse', 'drop', 'split'] | None = None,
+    missing: Literal['refuse', 'drop', 'split', 'fill'] | None = None,
     no_history: bool | None = None,
 ) -> Log:
     """Resample a log with a jittered clock at a constant rate.
@@ -279,7 +279,7 @@ def resample(
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.
-        missing: What to do where a value is missing: refuse the log, drop the row, or also begin a new segment after it, as after a gap.
+        missing: What to do where a value is missing: refuse the log; drop the row; split, which also begins a new segment after it, as after a gap; or fill, for sources that write in turn: keep the rows with q1, and interpolate the other columns there (holds the log in memory).
         no_history: Write no history into the metadata.
     """
 
@@ -328,7 +328,7 @@ def filter(
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
-    missing: Literal['refuse', 'drop', 'split'] | None = None,
+    missing: Literal['refuse', 'drop', 'split', 'fill'] | None = None,
     no_history: bool | None = None,
 ) -> Log:
     """Low-pass filter columns of a log.
@@ -351,7 +351,7 @@ def filter(
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.
-        missing: What to do where a value is missing: refuse the log, drop the row, or also begin a new segment after it, as after a gap.
+        missing: What to do where a value is missing: refuse the log; drop the row; split, which also begins a new segment after it, as after a gap; or fill, for sources that write in turn: keep the rows with q1, and interpolate the other columns there (holds the log in memory).
         no_history: Write no history into the metadata.
     """
 
@@ -364,7 +364,7 @@ def tune(
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
-    missing: Literal['refuse', 'drop', 'split'] | None = None,
+    missing: Literal['refuse', 'drop', 'split', 'fill'] | None = None,
     no_history: bool | None = None,
 ) -> Log:
     """Find the settings of differentiators from a log, without knowing the truth.
@@ -400,7 +400,7 @@ def tune(
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.
-        missing: What to do where a value is missing: refuse the log, drop the row, or also begin a new segment after it, as after a gap.
+        missing: What to do where a value is missing: refuse the log; drop the row; split, which also begins a new segment after it, as after a gap; or fill, for sources that write in turn: keep the rows with q1, and interpolate the other columns there (holds the log in memory).
         no_history: Write no history into the metadata.
     """
 
@@ -416,7 +416,7 @@ def differentiate(
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
-    missing: Literal['refuse', 'drop', 'split'] | None = None,
+    missing: Literal['refuse', 'drop', 'split', 'fill'] | None = None,
     no_history: bool | None = None,
 ) -> Log:
     """Estimate velocities and accelerations from positions (the soft sensor).
@@ -447,7 +447,7 @@ def differentiate(
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.
-        missing: What to do where a value is missing: refuse the log, drop the row, or also begin a new segment after it, as after a gap.
+        missing: What to do where a value is missing: refuse the log; drop the row; split, which also begins a new segment after it, as after a gap; or fill, for sources that write in turn: keep the rows with q1, and interpolate the other columns there (holds the log in memory).
         no_history: Write no history into the metadata.
     """
 
@@ -457,7 +457,7 @@ def identify(
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
-    missing: Literal['refuse', 'drop', 'split'] | None = None,
+    missing: Literal['refuse', 'drop', 'split', 'fill'] | None = None,
     estimator: Literal['adaptive', 'didim', 'ekf', 'gls', 'irls', 'iv', 'ls', 'ml', 'rls', 'separable', 'tls', 'wls'] | None = None,
     set: Settings | None = None,
     forgetting: Values | None = None,
@@ -516,7 +516,7 @@ def identify(
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.
-        missing: What to do where a value is missing: refuse the log, drop the row, or also begin a new segment after it, as after a gap.
+        missing: What to do where a value is missing: refuse the log; drop the row; split, which also begins a new segment after it, as after a gap; or fill, for sources that write in turn: keep the rows with q1, and interpolate the other columns there (holds the log in memory).
         estimator: The estimator; see below. [default: rls; gls for a measurement, unless --trace, --save, --from, --set, --initial or --forgetting is given]
         set: A setting of the estimator; repeatable.
         forgetting: Forgetting factor of rls per sample, followed by other factors for single parameters. [default: 1]
@@ -550,7 +550,7 @@ def validate(
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
-    missing: Literal['refuse', 'drop', 'split'] | None = None,
+    missing: Literal['refuse', 'drop', 'split', 'fill'] | None = None,
     skip: Values | None = None,
     decimate: Values | None = None,
     drop_slow: Values | None = None,
@@ -603,7 +603,7 @@ def validate(
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.
-        missing: What to do where a value is missing: refuse the log, drop the row, or also begin a new segment after it, as after a gap.
+        missing: What to do where a value is missing: refuse the log; drop the row; split, which also begins a new segment after it, as after a gap; or fill, for sources that write in turn: keep the rows with q1, and interpolate the other columns there (holds the log in memory).
         skip: Leave out this many rows at the start and, if there are two numbers, at the end.
         decimate: Pass the columns of W and the torques through the same low-pass and keep every N-th row; repeat this for each N. Holds the whole log in memory.
         drop_slow: Leave out the rows of a joint that is slower than V [rad/s or m/s], one value for all joints or one per joint, because near rest Coulomb friction is not sign(dq).

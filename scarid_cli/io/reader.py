@@ -15,7 +15,7 @@ from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import ByteSource, unpacked
 from scarid_cli.io.clock import clocked
 from scarid_cli.io.remedies import Remedies, Remedy, read_on
-from scarid_cli.io.selection import Lacking
+from scarid_cli.io.selection import Whole
 from scarid_cli.io.table import SEGMENT, Table, cast, remedy_of
 
 # From the columns of a table, those whose values a command reads.
@@ -49,7 +49,7 @@ def checked(
     *,
     reads: Reads | None = None,
     regular: bool = True,
-    lacking: Callable[[list[str]], Lacking] | None = None,
+    lacking: Callable[[list[str]], Whole] | None = None,
     remedies: Remedies | None = None,
 ) -> Table:
     """The table, checked to be of a kind: columns, types and units now, values as they arrive.

@@ -6,6 +6,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 import pyarrow as pa
@@ -14,7 +15,7 @@ from scarid_cli.arrays import Array, Marks
 from scarid_cli.errors import BadData, UsageFault
 from scarid_cli.io.table import SEGMENT, Table, integers, matrix, segments_of, with_columns
 
-REFUSE, DROP, SPLIT = "refuse", "drop", "split"
+REFUSE, DROP, SPLIT, FILL = "refuse", "drop", "split", "fill"
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,7 @@ class Selection:
 
     The rows are counted from 1, and the last one belongs to the window. The window begins at the
     first row that is in it and ends before the first one that is past it. `missing` says what
-    becomes of rows without a value: they are refused, dropped, or begin a new segment.
+    becomes of rows without a value: they are refused, dropped, begin a new segment, or are filled.
     """
 
     start: float | None = None
@@ -116,6 +117,19 @@ def _bounds(t: Array, selection: Selection, read: int, *, begun: bool) -> tuple[
     return (int(np.argmax(inside)) if inside.any() else rows), end
 
 
+class Whole(Protocol):
+    """Makes a table whose rows lack nothing in some columns; `count` rows are left out."""
+
+    count: int
+
+    @property
+    def text(self) -> str:
+        """What was done, in words."""
+
+    def removed(self, table: Table) -> Table:
+        """The table without the rows that are left out."""
+
+
 @dataclass
 class Lacking:
     """Leaves out the rows that lack a value in some `columns`; `count` of them so far.
@@ -126,6 +140,12 @@ class Lacking:
     columns: list[str]
     split: bool
     count: int = 0
+
+    @property
+    def text(self) -> str:
+        """What was done, in words."""
+        what = f"{self.count:,} row{'s' if self.count > 1 else ''}"
+        return f"left out {what} with missing values"
 
     def removed(self, table: Table) -> Table:
         """The table without these rows."""

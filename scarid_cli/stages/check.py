@@ -48,9 +48,12 @@ def check(log: Log, robot: Robot) -> Iterator[Finding]:
     yield finding
     yield order
     log = log.scaled(t=factor)
+    lacking = values.missing(log)
+    if log.in_turn:
+        log = log.filled()
     time = clock.Clock.of(log.t, log.segment)
     yield from clock.clock(time, log.resampling())
-    yield values.missing(log)
+    yield lacking
     found = leaps.found_in(log)
     yield leaps.wraps(found)
     resampling, mended = log.resampling("--missing", "drop"), leaps.mended(log, found)

@@ -28,6 +28,8 @@ FAULTS = {
     "signals of motors": "awk -F, -v OFS=, 'NR > 1 { $2 *= 50; $3 *= 50; $4 /= 50; $5 /= 50 } 1'",
     "a pulley": "awk -F, -v OFS=, 'NR > 1 { $3 *= 2 } 1'",
     "a clock at half its rate": "awk -F, -v OFS=, 'NR > 1 { $1 *= 2 } 1'",
+    "two sources in turn": "awk -F, -v OFS=, 'NR == 1 { print; next }"
+    ' { print $1, $2, $3, "", ""; print $1 + .0013, "", "", $4, $5 }\'',
     "several": "awk -F, -v OFS=, 'NR > 1 { $1 *= 1000; $2 *= 57.29577951; $3 *= 57.29577951 }"
     " NR < 100 || NR % 17'",
 }

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from scarid_cli.algorithms.processes.holding import held_in
+from scarid_cli.algorithms.processes.in_turn import in_turn, interpolated
 from scarid_cli.algorithms.processes.rates import resampling_rate
 from scarid_cli.arrays import Array, Marks, Numbers
 from scarid_cli.runs import period_of, run_starts
@@ -99,6 +100,19 @@ class Log:
         if np.count_nonzero(steps < 0.0) <= SELDOM * len(steps):
             return self
         return self.part(np.argsort(self.t, kind="stable"))
+
+    @property
+    def in_turn(self) -> bool:
+        """Whether most rows have the values of one source only."""
+        return in_turn(self.signals)
+
+    def filled(self) -> Log:
+        """The log in the rows of the first position, the other values interpolated there."""
+        every = self.signals if self.dq is None else np.concatenate((self.signals, self.dq))
+        rows, found = interpolated(self.t, every)
+        dq = None if self.dq is None else found[2 * self.joints :]
+        whole = replace(self.part(rows), q=found[: self.joints], dq=dq, others=None)
+        return replace(whole, tau=found[self.joints : 2 * self.joints])
 
     def scaled(self, *, t: float = 1.0, q: Array | float = 1.0) -> Log:
         """The log with time and positions multiplied by factors (positions by one per joint)."""

@@ -33,6 +33,10 @@ def missing(log: Log) -> Finding:
         return ok("missing values", "none")
     columns = ", ".join(name for name, count in counts.items() if count)
     figure = f"{several(total, 'cell')} empty or not finite, in {columns}"
+    if log.in_turn:
+        figure = f"each row has the values of one source; {figure}"
+        filled = log.filled().resampling("--missing", "fill")
+        return failed("missing values", figure, f"{filled} interpolates them at the rows of q1")
     advice = f"{log.resampling('--missing', 'drop')} leaves these rows out, and interpolates"
     return failed("missing values", figure, advice)
 

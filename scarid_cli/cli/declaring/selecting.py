@@ -63,10 +63,12 @@ def selection(function: F) -> F:
         heading(DATA),
         window,
         click.option(
-            "--missing", type=click.Choice(("refuse", "drop", "split")), default="refuse",
+            "--missing", type=click.Choice(("refuse", "drop", "split", "fill")), default="refuse",
             show_default=True,
-            help="What to do where a value is missing: refuse the log, drop the row, or also begin "
-            "a new segment after it, as after a gap.",
+            help="What to do where a value is missing: refuse the log; drop the row; split, which "
+            "also begins a new segment after it, as after a gap; or fill, for sources that write "
+            "in turn: keep the rows with q1, and interpolate the other columns there (holds the "
+            "log in memory).",
         ),
     )(function)  # fmt: skip
 

@@ -26,7 +26,7 @@ from scarid_cli.errors import ForeignLog, TooShort, UsageFault
 from scarid_cli.io import schemas
 from scarid_cli.io.bytesource import STDIN, ByteSource
 from scarid_cli.io.reader import Reads, checked, conforming, open_table, require
-from scarid_cli.io.selection import REFUSE, SPLIT, Lacking, within
+from scarid_cli.io.selection import FILL, REFUSE, SPLIT, Lacking, Whole, within
 from scarid_cli.io.stated import in_file, stated_robot
 from scarid_cli.io.stop import STOP
 from scarid_cli.io.table import Table
@@ -65,7 +65,7 @@ class Job:
         self.watched = ""  # what a person sees beside the number of rows
         self.remarks = Remarks(place.say)
         self._selection = selection_of(options)
-        self._lacking: list[tuple[str, Lacking]] = []
+        self._lacking: list[tuple[str, Whole]] = []
         self._begun: dict[str, Table] = {}
 
     def output(self, path: str, wanted: str | None = None, *, readable: bool = False) -> Output:
@@ -147,8 +147,12 @@ class Job:
             checked(table, kind, reads=reads, regular=regular, lacking=lacking, remedies=found)
         )
 
-    def _without_lacking(self, name: str, columns: list[str]) -> Lacking:
-        lacking = Lacking(columns, self._selection.missing == SPLIT)
+    def _without_lacking(self, name: str, columns: list[str]) -> Whole:
+        lacking: Whole = Lacking(columns, self._selection.missing == SPLIT)
+        if self._selection.missing == FILL:
+            from scarid_cli.stages.records.filled import Filled  # not needed otherwise
+
+            lacking = Filled(columns)
         self._lacking.append((name, lacking))
         return lacking
 
@@ -349,8 +353,7 @@ class Job:
         """Report the rows that --missing left out."""
         for name, lacking in self._lacking:
             if lacking.count:
-                what = f"{lacking.count:,} row{'s' if lacking.count > 1 else ''}"
-                self.say(f"{name}: left out {what} with missing values")
+                self.say(f"{name}: {lacking.text}")
         self._lacking.clear()
 
     def recorded(self, table: Table) -> Table:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from scarid_cli.io.remedies import Remedies
     from scarid_cli.io.table import Table
 
-DROP = "--missing drop"
+DROP, FILL = "--missing drop", "--missing fill"
 WINDOW = [name for name in SELECTION if name != "missing"]
 
 
@@ -51,8 +51,8 @@ def remedies(path: str, *, regular: bool) -> Remedies:
     )
     if "missing" not in click.get_current_context().params:
         return Remedies(clock=constant)
-    whole = partial(_text, f"{CORRECT}, or leave it out with", _pipe(path, [DROP], SELECTION))
-    return Remedies(value=whole, clock=constant)
+    pipes = [_pipe(path, [word], SELECTION) for word in (DROP, FILL)]
+    return Remedies(value=partial(_whole, *pipes), clock=constant)
 
 
 def _text(start: str, pipe: Pipe, rows: pa.RecordBatch) -> str:
@@ -61,6 +61,16 @@ def _text(start: str, pipe: Pipe, rows: pa.RecordBatch) -> str:
     from scarid_cli.stages.records.rates import advised_rate
 
     return f"{start} `{pipe.through(f'scarid resample --rate {advised_rate(rows)}')}`"
+
+
+def _whole(drop: Pipe, fill: Pipe, rows: pa.RecordBatch) -> str:
+    """What to do about a row that lacks a value, as it is followed by these."""
+    from scarid_cli.stages.records.filled import of_one_source
+
+    own = of_one_source(rows)
+    if own is None:
+        return _text(f"{CORRECT}, or leave it out with", drop, rows)
+    return _text("each row has the values of one source: interpolate them with", fill, own)
 
 
 def require_our_names(path: str, table: Table) -> None:
