@@ -55,6 +55,7 @@ OTHERS = {
     b"TDSm": "a TDMS file of LabVIEW: export it as CSV",
     b"ULog": "a log of PX4: export its topics as CSV",
 }
+MARKUP = re.compile(rb"\s*<[!?a-zA-Z]")
 
 
 def read_csv(source: ByteSource) -> Table:
@@ -91,6 +92,8 @@ def _table(source: ByteSource) -> Table:
     first = next(lines, b"")
     if first.startswith(tuple(OTHERS)):
         raise _not_a_table(source.name, first)
+    if MARKUP.match(first):
+        raise BadData(f"{source.name}: HTML or XML, and no table; was an error page downloaded?")
     while not (header_end := _header_end(first)) and (more := next(lines, None)):
         first = more
     if not header_end:

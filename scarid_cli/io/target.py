@@ -33,6 +33,8 @@ class Target:
 
     def __init__(self, path: str) -> None:
         self.name = STDOUT if path == "-" else path
+        if path.endswith(os.sep):
+            raise OutputFailure(f"{path}: a folder; name a file in it")
         self._part: Path | None = None
         self._before: Path | None = None  # what was there before, under another name
         self._put = False  # whether the file is in its place
@@ -68,7 +70,8 @@ class Target:
         try:
             return os.open(path, os.O_WRONLY | os.O_CLOEXEC | flags, 0o666)
         except FileNotFoundError:
-            folder = Path(self.name).parent
+            link = Path(self.name).is_symlink()
+            folder = self._place.parent if link else Path(self.name).parent
             raise OutputFailure(
                 f"{self.name}: there is no folder {folder}; make it first"
             ) from None

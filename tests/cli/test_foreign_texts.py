@@ -409,3 +409,26 @@ def test_a_header_stays_one_above_rows_that_lack_most_values(data: st.DataObject
         path = Path(folder, "log")
         path.write_text("\n".join(lines) + "\n")
         assert notation_of(ByteSource.open(str(path)), None, by_name=False).plain
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["<html><body>404</body></html>", '<?xml version="1.0"?>\n<robot/>\n', " <!DOCTYPE html>"],
+)
+@pytest.mark.parametrize("command", ["convert", "info", "identify --robot scara2"])
+def test_a_page_is_no_table(text: str, command: str, shell: Shell, tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(text)
+    refused(shell(f"scarid {command} log.csv"), 65, "HTML or XML, and no table")
+
+
+@pytest.mark.parametrize("option", ["-o foo/", "--tee foo/"])
+def test_a_folder_is_no_output(option: str, shell: Shell, tmp_path: Path) -> None:
+    """Nor is a link into a folder that is not there, which is named."""
+    command = "tee" if "tee" in option else "filter --cutoff 10"
+    words = option.replace("--tee ", "")
+    found = shell(f"scarid {command} {words} < $SAMPLES/scara2.csv")
+    assert (found.status, (tmp_path / "foo").exists()) == (74, False), found
+    assert "foo/: a folder; name a file in it" in found.err
+    (tmp_path / "link.csv").symlink_to("nowhere/log.csv")
+    found = shell("scarid filter --cutoff 10 -o link.csv $SAMPLES/scara2.csv")
+    assert f"there is no folder {tmp_path}/nowhere" in found.err
