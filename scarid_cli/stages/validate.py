@@ -62,7 +62,7 @@ def validate(
     some torque is predicted, is then the likelier cause.
     """
     robot = model.robot
-    sums = [empty() for _ in robot.joints]
+    sums, judged_sums = ([empty() for _ in robot.joints] for _ in range(2))
     schema = _prediction_schema(robot, table)
     if predictions:
         meta = replace(table.meta, kind="prediction", robot=robot.name)
@@ -77,7 +77,9 @@ def validate(
     for batch, rows, (torques,) in of_parts(parts, [model], table.period):
         sums = added(sums, rows, torques)
         if before:
-            subsample = subsample.add(rows)
+            own = before.alike(rows)
+            subsample = subsample.add(own)
+            judged_sums = added(judged_sums, own, torques)
         if predictions and batch is not None:
             new = dict(zip(schema.names[1:], (*rows.y.T, *torques), strict=False))
             predictions.write(with_columns(batch, schema, new))
@@ -86,7 +88,7 @@ def validate(
         extra["delay"] = model.delay
     qualities = [Quality.of(joint) for joint in sums]
     if before:
-        relative = np.array([quality.relative_error / 100.0 for quality in qualities])
+        relative = np.array([Quality.of(one).relative_error / 100.0 for one in judged_sums])
         rows = left_out.settled(subsample.rows())
         judged = verdict(rows, model, before, relative, times)
         if causes := failed(bool(np.min(relative) < PREDICTED)):

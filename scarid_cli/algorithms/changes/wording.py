@@ -209,5 +209,10 @@ def _amount(e: Explanation, i: int, values: dict[str, float]) -> str:
     amount, error, before = e.amounts[i], e.errors[i], values.get(name, 0.0)
     text = f"{name} {amount:+.3g} {plus_minus(error)} {unit}"
     if e.hypothesis.kind == DRIFT and before:
-        text += f" ({100.0 * amount / before:+.2g} %)"
+        text += f" ({_rounded(100.0 * amount / before)} %)"
     return text
+
+
+def _rounded(percent: float) -> str:
+    """With a sign and two digits, of which large numbers have more: +9.3, +110."""
+    return f"{percent:+.2g}" if abs(percent) < 100.0 else f"{percent:+.0f}"

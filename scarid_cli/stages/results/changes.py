@@ -27,7 +27,7 @@ from scarid_cli.algorithms.changes.wording import (
 from scarid_cli.algorithms.effects.ringing import with_ringing
 from scarid_cli.algorithms.inference.verdict import VAGUE
 from scarid_cli.algorithms.regression.normal_equations import inverse
-from scarid_cli.algorithms.regression.rows import Rows
+from scarid_cli.algorithms.regression.rows import Rows, without_slow
 from scarid_cli.algorithms.regression.shifting import in_step
 from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.uncertainty.bursts import bursts_of
@@ -35,7 +35,7 @@ from scarid_cli.algorithms.uncertainty.jackknife import quantile
 from scarid_cli.arrays import Array, median
 from scarid_cli.io.table import Table
 from scarid_cli.stages.records.times import CAUSE, Times, spans
-from scarid_cli.stages.results.parameters import BIASES, EVIDENCE, Identified
+from scarid_cli.stages.results.parameters import BIASES, EVIDENCE, SLOW, Identified
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,8 @@ class Known:
     standard errors of the estimates, nan where there are none, and `covariance` (parameters,
     parameters) has what they have in common, None if it is not known. `torques` (joints) are half
     the 95 % intervals of the predicted torques, relative to the torques, 0 where they are not
-    known, and `sizes` (joints) the root mean squares of the torques, nan where they are not known,
+    known, `slow` (joints) the velocities below which rows were left out [rad/s or m/s], if any
+    were, and `sizes` (joints) the root mean squares of the torques, nan where they are not known,
     as `residuals` (joints), those of the estimates relative to the torques.
     """
 
@@ -56,6 +57,7 @@ class Known:
     sizes: Array | float = np.nan
     residuals: Array | float = np.nan
     covariance: Array | None = None
+    slow: tuple[float, ...] = ()
 
     def ratios(self, now: LogEvidence, powers: Array) -> Array | None:
         """The residuals of a log, divided by those at identification (joints), if these are known.
@@ -68,6 +70,10 @@ class Known:
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = np.nan_to_num(now.deviations / self.evidence.deviations, posinf=1.0)
             return np.asarray(ratios * np.fmin(self.sizes / np.sqrt(powers), 1.0))
+
+    def alike(self, rows: Rows) -> Rows:
+        """The rows without those that the identification knows nothing of: slow ones."""
+        return without_slow(rows, np.array(self.slow)) if self.slow else rows
 
     def fitted(self, powers: Array) -> Array:
         """The residuals at identification, relative to the torques (joints); nan if not known.
@@ -112,7 +118,7 @@ def known(table: Table, robot: Robot, errors: Array) -> Known:
     """What the table says, for the robot as it was identified."""
     stored = table.meta.extra.get(EVIDENCE)
     if not stored:
-        return Known(None, errors)
+        return Known(None, errors, slow=_slow(table))
     names, joints = robot.names, len(robot.joints)
     p = len(stored["columns"])
     if stored["columns"][: len(names)] != names or len(stored["deviations"]) != joints:
@@ -138,7 +144,13 @@ def known(table: Table, robot: Robot, errors: Array) -> Known:
         _of_joints(table, joints, "torque"),
         0.01 * _of_joints(table, joints, "relative_error"),
         _covariance(table, len(names)),
+        _slow(table),
     )
+
+
+def _slow(table: Table) -> tuple[float, ...]:
+    """The velocities (joints) below which rows were left out; empty if none were."""
+    return tuple(map(float, table.meta.extra.get(SLOW) or ()))
 
 
 def _covariance(table: Table, parameters: int) -> Array | None:

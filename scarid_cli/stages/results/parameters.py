@@ -36,6 +36,7 @@ if TYPE_CHECKING:  # cvxpy takes a second to import
 EVIDENCE = "evidence"  # key of the metadata
 BIASES = "biases"  # key of the evidence
 ADDITIONS = "additions"  # key of the metadata
+SLOW = "slow"  # key of the metadata: velocities below which rows were left out
 GAINS, WIDENED_BY_GAINS = "relative_gains", "widened_by_gains"  # keys of the metadata
 CONSISTENT = "consistent"  # key of the metadata
 LARGEST = 1e15  # of an estimate, in any unit: beyond it sums of squares overflow
@@ -204,6 +205,8 @@ def parameters(
     if bodies:
         evidence = replace(evidence, estimates=estimates, bodies=bodies)
     extra = _judged(evidence, robot) | _facts(found, labels)
+    if treatment.slow:
+        extra[SLOW] = list(treatment.slow)
     if bodies:
         extra[CONSISTENT] = {"distance": bodies.distance, "explained": bodies.explained}
         extra["full_estimates"] = found.full.estimates.tolist()

@@ -33,7 +33,7 @@ def pooled_identifications(tables: Sequence[Entry]) -> tuple[Identified, Known]:
     errors = np.full_like(before.errors, np.nan)
     additions = mean_additions([m.additions for m in models])
     own = replace(model, theta=found.theta, delay=found.delay, additions=additions)
-    return own, Known(found.evidence, errors)
+    return own, Known(found.evidence, errors, slow=before.slow)
 
 
 def _evidence(table: Entry) -> LogEvidence:
