@@ -30,7 +30,7 @@ def test_an_identification_without_slow_rows_is_not_changed_by_its_own_log(shell
         "export SCARID_ROBOT=scara2; scarid trajgen -q --seed 1 --duration 10 |"
         " scarid simulate -q --seed 1 --with stribeck=0.5 --with stribeck-velocity=0.1 |"
         " scarid differentiate -q --method kalman -o motion.parquet;"
-        " scarid identify -q --estimator wls --all-rows --drop-slow 0.3 motion.parquet -o p.parquet;"
+        " scarid identify -q --estimator wls --all-rows --drop-slow .3 motion.parquet -o p.parquet;"
         " scarid validate -q --all-rows --parameters p.parquet --require unchanged motion.parquet"
     )
     assert made.status == 0, made.err
