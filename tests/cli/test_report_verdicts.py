@@ -84,6 +84,6 @@ def test_torques_belong_to_the_parameters_that_predicted_them(made: Path, scarid
     scarid("report", "loaded.parquet", "june.parquet", "--html", "page.html")
     found = first_screen(made / "page.html")
     assert "It predicts the torques" not in found
-    assert "They are of the robot as this log has it, which is changed." in found
+    assert "for the robot as it was when it was identified. june.csv is changed." in found
     scarid("report", "p.parquet", "june.parquet", "--html", "page.html")
     assert "It predicts the torques" in first_screen(made / "page.html")

@@ -46,7 +46,7 @@ def run(
     tables = _reportable(job, paths)
     values = values_of.read(job.read(published, "published")) if published else None
     collected = results.collect(tables, repeated=repeated)
-    title = title or _title(collected)
+    title = title or _title(collected, tables)
     found = (repetitions.sections if repeated else sections)(collected, values)
     if figures:
         _save(job, Path(figures), found)
@@ -63,9 +63,10 @@ def run(
         job.say("some tables have figures only; draw them with --html FILE")
 
 
-def _title(found: Sequence[Result]) -> str:
-    """The title of a report, with its robots."""
+def _title(found: Sequence[Result], tables: Sequence[Table]) -> str:
+    """The title of a report, with its robots, whether their descriptions are found or not."""
     robots = dict.fromkeys(r.robot_name for r in found if r.robot_name)
+    robots = robots or dict.fromkeys(t.meta.robot for t in tables if t.meta.robot)
     return f"Identification of {', '.join(robots)}" if robots else "Identification report"
 
 

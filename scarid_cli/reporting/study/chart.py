@@ -13,6 +13,7 @@ from scarid_cli.reporting.study import svg
 NARROW, WIDE = 340, 500  # pixels of a panel, of three or two of which side by side
 LEFT, RIGHT = 46, 6
 TOP, BOTTOM = 6, 18
+TIME = "t [s]"
 INK = "ink"  # the class of measured and true signals
 
 
@@ -74,6 +75,7 @@ def drawn(chart: Chart, between: tuple[float, float]) -> Markup:
         _frame(chart),
         *_vertical(chart),
         *_horizontal(chart, between),
+        svg.element("text", TIME, x=LEFT - 5, y=TOP + chart.height + 13, class_="y"),
         plot,
         viewBox=size,
         role="img",

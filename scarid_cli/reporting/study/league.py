@@ -10,11 +10,13 @@ from markupsafe import Markup
 
 from scarid_cli.reporting.study import svg
 
-WIDTH, NAMES, NUMBERS = 640, 160, 110
+WIDTH, NAMES, NUMBERS = 640, 160, 130
 TOP, ROW, BOTTOM = 20, 22, 34
 LETTERS = 26
+SHOWN = 3  # values in numbers; of more, the least and the largest
 SPREAD = 7.0  # of the marks of a row that have bars of their own
 LEAST, MOST = 1e-3, 1e5  # percent: the axis ends there at the latest
+APART = 60  # between the labels of decades
 
 
 @dataclass(frozen=True)
@@ -33,13 +35,22 @@ class Place:
 
 @dataclass(frozen=True)
 class League:
-    """Rows with the same marks; values above `limit` are doubtful."""
+    """Rows with the same marks; values above `limit` are doubtful, those above `most` all alike."""
 
     caption: str
     axis: str
     marks: tuple[str, ...]
     places: tuple[Place, ...]
     limit: float | None = None
+    most: float = MOST
+
+    def text(self, values: Sequence[float]) -> str:
+        """The values with their percent sign."""
+        if any(v > self.most for v in values):
+            return f"over {self.most:g} %"
+        if len(values) > SHOWN:
+            return f"{percents([min(values)])} to {percents([max(values)])} %"
+        return f"{percents(values)} %"
 
 
 def drawn(league: League) -> Markup:
@@ -50,7 +61,11 @@ def drawn(league: League) -> Markup:
     return svg.element(
         "svg",
         *_axis(league, low, high, bottom),
-        *(part for i, p in enumerate(league.places) for part in _row(p, TOP + ROW * i, low, high)),
+        *(
+            part
+            for i, p in enumerate(league.places)
+            for part in _row(league, p, TOP + ROW * i, low, high)
+        ),
         *_legend(marks),
         viewBox=f"0 0 {WIDTH} {bottom + BOTTOM}",
         role="img",
@@ -65,7 +80,7 @@ def decades(league: League) -> tuple[int, int]:
         v for p in league.places for v in (*p.values, *(x for ends in p.ranges for x in ends))
     ]
     known = [v for v in values if isfinite(v) and v > 0.0]
-    known = [min(max(v, LEAST), MOST) for v in known] or [1.0]
+    known = [min(max(v, LEAST), league.most) for v in known] or [1.0]
     low, high = floor(log10(min(known))), ceil(log10(max(known)))
     return low, max(high, low + 1)
 
@@ -76,20 +91,22 @@ def percents(values: Sequence[float]) -> str:
 
 
 def _spoken(league: League) -> str:
-    rows = (f"{p.name} {percents(p.values)} %" for p in league.places)
+    rows = (f"{p.name} {league.text(p.values)}" for p in league.places)
     return f"{league.caption} {'; '.join(rows)}"
 
 
 def _x(value: float, low: int, high: int) -> float:
-    share = (log10(min(max(value, LEAST), MOST)) - low) / (high - low)
+    share = (min(max(log10(value), low), high) - low) / (high - low)
     return NAMES + (WIDTH - NAMES - NUMBERS) * share
 
 
 def _axis(league: League, low: int, high: int, bottom: float) -> list[Markup]:
-    parts = []
+    parts, decade = [], (WIDTH - NAMES - NUMBERS) / (high - low)
     for power in range(low, high + 1):
         x = _x(10.0**power, low, high)
         parts.append(svg.element("path", d=f"M{x:.1f} {TOP}V{bottom}", class_="grid"))
+        if (high - power) % ceil(APART / decade):
+            continue
         parts.append(svg.element("text", f"{10.0**power:g} %", x=x, y=bottom + 13, class_="x"))
     if league.limit:
         x = _x(league.limit, low, high)
@@ -98,11 +115,11 @@ def _axis(league: League, low: int, high: int, bottom: float) -> list[Markup]:
     return [*parts, svg.element("text", league.axis, x=middle, y=bottom + 28, class_="x")]
 
 
-def _row(place: Place, top: float, low: int, high: int) -> list[Markup]:
+def _row(league: League, place: Place, top: float, low: int, high: int) -> list[Markup]:
     y = top + ROW / 2
     name = place.name if len(place.name) <= LETTERS else place.name[: LETTERS - 1] + "…"
     parts = _marks(place, y, low, high)
-    text = f"{percents(place.values)} %" if parts else "unknown"
+    text = league.text(place.values) if parts else "unknown"
     return [
         svg.element("text", name, x=NAMES - 10, y=y + 3.5, class_="name"),
         svg.element("g", *parts, class_=place.style),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from markupsafe import Markup
 
@@ -15,8 +16,13 @@ from scarid_cli.reporting.study import league
 from scarid_cli.reporting.study.league import League, Place, percents
 from scarid_cli.reporting.study.ranking import Ranking, Standing
 from scarid_cli.stages.compare import DIFFER
+from scarid_cli.stages.results.documents import half_interval
+from scarid_cli.words import listed
 
 ROWS = 12  # of the figure at most
+FEW = 2 * ROWS  # parameters: of more, the torques of the joints are shown
+VAGUE = 100.0  # percent: an error from which on all are alike
+TIE = 1.05  # times the error of the best: as good
 NAMED = 4  # good methods that are named at most
 EXPERIMENTS = {
     "common": "another log, calculated with one motion for all methods,",
@@ -109,15 +115,26 @@ def _how_well(ranking: Ranking) -> str:
     known_ones = [s for s in ranked if s.errors(judge)]
     text = (
         f"It predicts the torques of {EXPERIMENTS.get(judge, f'the experiment {judge}')} within "
-        f"{percents(known_ones[0].errors(judge))} % of their norm"
+        f"{of_joints(known_ones[0].errors(judge))} of their norm"
     )
-    return others(text, [(s.label, s.errors(judge)) for s in known_ones[1:]])
+    tied = [s for s in known_ones[1:] if s.score(judge) <= TIE * known_ones[0].score(judge)]
+    if tied:
+        text += f", as does {listed([s.label for s in tied])}"
+    rest = [s for s in known_ones[1:] if s not in tied]
+    return others(text, [(s.label, s.errors(judge)) for s in rest])
+
+
+def of_joints(values: Sequence[float]) -> str:
+    """The values [%] with their joints: `joint 1 1.4 %, joint 2 6.2 %`; one alone without."""
+    if len(values) == 1:
+        return f"{percents(values)} %"
+    return ", ".join(f"joint {i} {percents([value])} %" for i, value in enumerate(values, start=1))
 
 
 def others(text: str, ranked: Sequence[tuple[str, Sequence[float]]]) -> str:
     """The sentence, with the errors [%] of the next and of the last of these methods."""
     chosen = [*ranked[:1], *ranked[1:][-1:]]
-    tails = [f"{label} within {percents(errors)} %" for label, errors in chosen]
+    tails = [f"{label} within {of_joints(errors)}" for label, errors in chosen]
     names = ("the next, ", "the last, ")
     rest = "; ".join(a + b for a, b in zip(names, tails, strict=False))
     return f"{text}; {rest}." if rest else f"{text}."
@@ -140,7 +157,10 @@ def _belief(ranking: Ranking, alarm: Said | None) -> str:
     if not alarm:
         return f"{belief}{why}."
     if any(alarm in s.said for s in ranking.standings if not s.parameters):
-        return f"{belief}{why}. They are of the robot as this log has it, which is {alarm.verdict}."
+        return (
+            f"{belief}{why}, for the robot as it was when it was identified. {alarm.what} is "
+            f"{alarm.verdict}."
+        )
     if best.grade in (GOOD, ROUGH):
         return (
             f"For the robot as it was identified, within the stated intervals{why}. Not for "
@@ -191,10 +211,11 @@ def _of_parameters(ranking: Ranking, colours: dict[str, int]) -> League:
         caption = "Median relative standard error of the parameters of each method."
     else:
         errors, style = best.robust or best.deviations, f"m{colours[ranking.best.label]}"
-        places = tuple(
-            Place(name, style, "", (error,)) for name, error in zip(best.names, errors, strict=True)
-        )
-        caption = "Relative standard error of each parameter."
+        if len(errors) > FEW and (figure := _of_joints(best.extra, style)):
+            return figure
+        pairs = zip(best.names, errors, strict=True)
+        places = tuple(Place(name, style, "", (error,)) for name, error in pairs)
+        caption = "Relative standard error of each parameter; half the interval is twice as much."
     return League(
         caption=f"{caption} The line marks {DOUBT:g} %, above which a parameter is not known; "
         "further left is better.",
@@ -202,4 +223,25 @@ def _of_parameters(ranking: Ranking, colours: dict[str, int]) -> League:
         marks=("error",),
         places=places,
         limit=DOUBT,
+        most=VAGUE,
+    )
+
+
+def _of_joints(extra: dict[str, Any], style: str) -> League | None:
+    """How well the torques of each joint are known; None if the metadata do not say it."""
+    places = []
+    for number, joint in enumerate(extra.get("joints", ()), start=1):
+        half, needed = half_interval(joint.get("torque_error"), extra), joint.get("needed")
+        if half is None or needed is None:
+            return None
+        values = (100.0 * half, 100.0 * needed, joint["relative_error"])
+        places.append(Place(f"joint {number}", style, "", values))
+    return League(
+        caption="Half the 95 % interval of the torque that the estimates give on a motion like "
+        "that of the log (model torque) and that the robot needs on another one (needed torque), "
+        "and what they leave of the log (residual), in percent of the torque; further left is "
+        "better.",
+        axis="percent of the torque",
+        marks=("model torque", "needed torque", "residual"),
+        places=tuple(places),
     )

@@ -42,7 +42,10 @@ def identification(table: Table, estimator: str) -> Document:
                 {
                     "joint": number,
                     **{name: joint.get(key) for name, key in OF_A_JOINT.items()},
-                    **{name: _half(joint.get(key), extra) for name, key in INTERVALS.items()},
+                    **{
+                        name: half_interval(joint.get(key), extra)
+                        for name, key in INTERVALS.items()
+                    },
                 }
                 for number, joint in enumerate(extra.get("joints", ()), start=1)
             ],
@@ -60,7 +63,7 @@ OF_A_JOINT = {
 INTERVALS = {"torque_half_interval": "torque_error", "inertia_half_interval": "inertia_error"}
 
 
-def _half(error: float | None, extra: dict[str, Any]) -> float | None:
+def half_interval(error: float | None, extra: dict[str, Any]) -> float | None:
     """Half the 95 % interval, of a standard error in the metadata."""
     blocks = (extra.get(EVIDENCE) or {}).get("blocks")
     return None if error is None or not blocks else quantile(0.975, blocks - 1.0) * error
