@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scarid_cli.stages.conversion.recorders import unit_in_name, unstated_unit
 from scarid_cli.stages.conversion.units import UNITS, known_unit, scale_of
 
-# NIST Special Publication 811, appendix B.8.
+# NIST SP 811 (2008), Guide for the Use of the International System of Units.
 PUBLISHED = {
     "ft-lb": 1.355818, "lbf·ft": 1.355818, "ft lbf": 1.355818, "lb-ft": 1.355818,
     "in-lb": 0.1129848, "lbf.in": 0.1129848, "oz-in": 7.061552e-3, "ozf in": 7.061552e-3,

@@ -37,16 +37,16 @@ class Interval:
 def written(interval: Interval) -> tuple[str, str, str]:
     """The estimate, half its interval and the same in percent, to what is known of them.
 
-    Each is empty or a dash if it is not known.
+    Each is empty or a dash if it is not known; the percentage of what may be 0 says nothing.
     """
     half = interval.half
     if not (isfinite(half) and half > 0.0 and isfinite(interval.estimate)):
         return number(interval.estimate), "", ""
     places = KNOWN - 1 - floor(log10(half))
     percent = interval.relative()
-    share = f"{percent:,.0f} %" if percent >= 100.0 else f"{percent:.2g} %"
+    share = f"{percent:.2g} %" if percent < 100.0 else ""
     estimate = _rounded(interval.estimate, places)
-    return estimate, _rounded(half, places), share if isfinite(percent) else ""
+    return estimate, _rounded(half, places), share
 
 
 def _rounded(value: float, places: int) -> str:
