@@ -21,6 +21,7 @@ from scarid_cli.io.table import Metadata, Table
 ROWS = 4096  # at a time
 EXACT = 1 << 53  # from which a double cannot hold every whole number
 NESTED = 20  # objects within one another
+WIDEST = 10_000  # values in a row
 MEMORY = 10  # bytes of memory for a byte of a document
 
 
@@ -41,7 +42,12 @@ def table_of_rows(objects: Iterable[Any], name: str) -> Table:
     first = next(rows, None)
     if first is None:
         raise BadData(f"{name}: no rows; is the file empty?")
-    columns = dict(_flat(first[1]))
+    columns = dict(islice(_flat(first[1]), WIDEST + 1))
+    if len(columns) > WIDEST:
+        raise BadData(
+            f"{name}: more than {WIDEST:,} values in the first row; write an object for each "
+            "sample, or a list for each column"
+        )
     schema = pa.schema([(column, _type(value)) for column, value in columns.items()])
     return Table(name, schema, Metadata(), _batches(chain([first], rows), schema, name))
 
@@ -183,7 +189,7 @@ def _objects(document: Any) -> list[Any]:
     if document and all(key.isdecimal() and isinstance(x, dict) for key, x in document.items()):
         return [*document.values()]
     lists = [x for x in document.values() if isinstance(x, list) and x and isinstance(x[0], dict)]
-    return lists[0] if len(lists) == 1 else []
+    return lists[0] if len(lists) == 1 and not _of_parts(lists[0]) else []
 
 
 def _columns(document: dict[str, Any]) -> dict[str, Sequence[Any]]:
@@ -208,11 +214,17 @@ def _columns(document: dict[str, Any]) -> dict[str, Sequence[Any]]:
 def _lists(value: dict[str, Any], name: str = "", depth: int = 0) -> Iterator[tuple[str, Any]]:
     """The values inside of it by name, of which lists, and objects of numbered rows, are whole.
 
-    A few long lists in one, as of a matrix with a row for each joint, are columns of their own.
+    A few long lists in one, as of a matrix with a row for each joint, are columns of their own, and
+    so are those of a few objects, as of one for each joint, which may have a name.
     """
     for key, own in value.items():
         path = f"{name}.{key}" if name else str(key)
-        if _few_long(own):
+        if depth < NESTED and _of_parts(own):
+            for k, part in enumerate(own):
+                called = part.get("name")
+                inside = f"{path}.{called}" if isinstance(called, str) else f"{path}[{k}]"
+                yield from _lists({x: y for x, y in part.items() if x != "name"}, inside, depth + 1)
+        elif _few_long(own):
             yield from ((f"{path}[{k}]", column) for k, column in enumerate(own))
         elif not isinstance(own, dict):
             yield path, own
@@ -220,6 +232,16 @@ def _lists(value: dict[str, Any], name: str = "", depth: int = 0) -> Iterator[tu
             yield path, [*own.values()]
         elif depth < NESTED:
             yield from _lists(own, path, depth + 1)
+
+
+def _of_parts(value: Any) -> bool:
+    """Whether a list has a few objects with long lists, as of one for each joint."""
+    few = isinstance(value, list) and 0 < len(value) <= NESTED
+    return few and all(
+        isinstance(part, dict)
+        and any(isinstance(x, list) and len(x) > NESTED for x in part.values())
+        for part in value
+    )
 
 
 def _few_long(value: Any) -> bool:

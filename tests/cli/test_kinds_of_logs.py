@@ -31,6 +31,22 @@ NAMES = ["t", "q1", "q2", "tau1", "tau2"]
 Writer = Callable[[Path], str]
 
 
+def as_objects_of_joints(folder: Path) -> str:
+    joints = [
+        {"name": f"joint_{k + 1}", "position": Q[:, k].tolist(), "torque": TAU[:, k].tolist()}
+        for k in range(2)
+    ]
+    (folder / "log.json").write_text(json.dumps({"time": T.tolist(), "joints": joints}))
+    return "log.json"
+
+
+def as_nameless_objects(folder: Path) -> str:
+    joints = [{"q": Q[:, k].tolist(), "tau": TAU[:, k].tolist()} for k in range(2)]
+    document = {"version": 1, "t": T.tolist(), "joint": joints}
+    (folder / "log.json").write_text(json.dumps(document))
+    return "--map 'q*=joint[*].q' --map 'tau*=joint[*].tau' log.json"
+
+
 def as_lines(folder: Path) -> str:
     rows = zip(T.tolist(), Q.tolist(), TAU.tolist(), strict=True)
     lines = (json.dumps({"t": t, "q": q, "tau": tau}) for t, q, tau in rows)
@@ -133,6 +149,8 @@ def row_for_each_joint(path: Path) -> str:
 
 
 KINDS = [
+    as_objects_of_joints,
+    as_nameless_objects,
     as_lines,
     nested,
     as_columns,
@@ -199,6 +217,7 @@ def test_lines_of_a_robot_with_many_motors_are_lines(
         ('[{"t": 0}, {"t"', "not JSON"),
         ('{"a": 1, "b": {"c": 2}', "not JSON"),
         ('{\n"a": "text"\n}', "but no rows"),
+        (json.dumps([{"a": [0.0] * 20_000}]), "more than 10,000 values in the first row"),
     ],
 )
 def test_json_that_is_no_table_is_told(text: str, told: str, shell: Shell, tmp_path: Path) -> None:
