@@ -432,3 +432,25 @@ def test_a_folder_is_no_output(option: str, shell: Shell, tmp_path: Path) -> Non
     (tmp_path / "link.csv").symlink_to("nowhere/log.csv")
     found = shell("scarid filter --cutoff 10 -o link.csv $SAMPLES/scara2.csv")
     assert f"there is no folder {tmp_path}/nowhere" in found.err
+
+
+@pytest.mark.parametrize("start", [133_537_679_900_000_000, 638_000_000_000_000_000])
+def test_ticks_of_100_ns_are_a_clock(start: int, shell: Shell, tmp_path: Path) -> None:
+    """As Windows counts them since 1601, and .NET since the year 1."""
+    clock = [str(start + 100_000 * k) for k in range(ROWS)]
+    found = converted(shell, tmp_path, written(",".join(["timestamp", *ORDER[1:]]), clock))
+    np.testing.assert_allclose(found, LOG, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["duration", "utime", "elapsed_ms_ticks"])
+def test_what_may_be_a_clock_is_named(name: str, shell: Shell, tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text(written(",".join([name, *ORDER[1:]])))
+    assert f"no clock: perhaps --map t={name}" in shell("scarid convert log.csv").err
+
+
+def test_rows_of_single_values_are_to_be_pivoted(shell: Shell, tmp_path: Path) -> None:
+    names = ",result,table,_time,_value,_field,joint"
+    rows = [f",,0,2026-01-01T00:00:00Z,{x},position,a" for x in range(3)]
+    text = "\n".join(["#group,false,false,false,false,true,true", names, *rows])
+    (tmp_path / "log.csv").write_text(f"{text}\n")
+    refused(shell("scarid convert log.csv"), 65, "as of InfluxDB", "|> pivot(rowKey")

@@ -19,7 +19,7 @@ from scarid_cli.stages.conversion.cells import names_in_cells
 from scarid_cli.stages.conversion.lacking import lacking
 from scarid_cli.stages.conversion.recorders import unstated_unit
 from scarid_cli.stages.conversion.side import episodes_joined
-from scarid_cli.stages.conversion.turns import one_row_for_all
+from scarid_cli.stages.conversion.turns import one_row_for_all, refuse_long
 from scarid_cli.stages.conversion.units import unit_option
 from scarid_cli.stages.conversion.wording import is_current
 from scarid_cli.stages.records.runs import runs_joined
@@ -61,6 +61,7 @@ def run(
     if extension is None:
         notation = _notation(separator, header, decimal_comma=decimal_comma)
         table = read_log(job, file, source, notation, beside, named=pairs.values())
+        refuse_long(table)
         table, turns = one_row_for_all(table, job.notes.append)
         table, names = names_in_cells(table)
         columns = columns_of(job, table, pairs, given, recorder, arm, order, turns or names)

@@ -33,12 +33,14 @@ FORMS = tuple(
 )
 UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}  # s
 EPOCH = (9e8, 5e9)  # s since 1970: dates from 1998 to 2128
+TICK = 1e-7  # s, of Windows' FILETIME since 1601 and of .NET's ticks since the year 1
+BEFORE = (11_644_473_600, 62_135_596_800)  # s from these years to 1970
 
 
 def since_start(table: Table, clock: str) -> Table:
     """The table whose column `clock`, if it has dates, is the time [s] since its first row.
 
-    So is one of milliseconds, microseconds or nanoseconds since 1970.
+    So is one of milliseconds, microseconds or nanoseconds since 1970, and one of ticks of 100 ns.
 
     Dates are those of Arrow, or texts as ISO 8601 writes them; all have a zone, or none has. Texts
     may also be times of the day, dates such as 31.12.2026 23:59:59.5, or durations as `0.01 sec`.
@@ -64,12 +66,13 @@ def _may_have_dates(kind: pa.DataType) -> bool:
 
 
 def _epoch_unit(column: pa.Array) -> float | None:
-    """The unit [s] of a time since 1970 that is not in seconds, by the size of its first value."""
+    """The unit [s] of a time that is not in seconds, by the date that its first value would be."""
     try:
         first = float(column[0].as_py())
     except (TypeError, ValueError):
         return None
     found = [unit for unit in (1e-3, 1e-6, NANOSECOND) if EPOCH[0] < unit * first < EPOCH[1]]
+    found += [TICK for start in BEFORE if EPOCH[0] < TICK * first - start < EPOCH[1]]
     return found[0] if found else None
 
 

@@ -20,7 +20,9 @@ from scarid_cli.stages.conversion.wording import (
 )
 
 SHOWN = 8  # names of columns in a message
-TICKS = {"micros", "millis", "tick", "ticks"}  # words of a clock whose unit they do not say
+TICKS = {  # words of a clock whose unit they do not say
+    "duration", "elapsed", "micros", "millis", "tick", "ticks", "utime",
+}  # fmt: skip
 RATE = ": give --rate HZ, if the rate is constant"
 NUMBER = re.compile(r"\d+")
 FORCES = {"force", "forces", "kraft"}

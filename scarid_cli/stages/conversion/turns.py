@@ -52,6 +52,22 @@ def one_row_for_all(table: Table, tell: Callable[[str], None]) -> tuple[Table, t
     return replace(table, schema=schema, batches=turns.batches(table, schema)), names
 
 
+def refuse_long(table: Table) -> None:
+    """Refuse rows with one value each, as InfluxDB exports them, of which a query makes whole ones.
+
+    Raises:
+        BadData: the columns are a time, the name of a field, and its value.
+    """
+    if {"_time", "_field", "_value"} <= {*table.columns}:
+        raise bad_data(
+            table.name,
+            "a row for each value of each field, as of InfluxDB",
+            expected="one row for all",
+            remedy='end the query with |> pivot(rowKey: ["_time"], columnKey: ["_field"], '
+            'valueColumn: "_value"), with the tag of the joint in columnKey if there is one',
+        )
+
+
 def _texts(column: pa.Array) -> list[str]:
     values = column.to_pylist()
     return [f"{x:g}" if isinstance(x, float) else str(x) for x in values]
