@@ -117,6 +117,20 @@ def lasting(samples: int, time: float, rng: np.random.Generator) -> Array:
     return np.array(list(accumulate(noise.tolist(), lambda x, shock: keep * x + shock)))
 
 
+@pytest.mark.parametrize("unit", [1e-9, 1e-4, 1e5, 1e10])
+def test_errors_of_disturbances_that_last_have_the_unit_of_their_parameters(unit: float) -> None:
+    """A column in another unit, as that of a delay beside torques in mN m, changes no other."""
+    rng = np.random.default_rng(3)
+    W = np.column_stack([np.ones(2000), smooth(2000, 2, rng, reach=100)])
+    y = W @ [1.0, 2.0, 3.0] + lasting(2000, 2.0, rng)
+    errors = []
+    for factor in (1.0, unit):
+        rows = plain((W * [1.0, factor, 1.0])[:, None, :], y[:, None], H)
+        estimates = least_squares(rows).fit.estimates
+        errors.append(autocovariance_errors(rows, estimates, np.ones(1)) * [1.0, factor, 1.0])
+    np.testing.assert_allclose(errors[1], errors[0], rtol=1e-6)
+
+
 def test_errors_of_disturbances_that_last_are_those_that_occur() -> None:
     """Disturbances of two seconds in blocks of half a second, on columns that are as slow."""
     runs = []

@@ -52,9 +52,11 @@ def autocovariance_errors(rows: Rows, estimates: Array, weights: Array) -> Array
     for j, own in enumerate(scales.T):  # joint by joint: a copy of W would be large
         scaled = rows.W[:, j] * own[:, None]
         gram += scaled.T @ scaled
-    if np.linalg.matrix_rank(gram, hermitian=True) < parameters:
+    size = np.sqrt(np.diag(gram))  # in any unit of the torques: that of a delay is one per second
+    alike = gram / np.outer(size, size) if size.all() else np.zeros_like(gram)
+    if np.linalg.matrix_rank(alike, hermitian=True) < parameters:
         return np.full(parameters, np.nan)
-    inverse = np.asarray(np.linalg.inv(gram), dtype=np.float64)
+    inverse = np.asarray(np.linalg.inv(alike) / np.outer(size, size), dtype=np.float64)
     middle = np.zeros((parameters, parameters))
     taken = absorbed(rows, weights, inverse, TIMES.tolist())
     noises = noises_of(residuals, scales > 0.0, bins, length * rows.h, taken)
