@@ -42,10 +42,21 @@ class Bag:
     cut: bool = False
 
     def messages(self, topic: Topic) -> Iterator[tuple[int, bytes]]:
-        """The time at which each message was received [ns], and its bytes."""
+        """The time at which each message was received [ns], and its bytes.
+
+        Raises:
+            BadData: there are other messages than the recording states, at its end.
+        """
+        count = 0
         with _readable(self.name):
             for _, received, data in self.reader.messages(topic.connections):
+                count += 1
                 yield received, data
+        if count != topic.messages and not self.cut:
+            raise BadData(
+                f"{self.name}: {count:,} messages of {topic.name}, where the recording states "
+                f"{topic.messages:,}; were some lost? `ros2 bag reindex` counts them again"
+            )
 
 
 def bag_extension(path: str, source: ByteSource) -> str | None:

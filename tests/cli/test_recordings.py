@@ -274,3 +274,23 @@ def test_a_ur10_is_identified_from_its_bag_in_one_line(shell: Run, real_logs: Pa
     r2 = [float(row.split(",")[1]) for row in result.out.splitlines()[1:]]
     assert len(r2) == 6
     assert min(r2) >= 0.98
+
+
+@pytest.mark.parametrize("stated", [2, 4, 99])
+def test_a_folder_that_states_other_messages_than_it_has_is_refused(
+    stated: int, shell: Run, tmp_path: Path
+) -> None:
+    store, file = get_typestore(Stores.ROS2_HUMBLE), tmp_path / "rec"
+    with Writer2(file, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        topic = writer.add_connection("/joint_states", STATE, typestore=store)
+        for k in range(3):
+            when = START + k * MILLISECOND
+            message = joint_state(store, when, ["a"], k)
+            writer.write(topic, when, store.serialize_cdr(message, STATE))
+    facts = file / "metadata.yaml"
+    text = facts.read_text()
+    assert "message_count: 3" in text
+    facts.write_text(text.replace("message_count: 3", f"message_count: {stated}"))
+    found = shell("scarid convert rec -o log.parquet")
+    assert (found.status, (tmp_path / "log.parquet").exists()) == (65, False)
+    assert f"3 messages of /joint_states, where the recording states {stated}" in found.err
