@@ -251,6 +251,7 @@ def resample(
     *tables: TableLike,
     rate: Values | None = None,
     max_gap: Values | None = None,
+    robot: TableLike | None = None,
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
@@ -276,6 +277,7 @@ def resample(
     Options:
         rate: The new rate [Hz].
         max_gap: The longest interval to interpolate [s]; a longer one is a gap. [default: 5 periods of the log, or one period of the new rate if that is longer]
+        robot: A .toml file of the robot, whose [log] says what the columns are, if they have other names than ours. [default: $SCARID_ROBOT]
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.
@@ -948,6 +950,7 @@ def convert(
 
 def info(
     *tables: TableLike,
+    robot: TableLike | None = None,
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
@@ -964,6 +967,7 @@ def info(
     recording (MCAP, rosbag2, ROS 1) it lists the topics, with types, counts and rates.
 
     Options:
+        robot: A .toml file of the robot, whose [log] says what the columns are, if they have other names than ours. [default: $SCARID_ROBOT]
         from_time: Read the log from this time on [s].
         to_time: Read the log up to this time [s].
         rows: Read rows A to B only, counted from 1.

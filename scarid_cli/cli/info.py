@@ -8,6 +8,7 @@ from scarid_cli.cli.declaring.declare import declare
 
 @declare("info")
 @options.log_input
+@options.log_robot
 @selecting.window
 @options.as_json
 @options.common

@@ -18,6 +18,7 @@ from scarid_cli.cli.declaring.declare import declare
     help="The longest interval to interpolate [s]; a longer one is a gap.  [default: 5 periods of "
     "the log, or one period of the new rate if that is longer]",
 )
+@options.log_robot
 @selecting.selection
 @options.table_output
 @options.common

@@ -49,6 +49,32 @@ def recorded(scarid: Run, folder: Path) -> tuple[Path, Path]:
     return joints, motors
 
 
+@pytest.mark.parametrize(
+    "command", ["info --json", "resample --rate 100", "filter --cutoff 20", "differentiate"]
+)
+def test_stages_convert_a_raw_log_by_the_robot_of_the_environment(
+    command: str, scarid: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those that need no robot take it as an option where no robot follows them in a pipe."""
+    robot, (_, motors) = described(tmp_path), recorded(scarid, tmp_path)
+    converted = tmp_path / "converted.csv"
+    scarid("convert", "--robot", robot, motors, "-o", converted)
+    made = scarid(*command.split(), converted).out.replace("converted.csv", "motors.csv")
+    if command.startswith(("info", "resample")):
+        stated = scarid(*command.split(), "--robot", robot, motors)
+        assert without_robot(stated.out) == without_robot(made)
+    monkeypatch.setenv("SCARID_ROBOT", str(robot))
+    raw = scarid(*command.split(), motors)
+    assert raw.status == 0, raw.err
+    assert without_robot(raw.out) == without_robot(made)
+    assert f"{motors}: columns, units and motors by [log] of {robot}" in raw.err
+
+
+def without_robot(text: str) -> str:
+    """Of CSV nobody knows the robot, nor the units of its torques."""
+    return re.sub(r'"(robot|unit|bytes|sha256)": ("[^"]*"|null)', "", text)
+
+
 def test_every_reader_converts_a_raw_log_as_convert_does(scarid: Run, tmp_path: Path) -> None:
     robot, (_, motors) = described(tmp_path), recorded(scarid, tmp_path)
     converted = tmp_path / "converted.parquet"

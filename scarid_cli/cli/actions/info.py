@@ -14,12 +14,14 @@ from scarid_cli.printable import printable
 from scarid_cli.stages.info import described
 
 
-def run(job: Job, *, file: str, as_json: bool) -> None:
+def run(job: Job, *, file: str, robot: str | None, as_json: bool) -> None:
     """Print what the table or the recording holds."""
     source = job.opened(file)
     extension = bag_extension(file, source)
     if extension is None:
-        found = described(job.within(job.read_source(source)))
+        table = job.as_named(job.read_source(source), robot)
+        job.say_notes()
+        found = described(job.within(table))
         if as_json:
             job.show(json.dumps(found.document))
             return

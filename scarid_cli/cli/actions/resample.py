@@ -8,12 +8,12 @@ from scarid_cli.errors import UsageFault
 from scarid_cli.stages import resample as stage
 
 
-def run(job: Job, *, file: str, rate: float, max_gap: float | None) -> None:
+def run(job: Job, *, file: str, rate: float, max_gap: float | None, robot: str | None) -> None:
     """Write the log at a constant rate, and report what its clock did."""
     for name, value in (("--rate", rate), ("--max-gap", max_gap)):
         if value is not None and not 0.0 < value < float("inf"):
             raise UsageFault(f"{name} must be positive, not {value:g}")
-    table = job.recorded(job.read(file, "measurement", regular=False))
+    table = job.recorded(job.read(file, "measurement", regular=False, robot=robot))
 
     def report(clock: Clock) -> None:
         job.say(summary_line(clock))

@@ -294,6 +294,13 @@ robot: Callable[[F], F] = click.option(
 )  # fmt: skip
 
 
+log_robot: Callable[[F], F] = click.option(
+    "--robot", type=ROBOT, metavar="FILE",
+    help="A .toml file of the robot, whose [log] says what the columns are, if they have other "
+    "names than ours.  [default: $SCARID_ROBOT]",
+)  # fmt: skip
+
+
 def treatment(function: F) -> F:
     """How the rows of the regression are treated, by identify, validate and urdf alike."""
     return all_of(

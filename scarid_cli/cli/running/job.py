@@ -121,16 +121,19 @@ class Job:
         *,
         reads: Reads | None = None,
         regular: bool = True,
+        robot: str | None = None,
     ) -> Table:
         """Open a table and check that it is of this kind; without a kind, take any table.
 
-        `reads` names the columns whose values must be there (see io.reader.checked). The clock
-        must be regular unless `regular` is false.
+        A log by other names is converted as the description of its `robot` says. `reads` names the
+        columns whose values must be there (see io.reader.checked). The clock must be regular unless
+        `regular` is false.
         """
         table = self._opened_table(path)
         if not kind:
             return self._reported(table)
         if schemas.load(kind).sampled:
+            table = self.as_named(table, robot)
             require_our_names(path, table)
             table = self.within(table)
         return self._checked(path, table, kind, reads, regular=regular)
@@ -203,20 +206,11 @@ class Job:
 
     def _as_described(self, table: Table, robot: str | Robot | None) -> Table:
         """A log of motors or by other names, converted as [log] of the robot's TOML file says."""
-        name = robot or os.environ.get("SCARID_ROBOT") or ""
-        if isinstance(name, str) and not name.endswith(".toml"):
-            return table
-        from scarid_cli.algorithms.robots.reading import load
-
-        arm = load(name) if isinstance(name, str) else name
-        if not arm.log:
+        arm = self._with_log(robot)
+        if not (arm and arm.log):
             return table
         if arm.log.is_of(table.columns):
-            from scarid_cli.stages.conversion.joints import as_described
-
-            self.notes.append(f"{table.name}: columns, units and motors by [log] of {arm.name}")
-            self.converted_by = arm.name
-            return as_described(table, arm, {}, [], None)
+            return self._converted(table, arm)
         if not arm.log.columns and arm.log.converts and not table.meta.history:
             self.notes.append(
                 f"{table.name}: taken as positions and torques of the joints, as `scarid convert "
@@ -224,6 +218,36 @@ class Job:
                 "convert it first"
             )
         return table
+
+    def _with_log(self, robot: str | Robot | None) -> Robot | None:
+        """The robot, or the one of SCARID_ROBOT, if it has a [log]."""
+        name = robot or os.environ.get("SCARID_ROBOT") or ""
+        if isinstance(name, str) and not name.endswith(".toml"):
+            return None
+        from scarid_cli.algorithms.robots.reading import load
+
+        arm = load(name) if isinstance(name, str) else name
+        return arm if arm.log else None
+
+    def as_named(self, table: Table, robot: str | None) -> Table:
+        """A log by the names that [log] of the robot's TOML file states, by ours.
+
+        The file is only read if the log has none of ours, as its reader takes a while.
+        """
+        if schemas.named(table.columns):
+            return table
+        arm = self._with_log(robot)
+        if not (arm and arm.log and arm.log.is_of(table.columns)):
+            return table
+        return self._converted(table, arm)
+
+    def _converted(self, table: Table, arm: Robot) -> Table:
+        """A log of this robot, as its [log] says."""
+        from scarid_cli.stages.conversion.joints import as_described
+
+        self.notes.append(f"{table.name}: columns, units and motors by [log] of {arm.name}")
+        self.converted_by = arm.name
+        return as_described(table, arm, {}, [], None)
 
     def robot(self, name: str | None, *tables: Table) -> Robot:
         """The robot of this name, else as the first table states, else as SCARID_ROBOT does.
