@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -182,9 +183,31 @@ def test_the_verdict_takes_no_more_than_its_part_of_the_time() -> None:
     for k in range(3000):
         clock.now = max(clock.now, 100.0 + 0.01 * k)
         watch(known(0.01 * k, table=slow))
+        board.settled()
     assert len(asked) == 3
     assert min(np.diff(asked)) >= 10.0
     assert board.reason == "not enough"
+
+
+def test_rows_do_not_wait_for_a_verdict() -> None:
+    clock, over = Clock(), threading.Event()
+    board = Board(1.0, clock)
+    watch = board.watched(ROBOT)
+
+    def endless() -> Table:
+        over.wait()
+        raise BadData("at last")
+
+    for k in range(300):
+        clock.now = 100.0 + 0.01 * k
+        watch(known(0.01 * k, table=endless))
+    assert board.judging
+    assert board.rows == 300
+    assert board.reason == "no verdict yet"
+    over.set()
+    board.settled()
+    assert board.reason == "at last"
+    assert 100 <= board.asked < 300  # the rows that were there when it began
 
 
 def test_rows_that_do_not_determine_the_parameters_show_none() -> None:

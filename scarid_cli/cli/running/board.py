@@ -2,11 +2,13 @@
 
 On a terminal rich draws it five times a second, from a thread of its own, so that the age of the
 last row grows while no row comes. Elsewhere there is a plain line now and then. The verdict takes
-longer than a row may wait; it is renewed as often as it costs PART of the time.
+longer than a row may wait: it is found in a thread of its own, of what was known when it began,
+and as often as it costs PART of the time.
 """
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import threading
 import time
@@ -59,6 +61,7 @@ class Board:
     _soonest: float = np.inf
     _next: float = np.nan
     _lock: threading.Lock = field(default_factory=threading.Lock)
+    _judging: threading.Thread | None = None
 
     def watched(self, robot: Robot) -> Callable[[SoFar], None]:
         """A function that is offered what is known after each batch of rows."""
@@ -77,10 +80,19 @@ class Board:
             return
         with self._lock:
             self.estimates = estimates[: len(self.parameters)]
-        if now >= self._next:
-            self._judge(so_far)
-            took = self.clock() - now
-            self._next = now + took + max(took / PART, FIRST)
+        if now >= self._next and not self.judging:
+            self._judging = threading.Thread(target=self._judge, args=(so_far, now), daemon=True)
+            self._judging.start()
+
+    @property
+    def judging(self) -> bool:
+        """Whether a verdict is being found."""
+        return self._judging is not None and self._judging.is_alive()
+
+    def settled(self) -> None:
+        """Wait for the verdict that is being found, if one is."""
+        if self._judging is not None:
+            self._judging.join()
 
     def _count(self, batch: pa.RecordBatch, now: float) -> None:
         t = matrix(batch, ["t"])[0]
@@ -95,16 +107,19 @@ class Board:
         while len(self._recent) > 2 and now - self._recent[0][0] > WITHIN:
             self._recent.popleft()
 
-    def _judge(self, so_far: SoFar) -> None:
+    def _judge(self, so_far: SoFar, began: float) -> None:
+        rows = self.rows
         try:
             table = so_far.table()
-        except BadData as error:
+        except (BadData, ValueError) as error:
             verdict, reason, half = "", str(error), None
         else:
             verdict, reason, half = _read(table)
         with self._lock:
             self.verdict, self.reason, self.half = verdict, reason, half
-            self.asked = self.rows
+            self.asked = rows
+            took = self.clock() - began
+            self._next = began + took + max(took / PART, FIRST)
 
     @property
     def rate(self) -> float:
@@ -175,14 +190,11 @@ class Board:
     @contextmanager
     def shown(self, *, quiet: bool) -> Iterator[None]:
         """Show the board on standard error for as long as rows may come."""
-        if quiet:
+        with contextlib.ExitStack() as stack:
+            stack.callback(self.settled)
+            if not quiet:
+                stack.enter_context(self._drawn() if is_terminal(2) else self._told())
             yield
-        elif is_terminal(2):
-            with self._drawn():
-                yield
-        else:
-            with self._told():
-                yield
 
     @contextmanager
     def _drawn(self) -> Iterator[None]:
