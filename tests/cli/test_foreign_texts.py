@@ -454,3 +454,23 @@ def test_rows_of_single_values_are_to_be_pivoted(shell: Shell, tmp_path: Path) -
     text = "\n".join(["#group,false,false,false,false,true,true", names, *rows])
     (tmp_path / "log.csv").write_text(f"{text}\n")
     refused(shell("scarid convert log.csv"), 65, "as of InfluxDB", "|> pivot(rowKey")
+
+
+@pytest.mark.parametrize(
+    ("names", "proposed"),
+    [
+        ("current_tau_ext_{}", ""),
+        ("tau_ext_hat_filtered_{}", ""),
+        ("x_tau_est_{}", "x_tau_est_*"),
+    ],
+)
+def test_an_external_torque_is_not_proposed(
+    names: str, proposed: str, shell: Shell, tmp_path: Path
+) -> None:
+    """Nor what a filter made of one, where the joint's own torque is not in the log."""
+    columns = ["t", "q1", "q2", *(names.format(i) for i in (1, 2))]
+    (tmp_path / "log.csv").write_text(written(",".join(columns)))
+    told = shell("scarid convert log.csv").err
+    assert "no torques" in told or not proposed
+    assert ("--map 'tau*=" in told) == bool(proposed), told
+    assert proposed in told

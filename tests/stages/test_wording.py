@@ -53,6 +53,10 @@ HEADERS = {
         "t rail_pos_mm a1_pos_deg rail_force_N a1_torque_Nm",
         "rail_pos_mm a1_pos_deg rail_force_N a1_torque_Nm",
     ),
+    "what is measured beside what is not said to be": (
+        "time q_1 q_2 tau_1 tau_2 tau_measured_1 tau_measured_2",
+        "time q_1 q_2 tau_measured_1 tau_measured_2",
+    ),
     "one joint": ("time position torque", "time position torque"),
     "torques only": ("t q1 q2 effort_1 effort_2", "effort_1 effort_2"),
     "a simulator's generalized forces": (

@@ -13,6 +13,7 @@ from scarid_cli.stages.conversion.wording import (
     AMPERES,
     CLOCK,
     COMMANDED,
+    MEASURED,
     POSITION,
     QUANTITIES,
     TORQUE,
@@ -27,6 +28,7 @@ RATE = ": give --rate HZ, if the rate is constant"
 NUMBER = re.compile(r"\d+")
 FORCES = {"force", "forces", "kraft"}
 CONTROLS = {"ctrl"}  # of MuJoCo, the torques of motors
+NOT_OWN = COMMANDED | {"ext", "external", "ee", "tcp", "residual", "error", "err"}
 LETTER = re.compile(r"[A-Za-z]{1,2}[^A-Za-z]*")
 
 
@@ -144,8 +146,12 @@ def _mapping(new: str, name: str) -> str:
 
 
 def _most(names: Sequence[str], words: Collection[str]) -> str:
-    """The pattern of most names that have one of these words, as `axis*.pos`; or such a name."""
-    own = [x for x in names if {*words_of(x)} & {*words} and not {*words_of(x)} & COMMANDED]
+    """The pattern of most names that have one of these words, as `axis*.pos`; or such a name.
+
+    Of what is said to be measured, if anything is; nothing that is external is a joint's own.
+    """
+    own = [x for x in names if {*words_of(x)} & {*words} and not {*words_of(x)} & NOT_OWN]
+    own = [x for x in own if {*words_of(x)} & MEASURED] or own
     groups = {**_patterns(own), **{name: [name] for name in own}}
     best = max(groups, key=lambda pattern: len(groups[pattern]), default="")
     return best if len(groups.get(best, ())) > 1 else groups[best][0] if best else ""

@@ -52,6 +52,7 @@ PLAIN = {
     "joints", "js", "link", "log", "meas", "measured", "msr", "present", "signals", "state",
     "states", "value", "values",
 }  # fmt: skip
+MEASURED = {"act", "actual", "feedback", "ist", "meas", "measured", "msr"}
 # Words of what was commanded or wished.
 COMMANDED = {
     "cmd", "command", "commanded", "commands", "d", "des", "desired", "goal", "planned", "ref",
@@ -225,11 +226,18 @@ def _by_joint(new: str, columns: Sequence[_Column]) -> dict[Key, _Column]:
                 f"in {unit_option(new.replace('{i}', '*'))})"
             )
         key = tuple(word for word in column.words if word not in PLAIN | QUANTITIES[new])
-        if key in found:
+        if key in found and _measured(found[key]) != _measured(column):
+            column = column if _measured(column) else found[key]
+        elif key in found:
             what = new.replace("{i}", "")
             raise Unclear(f"both {found[key].name} and {column.name} could be {what} of one joint")
         found[key] = column
     return found
+
+
+def _measured(column: _Column) -> bool:
+    """Whether the name says so, as beside a command that does not say that it is one."""
+    return bool({*column.words} & MEASURED)
 
 
 def _quantity(column: _Column) -> str | None:
