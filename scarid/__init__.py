@@ -17,12 +17,13 @@ from __future__ import annotations
 from typing import Any
 
 from scarid.calls import COMMANDS, function
-from scarid.results import Judged, Log, RequirementError, Text
+from scarid.results import Checked, Judged, Log, RequirementError, Text
 from scarid_cli import __version__
 from scarid_cli.errors import BadData, OutputFailure, ScaridError, UsageFault
 
 __all__ = [
     "BadData",
+    "Checked",
     "Log",
     "OutputFailure",
     "Judged",

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
+from scarid.results import Checked as Checked
 from scarid.results import Judged as Judged
 from scarid.results import Log as Log
 from scarid.results import RequirementError as RequirementError
@@ -293,7 +294,7 @@ def check(
     from_time: Values | None = None,
     to_time: Values | None = None,
     rows: Values | None = None,
-) -> Text:
+) -> Checked:
     """Check a log before it is identified: its clock, values, units, motion and torques.
 
       scarid check --robot arm.toml log.csv

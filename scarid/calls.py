@@ -17,7 +17,7 @@ import pyarrow as pa
 from pyarrow import compute as pc
 
 from scarid import tables
-from scarid.results import RequirementError, Text, result
+from scarid.results import Checked, RequirementError, Text, result
 from scarid_cli.cli import COMMANDS as ALL
 from scarid_cli.cli import scarid as group
 from scarid_cli.cli.declaring.options import InputFile
@@ -127,7 +127,9 @@ def run(command: click.Command, inputs: Sequence[Any], options: Mapping[str, Any
         if has_table and tables_out:
             found: Any = result(tables_out[0], said)
         else:
-            found = Text(_without(folder, given.text("".join(printed))), said)
+            text = _without(folder, given.text("".join(printed)))
+            checked = command.name == "check" and text.startswith("{")
+            found = (Checked if checked else Text)(text, said)
     told = TOLD.get(command.name or "") == status and not options.get("strict")
     if status and not told:
         text = said[-1] if said else _worst(found) or f"exit status {status}"

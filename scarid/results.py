@@ -230,6 +230,9 @@ def _interval(estimate: float, low: float, high: float) -> str:
     )
 
 
+STATUSES = ("ok", "warning", "failed")  # of the findings of `check`
+
+
 class Text(str):
     """A document of a command without a table, with the `messages` of the run."""
 
@@ -252,6 +255,40 @@ class Text(str):
     def save(self, path: str | Path) -> None:
         """Write it to a file."""
         Path(path).write_text(self, encoding="utf-8")
+
+
+class Checked(Text):
+    """What `check` found: a document, shown by its findings."""
+
+    @property
+    def status(self) -> str:
+        """The worst of the findings: ok, warning or failed."""
+        return str(self.data["status"])
+
+    @property
+    def findings(self) -> list[dict[str, str]]:
+        """The name, status, figure and advice of what is not ok."""
+        return [found for found in self.data["checks"] if found["status"] != "ok"]
+
+    @property
+    def counts(self) -> str:
+        """`24 ok, 1 warning, 0 failed`."""
+        every = [found["status"] for found in self.data["checks"]]
+        return ", ".join(f"{every.count(status)} {status}" for status in STATUSES)
+
+    def __repr__(self) -> str:
+        lines = [f"{x['status']:8} {x['name']:16} {x['figure']}" for x in self.findings]
+        return "\n".join([*lines, self.counts])
+
+    def _repr_html_(self) -> str:
+        names = ("status", "name", "figure", "advice")
+        head = "".join(f"<th>{name}</th>" for name in names)
+        rows = "".join(
+            f"<tr>{''.join(f'<td>{escape(x[name])}</td>' for name in names)}</tr>"
+            for x in self.findings
+        )
+        table = f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        return f"<p>{self.counts}</p>{table if rows else ''}"
 
 
 class RequirementError(ScaridError):

@@ -18,6 +18,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
+from scarid.results import Checked as Checked
 from scarid.results import Judged as Judged
 from scarid.results import Log as Log
 from scarid.results import RequirementError as RequirementError
@@ -49,11 +50,17 @@ def _function(name: str) -> str:
     else:
         lines.append("    *,")
     lines += [f"    {key}: {_type(x)} | None = None," for key, x in options_of(command).items()]
-    result = "Judged" if name in JUDGED else "Log" if writes_table(command) else "Text"
-    lines.append(f") -> {result}:")
+    lines.append(f") -> {_result(name, command)}:")
     help_ = documentation(command).replace("\\", "\\\\").replace('"""', "'''")
     body = "\n".join(f"    {line}".rstrip() for line in f'"""{help_}\n"""'.splitlines())
     return "\n".join([*lines, body, ""])
+
+
+def _result(name: str, command: click.Command) -> str:
+    """The type of what the function returns."""
+    if name == "check":
+        return "Checked"
+    return "Judged" if name in JUDGED else "Log" if writes_table(command) else "Text"
 
 
 def _type(option: click.Option) -> str:

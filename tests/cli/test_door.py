@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import pickle
 import sys
@@ -218,7 +219,13 @@ def test_an_error_goes_from_process_to_process(log: scarid.Log) -> None:
 
 def test_check_tells_of_a_bad_log_and_raises_if_strict(log: scarid.Log) -> None:
     bad = {**{name: log[name] for name in log.columns}, "tau1": -log["tau1"]}
-    assert scarid.check(bad, robot="scara2").data["status"] == "failed"
+    found = scarid.check(bad, robot="scara2")
+    assert found.status == found.data["status"] == "failed"
+    assert [x for x in found.data["checks"] if x["status"] != "ok"] == found.findings
+    wrong = found.findings[0]
+    assert f"failed   {wrong['name']}" in repr(found)
+    assert repr(found).endswith(" failed")
+    assert html.escape(wrong["figure"]) in found._repr_html_()
     with pytest.raises(scarid.RequirementError, match="joint 1"):
         scarid.check(bad, robot="scara2", strict=True)
 
