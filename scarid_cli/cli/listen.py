@@ -46,8 +46,8 @@ def command() -> None:
     """Take rows of CSV that a robot sends to a port, or adds to a file, and pass them on at once.
 
     \b
-      scarid listen --port 5000 --idle 1 then differentiate then identify --robot scara2
-      scarid listen --follow log.csv --idle 1 --split then differentiate then watch --robot scara2
+      scarid listen --port 5000 --idle 1 --split then differentiate then watch --robot scara2
+      scarid listen --follow log.csv --idle 1 then differentiate then identify --robot scara2
       scarid listen --port 5001 --udp --columns t,q1,tau1 --idle 1 -o log.parquet
 
     By TCP, a source connects and sends lines; by UDP, each packet is a line. The first one is the

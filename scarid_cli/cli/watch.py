@@ -52,7 +52,7 @@ def command() -> None:
     """Watch the estimates of a robot that moves, at the end of a live pipe.
 
     \b
-      scarid listen --port 5000 --idle 1 then differentiate then watch --robot scara2
+      scarid listen --port 5000 --idle 1 --split then differentiate then watch --robot scara2
       scarid trajgen --duration 2 | scarid simulate --realtime | scarid differentiate | scarid watch
       scarid listen --follow log.csv --idle 1 then differentiate then watch --robot arm.toml
 
