@@ -40,6 +40,8 @@ def run(
     job.write_or_print(job.recorded(result), of_gains if as_json else None)
     for line in stage.told(found):
         job.say(line)
+    if not found.known.all() and (remedy := stage.freed(bare)):
+        job.say(f"more may be told: {remedy}")
 
 
 def _stated(option: str, text: str, count: int) -> tuple[list[float], float]:
