@@ -11,6 +11,14 @@ from collections.abc import Sequence
 NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
 
 
+def decoded(block: bytes) -> str:
+    """The text of whole lines: in UTF-8, or as Windows writes it in the west if it is not that."""
+    try:
+        return block.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return block.decode("cp1252", errors="replace")
+
+
 def csv_text(rows: Sequence[Sequence[str]]) -> bytes:
     """Rows of texts as CSV."""
     text = io.StringIO()

@@ -16,7 +16,7 @@ import pyarrow.csv as pacsv
 from scarid_cli.errors import BadData, ForeignLog, bad_data, cut_short
 from scarid_cli.io.bytesource import ByteSource, require_moderate_row
 from scarid_cli.io.carried import Carried, facts_of
-from scarid_cli.io.cells import NUMERIC, csv_text
+from scarid_cli.io.cells import NUMERIC, csv_text, decoded
 from scarid_cli.io.few import Few
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.stop import STOP
@@ -182,7 +182,7 @@ def _header_end(block: bytes) -> int:
 def _header(block: bytes, end: int, name: str) -> list[str]:
     if b"\0" in block[:end]:
         raise _not_a_table(name, block)
-    text = block[:end].decode("utf-8-sig", errors="replace")
+    text = decoded(block[:end])
     line = text.rstrip("\r\n").rpartition("\n")[2]
     names = [column.strip() for column in next(csv.reader([line]), [])]
     body = block[end:]

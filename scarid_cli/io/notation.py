@@ -11,7 +11,7 @@ from pathlib import Path
 
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bytesource import ByteSource
-from scarid_cli.io.cells import NUMERIC
+from scarid_cli.io.cells import NUMERIC, decoded
 from scarid_cli.io.echoed import joint_state_names
 from scarid_cli.io.scopes import channels
 
@@ -161,7 +161,7 @@ def _first_lines(source: ByteSource) -> tuple[list[str], list[str], int, list[st
     count, skip, above = LOOKED_AT, 0, list[str]()
     while True:
         block = source.peek_lines(count)
-        text = _lines(block.decode("utf-8-sig", errors="replace"))[:count]
+        text = _lines(decoded(block))[:count]
         rows = [i for i, line in enumerate(text) if line.strip() and line[0] not in COMMENT]
         complete = len(text) < count or count > MOST_LINES
         start = _start([text[i] for i in rows], complete=complete or len(rows) > LATEST)

@@ -474,3 +474,13 @@ def test_an_external_torque_is_not_proposed(
     assert "no torques" in told or not proposed
     assert ("--map 'tau*=" in told) == bool(proposed), told
     assert proposed in told
+
+
+@pytest.mark.parametrize("coding", ["utf-8", "utf-8-sig", "latin-1", "cp1252", "utf-16"])
+@pytest.mark.parametrize("separator", [",", ";"])
+def test_a_degree_is_one_in_every_coding(
+    coding: str, separator: str, shell: Shell, tmp_path: Path
+) -> None:
+    names = ["t", "Winkel 1 [°]", "Winkel 2 [°]", "Moment 1 [Nm]", "Moment 2 [Nm]"]
+    text = written(",".join(names), rows=LOG * DEGREES).replace(",", separator)
+    np.testing.assert_allclose(converted(shell, tmp_path, text.encode(coding)), LOG, rtol=1e-12)

@@ -57,6 +57,7 @@ HEADERS = {
         "time q_1 q_2 tau_1 tau_2 tau_measured_1 tau_measured_2",
         "time q_1 q_2 tau_measured_1 tau_measured_2",
     ),
+    "a short clock": ("ts pos_1 pos_2 trq_1 trq_2", "ts pos_1 pos_2 trq_1 trq_2"),
     "one joint": ("time position torque", "time position torque"),
     "torques only": ("t q1 q2 effort_1 effort_2", "effort_1 effort_2"),
     "a simulator's generalized forces": (

@@ -40,7 +40,7 @@ QUANTITIES = {
 AMPERES = {"amp", "ampere", "amperes", "amps", "cur", "curr", "iq"}  # words of currents only
 CLOCK = {
     "date", "datetime", "sec", "seconds", "secs", "stamp", "t", "temps", "tempo", "tiempo", "time",
-    "times", "timestamp", "timestamps", "tout", "zeit", "zeitstempel",
+    "times", "timestamp", "timestamps", "tout", "ts", "zeit", "zeitstempel",
 }  # fmt: skip
 # A word of the clock.
 BESIDE = {"elapsed", "field", "header", "log", "relative", "ros", "sim", "wall"}
