@@ -59,6 +59,20 @@ def test_the_pipe_mends_the_log(fault: str, shell: Shell) -> None:
     assert "scarid identify: good: " in good.err, good.err
 
 
+@pytest.mark.parametrize("lost", ["1", "NR < 9 || NR % 17"])
+def test_a_clock_that_counts_rows_has_one_unit(lost: str, shell: Shell) -> None:
+    """It seems to be in ms, and then at another rate: both are one factor."""
+    counted = f"awk -F, -v OFS=, 'NR > 1 {{ $1 = NR - 2 }} {lost}'"
+    made = shell(f"{LOG} --format csv | cut -d, -f-5 | {counted} > log.csv")
+    assert made.status == 0, made.err
+    mended = shell(
+        'pipe="$(scarid check -q --robot planar2-gravity --fix log.csv)"; echo "$pipe";'
+        ' eval "$pipe" > mended.csv; scarid check --robot planar2-gravity mended.csv | tail -1'
+    )
+    assert mended.out.count("--unit") == 1, mended
+    assert "0 failed" in mended.out, mended
+
+
 def test_nothing_is_printed_of_a_log_that_is_right(shell: Shell) -> None:
     made = shell(
         f"{LOG} --format csv -o log.csv && scarid check --robot planar2-gravity --fix log.csv"
