@@ -58,7 +58,8 @@ def test_the_answers_count_experiments_and_state_medians() -> None:
         "kalman is the best of 2 methods over 5 experiments, and predicts torques best in 4 of them"
     )
     answers = dict(found.answers)
-    assert "within 3, 6 % of their norm; the next, 2smd within 40, 80 %." in answers["How well?"]
+    assert "within joint 1 3 %, joint 2 6 % of their norm; the next, " in answers["How well?"]
+    assert "2smd within joint 1 40 %, joint 2 80 %." in answers["How well?"]
     assert "good in 3 of 5 experiments" in answers["May I believe it?"]
     assert "for instance, the residual is coloured" in answers["May I believe it?"]
     assert answers["And the others?"] == "Of all 2: 1 good (kalman), 1 doubtful."
