@@ -86,10 +86,11 @@ def random_path(
 
 @given(request=requests())
 @laws
-def test_every_random_motion_keeps_its_limits(
+def test_every_random_motion_keeps_its_limits_and_starts_and_ends_at_rest_at_home(
     request: tuple[Limits, Array, float, Trajectory],
 ) -> None:
-    box, _, duration, trajectory = request
+    box, home, duration, trajectory = request
+    starts_and_ends_at_rest_at_home(home, duration, trajectory)
     q, dq, ddq = trajectory.sample(np.linspace(0.0, duration, 2000))
     slack = 1e-12 * np.maximum(np.abs(box.lower), np.abs(box.upper))
     assert np.all(box.lower - slack <= q.T)
@@ -100,12 +101,7 @@ def test_every_random_motion_keeps_its_limits(
         assert np.all(limit * ROUNDING + rounding >= np.abs(signal).T)
 
 
-@given(request=requests())
-@laws
-def test_every_random_motion_starts_and_ends_at_rest_at_home(
-    request: tuple[Limits, Array, float, Trajectory],
-) -> None:
-    _, home, duration, trajectory = request
+def starts_and_ends_at_rest_at_home(home: Array, duration: float, trajectory: Trajectory) -> None:
     assert trajectory.duration == duration
     q, dq, ddq = trajectory.sample(np.array([0.0, duration]))
     # The end is the last via point but one and the way to it: exact for a home at zero.
