@@ -37,7 +37,7 @@ JSON = (b'{"', b"[{", b"[[")  # how a file of JSON begins
 MISSING = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
 # A date, or a time with its unit, where a number of seconds is expected.
-DATED = re.compile(r"\s*(\d+[-/.:]\d+[-/.:]\d|[\d.]+ *[a-z]+\s*$)")
+DATED = re.compile(r"\s*((\d+ days?,? +)?\d+[-/.:]\d+[-/.:]\d|[\d.]+ *[a-z]+\s*$)")
 INDEX = "index"  # a first column without a name, which pandas writes
 
 

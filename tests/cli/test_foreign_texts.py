@@ -110,6 +110,11 @@ CLOCKS = {
     "noon": [f"12:00:{t:05.2f} PM" for t in T],
     "month first": [f"11/27/2026 9:59:{59 + t:05.2f} AM" for t in T],
     "day first": [f"27/11/2026 09:59:{59 + t:05.2f}" for t in T],
+    "a difference of times": [f"0 days 00:00:{t:09.6f}" for t in T],
+    "a day later": [
+        f"1 day 23:59:{59.9 + t:05.2f}" if t < 0.095 else f"2 days 00:00:{t - 0.1:05.2f}" for t in T
+    ],
+    "milliseconds behind a colon": [f"11:59:50:{round(1e3 * t):03d}" for t in T],
     "minutes": [f"59:{59 + t:05.2f}" for t in T],
     "duration": [f"{t:.2f} sec" for t in T],
     "milliseconds": [f"{round(1e3 * t)} ms" for t in T],

@@ -18,11 +18,14 @@ from scarid_cli.io.table import Table, doubles, number
 DATE = re.compile(r"\d{4}-\d\d-\d\d[T ].*?(?P<zone>Z|[+-]\d\d(:?\d\d)?)?\Z")
 NANOSECOND = 1e-9  # s
 # Other texts, by the names of their parts: times of the day, dates in other orders, durations.
-OF_DAY = r"(?P<H>\d\d?):(?P<M>\d\d):(?P<S>\d\d)(?:[.,](?P<f>\d+))?(?: *(?P<half>[AaPp])\.?[Mm]\.?)?"
+OF_DAY = (
+    r"(?P<H>\d\d?):(?P<M>\d\d):(?P<S>\d\d)(?:[.,:](?P<f>\d+))?(?: *(?P<half>[AaPp])\.?[Mm]\.?)?"
+)
 FORMS = tuple(
     re.compile(form)
     for form in (
         OF_DAY,
+        rf"(?P<D>\d{{1,5}}) days?,? +{OF_DAY}",  # a difference of two times, as pandas writes it
         rf"(?P<d>\d\d?)\.(?P<m>\d\d?)\.(?P<Y>\d{{4}}),?[ T]+{OF_DAY}",
         rf"(?P<Y>\d{{4}})/(?P<m>\d\d?)/(?P<d>\d\d?),?[ T]+{OF_DAY}",
         # Whether the day or the month comes first, nobody says: it goes on at midnight anyway.
@@ -191,6 +194,8 @@ def _duration(parts: dict[str, str]) -> int:
 def _iso(parts: dict[str, str]) -> str:
     """A date as ISO 8601 writes it; a time of the day is that of some day."""
     day = "-".join(parts[x].zfill(2) for x in "Ymd") if "Y" in parts else "2000-01-01"
+    if days := parts.get("D"):
+        day = str(np.datetime64(day) + int(days))
     fraction, hour = (parts["f"] or "0")[:9], int(parts.get("H") or 0)
     if half := parts.get("half"):
         hour = hour % 12 + 12 * (half in "pP")

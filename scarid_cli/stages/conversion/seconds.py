@@ -16,7 +16,8 @@ WORD = re.compile(r"[A-Za-z]+|\d+")
 SECONDS = {"sec", "secs", "seconds"}
 FRACTIONS = {
     "nanosec": 1e-9, "nanosecs": 1e-9, "nanoseconds": 1e-9, "nsec": 1e-9, "nsecs": 1e-9,
-    "usec": 1e-6, "usecs": 1e-6, "microsec": 1e-6, "microseconds": 1e-6,
+    "nanos": 1e-9, "micros": 1e-6, "usec": 1e-6, "usecs": 1e-6, "microsec": 1e-6,
+    "microseconds": 1e-6,
 }  # fmt: skip
 
 
