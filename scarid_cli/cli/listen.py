@@ -60,5 +60,5 @@ def command() -> None:
     At the end, what was lost is said: steps of the column t of more than 1.5 of their median are
     gaps, and a row whose time is before that of an earlier row is out of order. Such rows are
     passed on as they came; with --split a gap begins a new part of the record, as where a source
-    was killed and started again.
+    was killed and started again, and a time that begins again is counted on.
     """

@@ -29,7 +29,7 @@ class Rows:
         self._header: list[str] = []
         self._time: int | None = None  # the number of the time column
         self._begun = b""  # the header line, until it is passed on
-        self._fresh = False
+        self._fresh = self._again = False
         self.count = 0
         self.broken = 0
         self.losses = Losses()
@@ -61,7 +61,12 @@ class Rows:
         if self._parts is None:
             return line + b"\n"
         assert self._time is not None
-        return line + b",%d\n" % self._parts.of(float(fields[self._time]))
+        t = float(fields[self._time])
+        part = self._parts.of(t, again=self._again)
+        if self._parts.later:
+            fields[self._time] = repr(t + self._parts.later)
+            line = ",".join(fields).encode()
+        return line + b",%d\n" % part
 
     def _name(self, fields: list[str], line: bytes) -> None:
         self._header, self._begun = fields, line + b"\n"
@@ -89,14 +94,17 @@ class Rows:
             return False
         self.count += 1
         if self._time is not None:
+            before = self.losses.restarts
             self.losses.row(float(fields[self._time]), first=self._fresh)
-            self._fresh = False
+            self._fresh, self._again = False, self.losses.restarts > before
         return True
 
     def told(self) -> str:
         """What is said at the end."""
         rows = f"{self.count:,} row{'s' if self.count != 1 else ''}"
         lost = self.losses.told() if self._time is not None else ""
+        if self._parts and self._parts.later:
+            lost += " and is counted on"
         lost = lost or "without a column t nobody can tell what was lost"
         broken = f"; {self.broken:,} cut short or broken, left out" if self.broken else ""
         return f"{rows}; {lost}{broken}"

@@ -75,14 +75,23 @@ class Losses:
 
 @dataclass
 class Parts:
-    """The numbers of the parts of a record between gaps of the time, from 0, row by row."""
+    """The numbers of the parts of a record between gaps of the time, from 0, row by row.
+
+    Where the time begins again, it is counted on: rows then come so much `later`.
+    """
 
     number: int = 0
+    later: float = 0.0  # s
     _latest: float | None = None
     _steps: list[float] = field(default_factory=list)
 
-    def of(self, t: float) -> int:
-        """The part of a row of this time [s]."""
+    def of(self, t: float, *, again: bool = False) -> int:
+        """The part of a row of this time [s], with which the time may begin `again`."""
+        if again and self._latest is not None:
+            self.later += self._latest + BEHIND - t
+            self.number += 1
+            self._latest = t
+            return self.number
         step = 0.0 if self._latest is None else t - self._latest
         self._latest = t
         if self._steps and step > GAP * median(self._steps):

@@ -114,6 +114,21 @@ def test_a_gap_begins_a_part_of_the_record_where_it_is_split() -> None:
     assert "expected t, and no segment yet; leave out --split" in said
 
 
+def test_a_time_that_begins_again_is_counted_on_where_it_is_split() -> None:
+    """As of a robot that is started again: the stages that follow take its rows."""
+    with listening("--idle", "0.5", "--split") as listener:
+        for count in (30, 20, 10):
+            with listener.source() as source:
+                source.sendall(HEADER + b"".join(rows(range(count))))
+        lines, said = listener.ended()
+    table = np.loadtxt(lines[1:], delimiter=",")
+    assert table[:, -1].tolist() == [0] * 30 + [1] * 20 + [2] * 10
+    steps = np.diff(table[:, 0])
+    np.testing.assert_allclose(steps[[29, 49]], 1.0, rtol=1e-12)
+    np.testing.assert_allclose(np.delete(steps, [29, 49]), steps[0], rtol=1e-6)
+    assert "the time began again 2 times and is counted on" in said
+
+
 @pytest.mark.parametrize("named", [False, True])
 def test_lost_late_and_repeated_packets_are_counted(*, named: bool) -> None:
     times = [*range(1, 50), 53, 52, *range(54, 80), 79, *range(80, 100)]  # without 50 and 51
