@@ -44,6 +44,7 @@ def seen(line: str) -> list[str]:
     terminal, inside = pty.openpty()
     fcntl.ioctl(inside, termios.TIOCSWINSZ, struct.pack("HHHH", 50, WIDTH, 0, 0))
     environment = {**os.environ, "PYTHONPATH": str(common.ROOT), "TERM": "xterm-256color"}
+    environment["COLUMNS"] = str(WIDTH)  # which comes before what the terminal says
     environment.pop("NO_COLOR", None)
     words = [sys.executable, "-m", "scarid_cli", *line.split()[1:]]
     text = b""
