@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 
 from scarid_cli.reporting.kinds import Hung, Loads
 from scarid_cli.reporting.parts import Section, number
@@ -15,9 +16,12 @@ def payloads(group: Sequence[Hung]) -> list[Section]:
 
 
 def _payload(one: Hung, name: str) -> Section:
-    impossible = (
-        f" No body has these values; the nearest one is {one.away:.2g} standard deviations away."
-    )
+    impossible = " The mass is below 0: less hangs there than on the bare robot."
+    if isfinite(one.away):
+        impossible = (
+            f" No body has these values; the nearest one is {one.away:.2g} standard deviations "
+            "away."
+        )
     note = (
         f"What hangs on the flange, in the frame of {one.frame}: mass, centre, and inertia about "
         "the centre. An empty value is one that the motion does not tell."

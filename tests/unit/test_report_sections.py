@@ -11,7 +11,7 @@ from reports import SCARA, a_line, element_of, evolution, parameters
 from scarid_cli.algorithms.inference.prediction import Quality
 from scarid_cli.reporting import figures
 from scarid_cli.reporting.content import sections
-from scarid_cli.reporting.kinds import Metrics, Parameters, Prediction, Trace
+from scarid_cli.reporting.kinds import Hung, Metrics, Parameters, Prediction, Trace
 from scarid_cli.reporting.naming import Name
 from scarid_cli.reporting.parts import GAP, PANELS, Bars, Panels, split
 from scarid_cli.reporting.study.blocks import Figure
@@ -40,6 +40,36 @@ def test_what_may_be_zero_has_its_interval_instead_of_a_percentage() -> None:
     (section,) = sections([one])
     assert [row[3] for row in section.rows] == ["3.000", "+- 0.0072"]
     assert "half the 95 % interval" in section.note
+
+
+@pytest.mark.parametrize(
+    ("possible", "away", "said"),
+    [
+        (True, 0.0, ""),
+        (False, 1.8, "the nearest one is 1.8 standard deviations away."),
+        (False, np.inf, "The mass is below 0: less hangs there than on the bare robot."),
+    ],
+)
+def test_a_payload_that_no_body_has_is_said_to_be_none(
+    *, possible: bool, away: float, said: str
+) -> None:
+    nothing = (np.nan,)
+    mass = Hung(
+        Name("a", ""),
+        None,
+        "tool0",
+        possible,
+        away,
+        ("m",),
+        ("kg",),
+        (-1.2,),
+        (-1.3,),
+        (-1.1,),
+        nothing,
+    )
+    (section,) = sections([mass])
+    assert section.note.endswith(said or "one that the motion does not tell.")
+    assert " inf " not in section.note
 
 
 def test_other_parameters_go_into_another_section() -> None:
