@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
+from scarid_cli.algorithms.checks.finding import STATUSES
 from scarid_cli.errors import REQUIRED, ScaridError, UsageFault
 from scarid_cli.io.table import Metadata, Table
 
@@ -228,9 +229,6 @@ def _interval(estimate: float, low: float, high: float) -> str:
         'stroke-width="3"/>'
         f'<circle cx="{place[1]:.1f}" cy="7" r="4" fill="#0969da"/></svg>'
     )
-
-
-STATUSES = ("ok", "warning", "failed")  # of the findings of `check`
 
 
 class Text(str):

@@ -10,6 +10,9 @@ from collections.abc import Sequence
 # Integers with more digits (nanosecond time stamps) do not fit into a double, and stay text.
 NUMERIC = re.compile(r"\s*[+-]?(\d{1,15}|\d*\.\d+|\d+\.\d*)([eE][+-]?\d+)?\s*\Z")
 
+# How programs write a missing number; in a table with a column of text they are texts.
+MISSING = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
+
 
 def decoded(block: bytes) -> str:
     """The text of whole lines: in UTF-8, or as Windows writes it in the west if it is not that."""

@@ -16,7 +16,7 @@ import pyarrow.csv as pacsv
 from scarid_cli.errors import BadData, ForeignLog, bad_data, cut_short
 from scarid_cli.io.bytesource import ByteSource, require_moderate_row
 from scarid_cli.io.carried import Carried, facts_of
-from scarid_cli.io.cells import NUMERIC, csv_text, decoded
+from scarid_cli.io.cells import MISSING, NUMERIC, csv_text, decoded
 from scarid_cli.io.few import Few
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.stop import STOP
@@ -32,9 +32,6 @@ BOM = "\N{ZERO WIDTH NO-BREAK SPACE}"  # at the start of a text of Windows
 
 KEY = re.compile(rb"[A-Za-z_]\w*:")  # alone in a line
 JSON = (b'{"', b"[{", b"[[")  # how a file of JSON begins
-
-# How programs write a missing number; in a table with a column of text they are texts.
-MISSING = ("NA", "N/A", "n/a", "#N/A", "null", "NULL", "None")
 
 # A date, or a time with its unit, where a number of seconds is expected.
 DATED = re.compile(r"\s*((\d+ days?,? +)?\d+[-/.:]\d+[-/.:]\d|[\d.]+ *[a-z]+\s*$)")

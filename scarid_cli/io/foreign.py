@@ -25,7 +25,6 @@ END_OF_ZIP = struct.Struct("<4s6xH10x")  # the last bytes: a mark, and how many 
 MANY = 0xFFFF  # stands for a number that is elsewhere
 COMMENTS = b"#%\r\n"  # that begin a line before the header, if it is not empty
 
-
 END = re.compile(rb"\r?\n\s*EOF\s*\Z")  # the last line of some programs
 
 
@@ -54,7 +53,8 @@ class TranslatedCsv(Wrapped):
         data = self.source.read_some(size)
         if not self._space:
             data = data.translate(self._table)
-            return data if self.source.peek(1) else END.sub(b"\n", data)
+            # Whether more comes is asked only behind such a line: a live source would wait.
+            return END.sub(b"\n", data) if END.search(data) and not self.source.peek(1) else data
         ended = not data
         while not ended and b"\n" not in data:
             more = self.source.read_some(size)

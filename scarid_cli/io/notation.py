@@ -11,7 +11,7 @@ from pathlib import Path
 
 from scarid_cli.errors import UsageFault
 from scarid_cli.io.bytesource import ByteSource
-from scarid_cli.io.cells import NUMERIC, decoded
+from scarid_cli.io.cells import MISSING, NUMERIC, decoded
 from scarid_cli.io.echoed import joint_state_names
 from scarid_cli.io.scopes import channels
 
@@ -23,7 +23,7 @@ LOOKED_AT = 8  # lines of a table, if there are so many, which must be alike
 ROWS = 3  # lines that are looked at: a header, if there is one, and rows
 MOST_LINES = 10_000  # that are looked at for them, among comments and empty lines
 LATEST = 64  # rows that may stand before the header: what a program says of its file
-NOTHING = ("", "-", "na", "n/a", "#n/a", "nan", "null", "none")  # of a value that is missing
+NOTHING = {"", "-", "nan", *(text.lower() for text in MISSING)}  # in place of a value
 COMMENT = "#%"  # with which a comment begins
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+([eE][+-]?\d+)?\s*\Z")
 

@@ -15,8 +15,8 @@ from scarid_cli.algorithms.robots.physical import (
     Physical,
     chi_square,
     inertia_of,
+    is_possible,
     nearest,
-    pseudo_inertia,
 )
 from scarid_cli.algorithms.robots.rigid import Held
 from scarid_cli.arrays import Array
@@ -67,10 +67,6 @@ def _inertial(body: Array) -> Inertial:
     return Inertial.of(body[9], body[6:9], inertia_of(body))
 
 
-def _possible(body: Array) -> bool:
-    return bool(np.linalg.eigvalsh(pseudo_inertia(body))[0] > 0.0)
-
-
 def _held(robot: Robot, found: Physical, axis: int) -> tuple[list[Held], float]:
     """The links that an axis (from 1) carries behind other joints, and the share of their masses.
 
@@ -79,7 +75,7 @@ def _held(robot: Robot, found: Physical, axis: int) -> tuple[list[Held], float]:
     assert robot.body
     held, share = [x for x in robot.body.held if x.axis == axis], 1.0
     body, carried = found.bodies[axis - 1], sum(x.carried for x in held)
-    while held and share > LEAST and not _possible(body - share * carried):
+    while held and share > LEAST and not is_possible(body - share * carried):
         share *= 0.5
     return held, share
 

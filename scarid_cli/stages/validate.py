@@ -79,7 +79,7 @@ def validate(
         if before:
             own = before.alike(rows)
             subsample = subsample.add(own)
-            judged_sums = added(judged_sums, own, torques)
+            judged_sums = sums if own is rows else added(judged_sums, own, torques)
         if predictions and batch is not None:
             new = dict(zip(schema.names[1:], (*rows.y.T, *torques), strict=False))
             predictions.write(with_columns(batch, schema, new))

@@ -9,8 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scarid_cli.reporting.study.league import APART, League, Place, decades, drawn
-from scarid_cli.reporting.study.opening import of_joints
+from scarid_cli.reporting.study.league import (
+    APART,
+    League,
+    Place,
+    decades,
+    drawn,
+    joint_percents,
+)
 
 VALUE = st.floats(1e-6, 1e9)
 
@@ -42,5 +48,5 @@ def test_values_in_words(values: tuple[float, ...], text: str) -> None:
 
 
 def test_values_of_joints_have_their_joints() -> None:
-    assert of_joints([1.42, 6.2]) == "joint 1 1.4 %, joint 2 6.2 %"
-    assert of_joints([1.42]) == "1.4 %"
+    assert joint_percents([1.42, 6.2]) == "joint 1 1.4 %, joint 2 6.2 %"
+    assert joint_percents([1.42]) == "1.4 %"

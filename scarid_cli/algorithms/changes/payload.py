@@ -15,7 +15,7 @@ import numpy as np
 
 from scarid_cli.algorithms.changes.body import nearest
 from scarid_cli.algorithms.robots.description import Robot
-from scarid_cli.algorithms.robots.physical import inertia_of, pseudo_inertia
+from scarid_cli.algorithms.robots.physical import inertia_of, is_possible
 from scarid_cli.algorithms.robots.rigid import SYMBOLS, Frame
 from scarid_cli.arrays import Array
 from scarid_cli.interval import HALF
@@ -120,7 +120,7 @@ def in_frame(found: Standard, frame: Frame) -> Payload:
         return replace(free, errors=np.array([errors[0], *[np.nan] * 9]))
     if values[0] < 0.0:  # what was taken away: no body hangs there
         return replace(free, body=np.full(10, np.nan), away=np.inf)
-    if np.linalg.eigvalsh(pseudo_inertia(found.phi))[0] > 0.0:
+    if is_possible(found.phi):
         return free
     nearby, away = nearest(found.phi, found.factor)
     return replace(free, body=_of_centre(nearby, frame), away=away)

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from scarid_cli.algorithms.processes.holding import MAX_GAP
 from scarid_cli.arrays import Array, Numbers, median
 
 FEWEST = 10  # readings of each signal
 MOST = 0.5  # of the rows: where more are whole, single values are missing
-GAP = 5.0  # median intervals between a signal's readings: a longer one is a gap
 
 
 def in_turn(values: Array) -> bool:
@@ -39,7 +39,7 @@ def interpolated(t: Array, values: Array) -> tuple[Numbers, Array]:
             return np.empty(0, dtype=np.int64), np.empty((len(values), 0))
         after = np.clip(np.searchsorted(times, at), 1, len(times) - 1)
         within = (at >= times[0]) & (at <= times[-1])
-        near = times[after] - times[after - 1] <= GAP * median(np.diff(times))
+        near = times[after] - times[after - 1] <= MAX_GAP * median(np.diff(times))
         whole &= within & (near | (times[after] == at) | (times[after - 1] == at))
         found.append(np.interp(at, times, own[there]))
     return kept[whole], np.array(found)[:, whole]

@@ -274,6 +274,11 @@ def inertia_of(body: Array) -> Array:
     return np.array([[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz, Izz]])
 
 
+def is_possible(body: Array) -> bool:
+    """Whether a body can have these standard parameters, in the order of SYMBOLS."""
+    return bool(np.linalg.eigvalsh(pseudo_inertia(body))[0] > 0.0)
+
+
 def pseudo_inertia(body: Array) -> Array:
     """The pseudo-inertia of standard parameters in the order of SYMBOLS, lengths in LENGTH [kg]."""
     inertia, h, m = inertia_of(body), body[6:9], body[9]

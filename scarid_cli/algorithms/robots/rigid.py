@@ -243,8 +243,7 @@ class Body:
     @property
     def links(self) -> list[tuple[str, list[str]]]:
         """The link that each axis moves, and the links that are fixed to it."""
-        tree = ElementTree.parse(self.path).getroot()
-        child = {j.get("name"): link(j, "child") for j in tree.findall("joint")}
+        child = self._children
         together: dict[int, list[str]] = {i: [] for i in range(1, self.model.njoints)}
         for frame in self.model.frames:
             if str(frame.type) == "BODY" and frame.parentJoint:
@@ -255,14 +254,18 @@ class Body:
             found.append((own, [link for link in together[i] if link != own]))
         return found
 
+    @property
+    def _children(self) -> dict[str | None, str]:
+        """The link that each joint of the URDF carries."""
+        tree = ElementTree.parse(self.path).getroot()
+        return {j.get("name"): link(j, "child") for j in tree.findall("joint")}
+
     @cached_property
     def held(self) -> list[Held]:
         """The links with a mass behind joints that are no axes."""
         import pinocchio  # after it has been found by `read`
 
-        model, found = read(self.path, self.joints).model, []
-        tree = ElementTree.parse(self.path).getroot()
-        child = {j.get("name"): link(j, "child") for j in tree.findall("joint")}
+        model, found, child = read(self.path, self.joints).model, [], self._children
         for name in _chain(self.path, self.joints).locked:
             own, frame = model.inertias[model.getJointId(name)], self.frames[child[name]]
             if frame.axis and own.mass > 0.0:

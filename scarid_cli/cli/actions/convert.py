@@ -20,8 +20,8 @@ from scarid_cli.stages.conversion.lacking import lacking
 from scarid_cli.stages.conversion.recorders import unstated_unit
 from scarid_cli.stages.conversion.side import episodes_joined
 from scarid_cli.stages.conversion.turns import one_row_for_all, refuse_long
-from scarid_cli.stages.conversion.units import unit_option
-from scarid_cli.stages.conversion.wording import is_current
+from scarid_cli.stages.conversion.units import is_stated, unit_option
+from scarid_cli.stages.conversion.wording import current_as_torque
 from scarid_cli.stages.records.runs import runs_joined
 
 if TYPE_CHECKING:
@@ -102,9 +102,9 @@ def _require_units(pairs: dict[str, str], columns: Columns, robot: Robot | None)
     constants = robot and robot.log and robot.log.torques == CURRENT
     mapped = {n: o for n, o in columns.names.items() if any(fnmatchcase(n, p) for p in pairs)}
     for new, old in mapped.items():
-        if any(fnmatchcase(new, pattern) for pattern, _ in columns.units):
+        if is_stated(new, columns.units):
             continue
-        if numbered([new], "tau") and not constants and is_current(old):
+        if not constants and current_as_torque(new, old):
             raise UsageFault(
                 f"--map {new}={old}: by its name a current and no torque; state what one ampere "
                 f"gives, as in --unit '{new}=0.05 N m', or call it current{new[3:]}"

@@ -9,6 +9,7 @@ from math import ceil, floor, isfinite, log10
 from markupsafe import Markup
 
 from scarid_cli.reporting.study import svg
+from scarid_cli.words import of_joints
 
 WIDTH, NAMES, NUMBERS = 640, 160, 130
 TOP, ROW, BOTTOM = 20, 22, 34
@@ -88,6 +89,11 @@ def decades(league: League) -> tuple[int, int]:
 def percents(values: Sequence[float]) -> str:
     """The values with two significant digits, as a sentence would have them."""
     return ", ".join(f"{v:,.0f}" if v >= 100.0 else f"{v:.2g}" for v in values if isfinite(v))
+
+
+def joint_percents(values: Sequence[float]) -> str:
+    """A value [%] for each joint: `joint 1 1.4 %, joint 2 6.2 %`."""
+    return of_joints([percents([value]) for value in values], " %")
 
 
 def _spoken(league: League) -> str:

@@ -13,7 +13,7 @@ from scarid_cli.algorithms.changes.wording import CHANGED, UNEXPLAINED
 from scarid_cli.algorithms.inference.verdict import DOUBT, DOUBTFUL, GOOD, GRADES, ROUGH
 from scarid_cli.reporting.said import FINE, Said, worst
 from scarid_cli.reporting.study import league
-from scarid_cli.reporting.study.league import League, Place, percents
+from scarid_cli.reporting.study.league import League, Place, joint_percents, percents
 from scarid_cli.reporting.study.ranking import Ranking, Standing
 from scarid_cli.stages.compare import DIFFER
 from scarid_cli.stages.results.documents import half_interval
@@ -115,7 +115,7 @@ def _how_well(ranking: Ranking) -> str:
     known_ones = [s for s in ranked if s.errors(judge)]
     text = (
         f"It predicts the torques of {EXPERIMENTS.get(judge, f'the experiment {judge}')} within "
-        f"{of_joints(known_ones[0].errors(judge))} of their norm"
+        f"{joint_percents(known_ones[0].errors(judge))} of their norm"
     )
     tied = [s for s in known_ones[1:] if s.score(judge) <= TIE * known_ones[0].score(judge)]
     if tied:
@@ -124,17 +124,10 @@ def _how_well(ranking: Ranking) -> str:
     return others(text, [(s.label, s.errors(judge)) for s in rest])
 
 
-def of_joints(values: Sequence[float]) -> str:
-    """The values [%] with their joints: `joint 1 1.4 %, joint 2 6.2 %`; one alone without."""
-    if len(values) == 1:
-        return f"{percents(values)} %"
-    return ", ".join(f"joint {i} {percents([value])} %" for i, value in enumerate(values, start=1))
-
-
 def others(text: str, ranked: Sequence[tuple[str, Sequence[float]]]) -> str:
     """The sentence, with the errors [%] of the next and of the last of these methods."""
     chosen = [*ranked[:1], *ranked[1:][-1:]]
-    tails = [f"{label} within {of_joints(errors)}" for label, errors in chosen]
+    tails = [f"{label} within {joint_percents(errors)}" for label, errors in chosen]
     names = ("the next, ", "the last, ")
     rest = "; ".join(a + b for a, b in zip(names, tails, strict=False))
     return f"{text}; {rest}." if rest else f"{text}."
@@ -211,7 +204,7 @@ def _of_parameters(ranking: Ranking, colours: dict[str, int]) -> League:
         caption = "Median relative standard error of the parameters of each method."
     else:
         errors, style = best.robust or best.deviations, f"m{colours[ranking.best.label]}"
-        if len(errors) > FEW and (figure := _of_joints(best.extra, style)):
+        if len(errors) > FEW and (figure := _of_torques(best.extra, style)):
             return figure
         pairs = zip(best.names, errors, strict=True)
         places = tuple(Place(name, style, "", (error,)) for name, error in pairs)
@@ -227,7 +220,7 @@ def _of_parameters(ranking: Ranking, colours: dict[str, int]) -> League:
     )
 
 
-def _of_joints(extra: dict[str, Any], style: str) -> League | None:
+def _of_torques(extra: dict[str, Any], style: str) -> League | None:
     """How well the torques of each joint are known; None if the metadata do not say it."""
     places = []
     for number, joint in enumerate(extra.get("joints", ()), start=1):

@@ -10,14 +10,13 @@ import numpy as np
 
 from scarid_cli.algorithms.inference.verdict import DOUBT, GOOD, GRADES
 from scarid_cli.reporting.kinds import Metrics, Parameters, Result
-from scarid_cli.reporting.study.league import League, Place, percents
+from scarid_cli.reporting.study.league import League, Place, joint_percents, percents
 from scarid_cli.reporting.study.opening import (
     BELIEF,
     EXPERIMENTS,
     ROWS,
     Opening,
     counted,
-    of_joints,
     others,
 )
 from scarid_cli.reporting.study.ranking import Standing, judge_of
@@ -155,7 +154,7 @@ def _how_well(found: Ranked) -> str:
         return f"Half of the parameters are known within {known} % at the median." if known else ""
     where = EXPERIMENTS.get(judge, f"the experiment {judge}")
     text = f"At the median it predicts the torques of {where} within"
-    text += f" {of_joints(best.medians(judge))} of their norm"
+    text += f" {joint_percents(best.medians(judge))} of their norm"
     rest = [(m.label, m.medians(judge)) for m in found.methods[1:] if m.scores(judge)]
     return others(text, rest)
 

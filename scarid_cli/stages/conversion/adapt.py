@@ -11,11 +11,11 @@ import numpy as np
 import pyarrow as pa
 
 from scarid_cli.errors import UsageFault, bad_row
-from scarid_cli.io.csvio import MISSING
+from scarid_cli.io.cells import MISSING
 from scarid_cli.io.schemas import column_type
 from scarid_cli.io.table import Table, doubles, matrix, number
 from scarid_cli.stages.conversion.dates import since_start
-from scarid_cli.stages.conversion.units import UNITS, scale_of
+from scarid_cli.stages.conversion.units import UNITS, is_stated, scale_of
 
 
 def adapted(
@@ -29,7 +29,7 @@ def adapted(
     unit of these columns in the log. A `rate` [Hz] adds a time column to a table without one. Dates
     become seconds since the first one.
     """
-    if not any(fnmatchcase("t", pattern) for pattern, _ in units):
+    if not is_stated("t", units):
         table = since_start(table, names.get("t", "t"))
     fields = _renamed(table, names)
     new = [field.name for field in fields]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from fnmatch import fnmatchcase
 
 import pyarrow as pa
 
@@ -12,10 +11,11 @@ from scarid_cli.algorithms.robots.description import Robot
 from scarid_cli.algorithms.robots.logs import CURRENT, JOINT, LogFormat
 from scarid_cli.arrays import Array
 from scarid_cli.errors import UsageFault, bad_data
-from scarid_cli.io.schemas import numbered, of_joints
+from scarid_cli.io.schemas import of_joints
 from scarid_cli.io.table import Table, matrix, number, with_columns
 from scarid_cli.stages.conversion.adapt import adapted
-from scarid_cli.stages.conversion.wording import is_current
+from scarid_cli.stages.conversion.units import is_stated
+from scarid_cli.stages.conversion.wording import current_as_torque
 
 Transform = Callable[[Array], Array]
 
@@ -47,8 +47,8 @@ def as_described(
 def _require_torques(robot: Robot, log: LogFormat, described: dict[str, str]) -> None:
     """Refuse a description that calls currents torques, without saying what one ampere gives."""
     for new, old in described.items():
-        converted = any(fnmatchcase(new, pattern) for pattern, _ in log.units)
-        if log.torques != CURRENT and not converted and numbered([new], "tau") and is_current(old):
+        stated = log.torques == CURRENT or is_stated(new, log.units)
+        if not stated and current_as_torque(new, old):
             raise UsageFault(
                 f"{robot.name}: [log] columns: {new} = {old!r} is by its name a current and no "
                 'torque; state torques = "current" and the torque_constant of each joint, or '

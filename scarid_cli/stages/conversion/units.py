@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from fnmatch import fnmatchcase
 from math import inf, pi
 
 POUND, INCH = 4.4482216152605, 0.0254  # N and m, by definition (NIST SP 811)
@@ -65,6 +67,11 @@ def known_unit(text: str) -> str | None:
     apart = BETWEEN.sub(" ", text).strip()
     found = (KNOWN.get(own) for own in (text, apart, text.lower(), apart.lower()))
     return next((unit for unit in found if unit), None)
+
+
+def is_stated(name: str, units: Iterable[tuple[str, str]]) -> bool:
+    """Whether one of these patterns, each with its unit, is that of a column."""
+    return any(fnmatchcase(name, pattern) for pattern, _ in units)
 
 
 def unit_option(new: str, factor: str = "0.001") -> str:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from scarid_cli.errors import UsageFault
-from scarid_cli.io.schemas import COUNTED_FROM_0, column_type, named
+from scarid_cli.io.schemas import COUNTED_FROM_0, column_type, named, numbered
 from scarid_cli.stages.conversion.recorders import (
     CURRENT,
     Recognised,
@@ -146,6 +146,11 @@ def is_current(name: str) -> bool:
     words = {*words_of(name)}
     known = QUANTITIES[POSITION] | QUANTITIES[VELOCITY] | QUANTITIES[TORQUE]
     return bool(words & {*AMPERES, *QUANTITIES[CURRENT]}) and words.isdisjoint(known)
+
+
+def current_as_torque(new: str, old: str) -> bool:
+    """Whether a column becomes a torque that is a current by its name."""
+    return bool(numbered([new], "tau")) and is_current(old)
 
 
 def in_short(found: Recognised) -> str:
