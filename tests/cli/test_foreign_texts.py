@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
 import struct
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Timer
 
 import numpy as np
 import pytest
@@ -79,6 +81,21 @@ def test_a_table_is_found_behind_any_lines_and_above_units(
         values = np.hstack([np.array([batch.column(n) for n in ORDER]) for batch in found.batches])
     assert notation.units == units
     np.testing.assert_allclose(values.T, LOG, atol=1e-6)
+
+
+def test_a_live_source_with_other_separators_is_not_waited_for() -> None:
+    """The pipe stays open until its rows are read, or for so long that they were waited for."""
+    read, write = os.pipe()
+    source, pipe = ByteSource(read, "pipe"), os.fdopen(write, "wb", buffering=0)
+    late = Timer(10.0, pipe.close)
+    late.start()
+    pipe.write(written(",".join(ORDER)).replace(",", ";").encode())
+    live = TranslatedCsv(source, notation_of(source, None, by_name=False))
+    assert live.read_some(1 << 16).decode() == written(",".join(ORDER))
+    assert not pipe.closed
+    late.cancel()
+    pipe.close()
+    source.close()
 
 
 @pytest.mark.parametrize("brackets", ["{}", "[{}]", "({})"])
